@@ -1,0 +1,34 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "core/detector.hpp"
+
+namespace ellipse {
+
+/// [Keipour2021] Algorithm 1, step by step on OpenCV: Canny's edges [Canny1986], the contours of
+/// [SuzukiAbe1985], one ellipse fitted to each contour and tested, the cheapest test first.
+///
+/// Keeps its pictures from call to call. OpenCV's edge and contour functions allocate inside.
+class ContourDetector final : public Detector {
+ public:
+  [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
+                                                  const Thresholds& thresholds) override;
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
+
+ private:
+  void detect_edges(const ImageView& luma, const Thresholds& thresholds);
+
+  cv::Mat smooth_;
+  cv::Mat gradient_x_;
+  cv::Mat gradient_y_;
+  cv::Mat edges_;
+  cv::Mat thick_edges_;
+  std::vector<int> histogram_;
+  std::vector<std::vector<cv::Point>> contours_;
+  std::vector<Detection> detections_;
+};
+
+}  // namespace ellipse

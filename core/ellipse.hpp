@@ -1,0 +1,61 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace ellipse {
+
+/// An ellipse in the picture. Pixels, x right, y down, (0, 0) is the centre of the top-left pixel.
+struct Ellipse {
+  double cx = 0.0;          ///< Centre [px].
+  double cy = 0.0;          ///< Centre [px].
+  double semi_major = 0.0;  ///< [px], >= semi_minor.
+  double semi_minor = 0.0;  ///< [px], > 0.
+  double angle_rad = 0.0;   ///< Major axis, from +x towards +y, in (-pi/2, pi/2].
+
+  [[nodiscard]] Eigen::Vector2d center() const { return {cx, cy}; }
+  /// The point at the eccentric anomaly t [rad]: centre + R(angle) (a cos t, b sin t).
+  [[nodiscard]] Eigen::Vector2d point_at(double t_rad) const;
+  [[nodiscard]] double aspect_ratio() const { return semi_major / semi_minor; }
+  bool operator==(const Ellipse&) const = default;
+};
+
+/// Half the width and height of the upright box around the ellipse [px].
+[[nodiscard]] Eigen::Vector2d half_extent(const Ellipse& e);
+
+/// Circumference [px], [Ramanujan1914]; relative error below 4e-5 up to an aspect ratio of 5.
+[[nodiscard]] double perimeter_px(const Ellipse& e);
+
+/// Symmetric C with (p - c)^T C^-1 (p - c) = 1 on the perimeter [px^2].
+[[nodiscard]] Eigen::Matrix2d shape_matrix(const Ellipse& e);
+
+/// The inverse of shape_matrix(). nullopt where the matrix is not positive definite and finite.
+[[nodiscard]] std::optional<Ellipse> from_shape(const Eigen::Vector2d& center,
+                                                const Eigen::Matrix2d& shape);
+
+/// Symmetric Q with (x, y, 1) Q (x, y, 1)^T = 0 on the perimeter, negative inside.
+[[nodiscard]] Eigen::Matrix3d conic_matrix(const Ellipse& e);
+
+/// The inverse of conic_matrix(), for any scale and sign of Q. nullopt for other conics.
+[[nodiscard]] std::optional<Ellipse> from_conic(const Eigen::Matrix3d& conic);
+
+/// The ellipse seen through p -> A p + t. nullopt where A is singular.
+[[nodiscard]] std::optional<Ellipse> transformed(const Ellipse& e,
+                                                 const Eigen::Matrix2d& linear,
+                                                 const Eigen::Vector2d& translation_px);
+
+/// The ellipse in a picture resampled by `factor`: x becomes (x + 0.5) factor - 0.5.
+[[nodiscard]] Ellipse scaled(const Ellipse& e, double factor);
+
+[[nodiscard]] Ellipse translated(const Ellipse& e, double dx_px, double dy_px);
+
+/// Signed distance of a point to the perimeter [px], negative inside, to first order [Sampson1982].
+[[nodiscard]] double sampson_distance(const Ellipse& e, const Eigen::Vector2d& point_px);
+
+/// Intersection over union of two ellipses, counted inside a frame only; 0 where both miss it.
+[[nodiscard]] double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height);
+
+/// Share of the perimeter's length inside the frame, 0 to 1.
+[[nodiscard]] double visible_fraction(const Ellipse& e, int width, int height);
+
+}  // namespace ellipse

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "core/ellipse_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+constexpr int kMinPoints = 5;  // A conic has five degrees of freedom.
+
+// On standardized points the two principal variances sum to 1: below this they lie on a line.
+constexpr double kMinVariance = 1e-6;
+
+// Keeps the reduced scatter invertible when the points lie on the ellipse exactly.
+constexpr double kRegularization = 1e-13;
+
+constexpr int kBinomial[5][5] = {
+    {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
+
+// [HalirFlusser1998] (19)-(21): the scatter S1 of the quadratic monomials (x^2, xy, y^2), less what
+// the linear ones (x, y, 1) explain of it: S1 + S2 T with T = -S3^-1 S2^T.
+struct ReducedScatter {
+  Eigen::Matrix3d quadratic;  // M = S1 + S2 T
+  Eigen::Matrix3d linear;     // T
+};
+
+ReducedScatter reduced_scatter(const Moments& m) {
+  Eigen::Matrix3d s1;
+  Eigen::Matrix3d s2;
+  Eigen::Matrix3d s3;
+  s1 << m.at(4, 0), m.at(3, 1), m.at(2, 2),  //
+      m.at(3, 1), m.at(2, 2), m.at(1, 3),    //
+      m.at(2, 2), m.at(1, 3), m.at(0, 4);
+  s2 << m.at(3, 0), m.at(2, 1), m.at(2, 0),  //
+      m.at(2, 1), m.at(1, 2), m.at(1, 1),    //
+      m.at(1, 2), m.at(0, 3), m.at(0, 2);
+  s3 << m.at(2, 0), m.at(1, 1), m.at(1, 0),  //
+      m.at(1, 1), m.at(0, 2), m.at(0, 1),    //
+      m.at(1, 0), m.at(0, 1), m.at(0, 0);
+  const Eigen::Matrix3d linear = -s3.inverse() * s2.transpose();
+  return {s1 + s2 * linear, linear};
+}
+
+// Minimizes a^T M a under a^T C a = 1, C = [0 0 2; 0 -1 0; 2 0 0] (4 a c - b^2 = 1), as the
+// symmetric problem C a = mu M a: M is positive definite and C has one positive eigenvalue, so
+// that the answer is the largest one. [Fitzgibbon1999] Lemma 1.
+Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
+  Eigen::Matrix3d constraint = Eigen::Matrix3d::Zero();
+  constraint(0, 2) = constraint(2, 0) = 2.0;
+  constraint(1, 1) = -1.0;
+  const Eigen::Matrix3d symmetric = 0.5 * (scatter + scatter.transpose()) +
+                                    kRegularization * scatter.trace() * Eigen::Matrix3d::Identity();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(constraint, symmetric);
+  if (solver.info() != Eigen::Success) return Eigen::Vector3d::Zero();
+  return solver.eigenvectors().col(2);
+}
+
+bool is_collinear(const Moments& standardized) {
+  const double n = standardized.count();
+  const double xx = standardized.at(2, 0) / n;
+  const double xy = standardized.at(1, 1) / n;
+  const double yy = standardized.at(0, 2) / n;
+  return !(xx * yy - xy * xy > kMinVariance);  // product of the variances; their sum is 1
+}
+
+}  // namespace
+
+void Moments::add(const Eigen::Vector2d& point_px) {
+  const double x = point_px.x() - origin_.x();
+  const double y = point_px.y() - origin_.y();
+  const double xx = x * x;
+  const double xy = x * y;
+  const double yy = y * y;
+  const double terms[15] = {1,
+                            x,
+                            y,
+                            xx,
+                            xy,
+                            yy,
+                            xx * x,
+                            xx * y,
+                            x * yy,
+                            yy * y,
+                            xx * xx,
+                            xx * xy,
+                            xx * yy,
+                            xy * yy,
+                            yy * yy};
+  for (int i = 0; i < 15; ++i) sums_[i] += terms[i];
+}
+
+Eigen::Vector2d Moments::mean() const {
+  return origin_ + Eigen::Vector2d(at(1, 0), at(0, 1)) / count();
+}
+
+double Moments::spread_px() const {
+  const double n = count();
+  const double variance =
+      (at(2, 0) + at(0, 2)) / n - std::pow(at(1, 0) / n, 2) - std::pow(at(0, 1) / n, 2);
+  return variance > 0.0 ? std::sqrt(variance) : 0.0;
+}
+
+Moments Moments::standardized() const {
+  Moments result(Eigen::Vector2d::Zero());
+  const double shift_x = -at(1, 0) / count();
+  const double shift_y = -at(0, 1) / count();
+  const double inverse_scale = 1.0 / spread_px();
+  double powers_x[5] = {1};
+  double powers_y[5] = {1};
+  for (int k = 1; k < 5; ++k) {
+    powers_x[k] = powers_x[k - 1] * shift_x;
+    powers_y[k] = powers_y[k - 1] * shift_y;
+  }
+  // (x + s)^i (y + t)^j by the binomial theorem, term by term.
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; i + j < 5; ++j) {
+      double sum = 0.0;
+      for (int p = 0; p <= i; ++p) {
+        for (int q = 0; q <= j; ++q) {
+          sum += kBinomial[i][p] * kBinomial[j][q] * powers_x[i - p] * powers_y[j - q] * at(p, q);
+        }
+      }
+      result.sums_[index(i, j)] = sum * std::pow(inverse_scale, i + j);
+    }
+  }
+  return result;
+}
+
+std::optional<Ellipse> fit_ellipse(std::span<const Eigen::Vector2d> points_px) {
+  if (points_px.empty()) return std::nullopt;
+  Moments moments(points_px.front());
+  for (const Eigen::Vector2d& point : points_px) moments.add(point);
+  return fit_ellipse(moments);
+}
+
+std::optional<Ellipse> fit_ellipse(const Moments& moments) {
+  if (moments.count() < kMinPoints) return std::nullopt;
+  const double spread = moments.spread_px();
+  if (!(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
+  const Moments standardized = moments.standardized();
+  if (is_collinear(standardized)) return std::nullopt;
+
+  const ReducedScatter scatter = reduced_scatter(standardized);
+  const Eigen::Vector3d a = constrained_minimum(scatter.quadratic);
+  const Eigen::Vector3d b = scatter.linear * a;
+  Eigen::Matrix3d conic;
+  conic << a(0), a(1) / 2, b(0) / 2, a(1) / 2, a(2), b(1) / 2, b(0) / 2, b(1) / 2, b(2);
+  const std::optional<Ellipse> fit = from_conic(conic);
+  if (!fit) return std::nullopt;
+  const Eigen::Vector2d center = moments.mean() + spread * fit->center();
+  return Ellipse{
+      center.x(), center.y(), fit->semi_major * spread, fit->semi_minor * spread, fit->angle_rad};
+}
+
+}  // namespace ellipse

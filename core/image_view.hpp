@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ellipse {
+
+/// A rectangle of whole pixels: columns [x, x + width), rows [y, y + height).
+struct Rect {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
+  [[nodiscard]] bool contains(int px, int py) const {
+    return px >= x && py >= y && px < x + width && py < y + height;
+  }
+  bool operator==(const Rect&) const = default;
+};
+
+/// The common part of two rectangles, empty (0 x 0) where there is none.
+[[nodiscard]] Rect intersect(const Rect& a, const Rect& b);
+
+/// An 8-bit luma picture that somebody else owns. Copying it copies no pixel.
+struct ImageView {
+  const std::uint8_t* data = nullptr;  ///< The top-left pixel. Borrowed.
+  int width = 0;                       ///< [px]
+  int height = 0;                      ///< [px]
+  std::ptrdiff_t stride = 0;           ///< Bytes from a row to the one below; may be negative.
+
+  [[nodiscard]] const std::uint8_t* row(int y) const { return data + y * stride; }
+  [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
+  [[nodiscard]] Rect bounds() const { return {0, 0, width, height}; }
+
+  /// The part of the picture inside `rect`, clipped to the picture.
+  [[nodiscard]] ImageView region(const Rect& rect) const;
+};
+
+}  // namespace ellipse

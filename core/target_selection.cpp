@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "core/target_selection.hpp"
+
+#include <cmath>
+#include <tuple>
+
+namespace ellipse {
+namespace {
+
+// A circle's centre and its ring's centres part under perspective, and small fits are uncertain.
+constexpr double kConcentricRelative = 0.1;
+constexpr double kConcentricPx = 2.0;
+constexpr double kFlatnessTolerance = 0.15;
+
+// Two fits to one edge, from its two sides, differ by less than this.
+constexpr double kSameEdgeRelative = 0.01;
+constexpr double kSameEdgePx = 1.5;
+
+// From frame to frame.
+constexpr double kLargestGrowth = 2.0;
+
+constexpr double kLeastShareOfBestScore = 0.25;
+
+bool are_concentric(const Ellipse& a, const Ellipse& b) {
+  const double largest = std::max(a.semi_major, b.semi_major);
+  const double apart = (a.center() - b.center()).norm();
+  const double flatness = std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major);
+  return apart <= kConcentricRelative * largest + kConcentricPx && flatness <= kFlatnessTolerance;
+}
+
+bool are_one_edge(const Ellipse& a, const Ellipse& b) {
+  const double tolerance = kSameEdgePx + kSameEdgeRelative * a.semi_major;
+  return std::abs(a.semi_major - b.semi_major) <= tolerance &&
+         std::abs(a.semi_minor - b.semi_minor) <= tolerance;
+}
+
+bool can_be_same_target(const Ellipse& candidate, const Ellipse& last) {
+  return (candidate.center() - last.center()).norm() <= last.semi_major &&
+         candidate.semi_major >= last.semi_major / kLargestGrowth &&
+         candidate.semi_major <= last.semi_major * kLargestGrowth;
+}
+
+// What is known of the set of all ellipses concentric with one of them.
+struct ConcentricSet {
+  bool has_two_edges = false;
+  double score = 0.0;
+  double best_score = 0.0;
+
+  bool operator<(const ConcentricSet& other) const {
+    return std::tie(has_two_edges, score) < std::tie(other.has_two_edges, other.score);
+  }
+};
+
+ConcentricSet set_around(const Detection& seed, std::span<const Detection> detections) {
+  ConcentricSet set;
+  for (const Detection& other : detections) {
+    if (!are_concentric(seed.ellipse, other.ellipse)) continue;
+    set.has_two_edges = set.has_two_edges || !are_one_edge(seed.ellipse, other.ellipse);
+    set.score += other.score;
+    set.best_score = std::max(set.best_score, other.score);
+  }
+  return set;
+}
+
+Detection outermost(const Detection& seed,
+                    const ConcentricSet& set,
+                    std::span<const Detection> detections) {
+  Detection result = seed;
+  for (const Detection& other : detections) {
+    if (!are_concentric(seed.ellipse, other.ellipse)) continue;
+    if (other.score < kLeastShareOfBestScore * set.best_score) continue;
+    const bool is_better = are_one_edge(result.ellipse, other.ellipse)
+                               ? other.score > result.score
+                               : other.ellipse.semi_major > result.ellipse.semi_major;
+    if (is_better) result = other;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<Detection> select_target(std::span<const Detection> detections,
+                                       const std::optional<Ellipse>& last_target) {
+  const Detection* seed = nullptr;
+  ConcentricSet best;
+  for (const Detection& detection : detections) {
+    if (last_target && !can_be_same_target(detection.ellipse, *last_target)) continue;
+    const ConcentricSet set = set_around(detection, detections);
+    if (seed == nullptr || best < set) {
+      seed = &detection;
+      best = set;
+    }
+  }
+  if (seed == nullptr) return std::nullopt;
+  return outermost(*seed, best, detections);
+}
+
+}  // namespace ellipse

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "core/thresholds.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+namespace ellipse {
+namespace {
+
+// The shortest contour that says anything of an ellipse, at whatever scale.
+constexpr double kLeastContourSizePx = 12.0;
+
+}  // namespace
+
+void check_range(const char* field, double value, const Range& range) {
+  if (range.contains(value)) return;
+  std::ostringstream message;
+  message << field << " = " << value << " is not in [" << range.min << ", " << range.max << "]";
+  throw std::invalid_argument(message.str());
+}
+
+void Thresholds::validate() const {
+  check_range("contour_overlap", contour_overlap, kShareRange);
+  check_range("ellipse_overlap", ellipse_overlap, kShareRange);
+  check_range("min_axis_px", min_axis_px, kAxisRangePx);
+  check_range("max_axis_px", max_axis_px, {min_axis_px, kAxisRangePx.max});
+  check_range("max_axis_ratio", max_axis_ratio, kAxisRatioRange);
+  check_range("min_contour_size", min_contour_size, kContourSizeRangePx);
+  check_range("edge_high", edge_high, kEdgeRange);
+  check_range("edge_low", edge_low, {0.0, edge_high > 0.0 ? edge_high : kEdgeRange.max});
+}
+
+Thresholds Thresholds::at_scale(int scale) const {
+  Thresholds result = *this;
+  result.min_axis_px /= scale;
+  result.max_axis_px /= scale;
+  result.min_contour_size =
+      std::max(min_contour_size / scale, std::min(min_contour_size, kLeastContourSizePx));
+  return result;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracker.hpp"
+
+#include "core/contour_detector.hpp"
+#include "core/roi.hpp"
+#include "core/target_selection.hpp"
+
+namespace ellipse {
+namespace {
+
+double or_own(double setting, double own) {
+  return setting > 0.0 ? setting : own;
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerSettings& settings) : detector_(std::make_unique<ContourDetector>()) {
+  configure(settings);
+}
+
+Tracker::~Tracker() = default;
+
+// [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.
+std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_ns) {
+  start_over_if_resized(frame);
+  search_region_ = is_tracking_ ? roi_ : frame_bounds_;
+
+  std::optional<Target> target = detect_target(frame, is_tracking_);
+  if (!target && scale_ > 1) {
+    scale_ /= 2;
+    target = detect_target(frame, false);
+  } else if (target && settings_.tracking == TrackingMode::kRedetect) {
+    scale_ = next_scale(scale_,
+                        settings_.max_scale,
+                        2.0 * target->ellipse.semi_major / scale_,
+                        settings_.min_target_size_px,
+                        settings_.max_target_size_px);
+  }
+
+  if (target) target->pts_ns = pts_ns;
+  prepare_next_frame(target);
+  return target;
+}
+
+// [Keipour2021] Algorithm 3, DetectTarget: in the search region, at the frame scale.
+std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tracking) {
+  const ImageView region = luma_reader_.read(frame, search_region_);
+  const ImageView reduced = scaler_.reduce(region, scale_);
+  const auto detections = detector_->detect(reduced, determine_thresholds(is_tracking));
+  const std::optional<Ellipse> last_target =
+      is_tracking_ ? std::optional(to_region(last_ellipse_, search_region_, scale_)) : std::nullopt;
+  const std::optional<Detection> selected = select_target(detections, last_target);
+  if (!selected) return std::nullopt;
+
+  Target target;
+  target.ellipse = to_frame(selected->ellipse, search_region_, scale_);
+  target.state = is_tracking_ ? TargetState::kTracked : TargetState::kDetected;
+  target.id = had_target_ ? last_id_ : last_id_ + 1;
+  target.contour_overlap = selected->contour_overlap;
+  target.ellipse_overlap = selected->ellipse_overlap;
+  target.visible_fraction = visible_fraction(target.ellipse, frame.width, frame.height);
+  target.scale = scale_;
+  target.search_region = search_region_;
+  return target;
+}
+
+// [Keipour2021] Algorithm 3, DetermineParams.
+Thresholds Tracker::determine_thresholds(bool is_tracking) const {
+  const Overlaps& wanted = is_tracking ? settings_.track_overlaps : settings_.detect_overlaps;
+  const Overlaps own =
+      is_tracking ? detector_->tracking_overlaps() : detector_->detecting_overlaps();
+  Thresholds thresholds = settings_.limits.at_scale(scale_);
+  thresholds.contour_overlap = or_own(wanted.contour, own.contour);
+  thresholds.ellipse_overlap = or_own(wanted.ellipse, own.ellipse);
+  return thresholds;
+}
+
+// [Keipour2021] Algorithm 2, its end: the tracking status and the region for the next frame.
+void Tracker::prepare_next_frame(const std::optional<Target>& target) {
+  had_target_ = target.has_value();
+  if (target) {
+    last_id_ = target->id;
+    last_ellipse_ = target->ellipse;
+  }
+  is_tracking_ = had_target_ && settings_.tracking == TrackingMode::kRedetect;
+  roi_ = {};
+  if (!is_tracking_) return;
+  roi_ = calculate_roi(
+      target->ellipse, settings_.roi_expansion, scale_, frame_bounds_.width, frame_bounds_.height);
+}
+
+void Tracker::start_over_if_resized(const PixelView& frame) {
+  if (frame.bounds() == frame_bounds_) return;
+  reset();
+  frame_bounds_ = frame.bounds();
+}
+
+void Tracker::reset() {
+  is_tracking_ = false;
+  had_target_ = false;
+  scale_ = 1;
+  roi_ = {};
+}
+
+void Tracker::configure(const TrackerSettings& settings) {
+  settings.validate();
+  const bool starts_over =
+      settings.detector != settings_.detector || settings.tracking != settings_.tracking;
+  settings_ = settings;
+  if (starts_over) reset();
+}
+
+}  // namespace ellipse

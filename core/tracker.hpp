@@ -1,0 +1,76 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/luma.hpp"
+#include "core/scale.hpp"
+#include "core/tracker_settings.hpp"
+
+namespace ellipse {
+
+enum class TargetState {
+  kDetected,   ///< Found where nothing was known of it.
+  kTracked,    ///< Found around its last place.
+  kPredicted,  ///< Not seen in this frame; its motion was continued.
+};
+
+/// The target in one frame.
+struct Target {
+  Ellipse ellipse;       ///< [px] of the frame; the outer edge.
+  std::uint64_t id = 0;  ///< The same while it is not lost, from 1.
+  TargetState state = TargetState::kDetected;
+  double contour_overlap = 0.0;   ///< [Keipour2021] Eq. (1).
+  double ellipse_overlap = 0.0;   ///< [Keipour2021] Eq. (2).
+  double visible_fraction = 0.0;  ///< Share of the perimeter inside the frame.
+  int scale = 1;                  ///< Frame scale that it was found at.
+  Rect search_region;             ///< Where it was looked for [px].
+  std::int64_t pts_ns = 0;        ///< Of its frame.
+};
+
+/// Follows one elliptical target through a stream: TrackTarget of [Keipour2021] Algorithm 2.
+///
+/// One object serves one stream, one thread at a time. The same frames give the same targets.
+class Tracker {
+ public:
+  /// Throws std::invalid_argument where the settings are not valid.
+  explicit Tracker(const TrackerSettings& settings = {});
+  ~Tracker();
+
+  /// From the next frame on. Throws like the constructor, and then keeps the old ones.
+  void configure(const TrackerSettings& settings);
+
+  /// @param frame   Borrowed for the call only. A change of its size starts over.
+  /// @param pts_ns  Its time stamp; copied into the target.
+  /// @return The target, or nullopt where none was found.
+  [[nodiscard]] std::optional<Target> process(const PixelView& frame, std::int64_t pts_ns);
+
+  /// Forgets the target, the scale and the region. Numbers of targets go on.
+  void reset();
+
+  /// Where the last frame was searched [px].
+  [[nodiscard]] const Rect& search_region() const { return search_region_; }
+
+ private:
+  [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
+  [[nodiscard]] Thresholds determine_thresholds(bool is_tracking) const;
+  void start_over_if_resized(const PixelView& frame);
+  void prepare_next_frame(const std::optional<Target>& target);
+
+  TrackerSettings settings_;
+  std::unique_ptr<Detector> detector_;
+  LumaReader luma_reader_;
+  Scaler scaler_;
+
+  bool is_tracking_ = false;
+  int scale_ = 1;
+  Rect roi_;  // where the target is expected, while it is being tracked
+  Rect search_region_;
+  Rect frame_bounds_;
+  bool had_target_ = false;
+  Ellipse last_ellipse_;
+  std::uint64_t last_id_ = 0;
+};
+
+}  // namespace ellipse

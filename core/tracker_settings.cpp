@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracker_settings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+namespace ellipse {
+namespace {
+
+constexpr Range kMaxScaleRange{1.0, 128.0};
+constexpr Range kRoiExpansionRange{1.0, 10.0};
+
+template <auto kMember, auto... kRest>
+constexpr auto& follow(auto& object) {
+  if constexpr (sizeof...(kRest) == 0) {
+    return object.*kMember;
+  } else {
+    return follow<kRest...>(object.*kMember);
+  }
+}
+
+// The setting that lies at the end of a path of members.
+template <auto... kPath>
+constexpr SettingInfo setting(const char* name,
+                              const Range& range,
+                              bool is_controllable,
+                              const char* description) {
+  using Field = std::remove_cvref_t<decltype(follow<kPath...>(std::declval<TrackerSettings&>()))>;
+  return {
+      name,
+      description,
+      range,
+      std::is_integral_v<Field>,
+      is_controllable,
+      [](const TrackerSettings& s) { return static_cast<double>(follow<kPath...>(s)); },
+      [](TrackerSettings& s, double value) { follow<kPath...>(s) = static_cast<Field>(value); }};
+}
+
+constexpr auto kDetect = &TrackerSettings::detect_overlaps;
+constexpr auto kTrack = &TrackerSettings::track_overlaps;
+constexpr auto kLimits = &TrackerSettings::limits;
+
+const std::array kSettings = {
+    setting<kDetect, &Overlaps::contour>(
+        "detect-contour-overlap",
+        kShareRange,
+        true,
+        "Smallest share of a contour's pixels on its ellipse, detecting; 0 = the detector's own"),
+    setting<kDetect, &Overlaps::ellipse>(
+        "detect-ellipse-overlap",
+        kShareRange,
+        true,
+        "Smallest share of an ellipse's pixels on edges, detecting; 0 = the detector's own"),
+    setting<kTrack, &Overlaps::contour>(
+        "track-contour-overlap",
+        kShareRange,
+        true,
+        "Smallest share of a contour's pixels on its ellipse, tracking; 0 = the detector's own"),
+    setting<kTrack, &Overlaps::ellipse>(
+        "track-ellipse-overlap",
+        kShareRange,
+        true,
+        "Smallest share of an ellipse's pixels on edges, tracking; 0 = the detector's own"),
+    setting<kLimits, &Thresholds::min_axis_px>(
+        "min-axis", kAxisRangePx, true, "Smallest minor axis of an ellipse, full length, in px"),
+    setting<kLimits, &Thresholds::max_axis_px>(
+        "max-axis", kAxisRangePx, true, "Largest major axis of an ellipse, full length, in px"),
+    setting<kLimits, &Thresholds::max_axis_ratio>(
+        "max-axis-ratio", kAxisRatioRange, true, "Largest ratio of the major to the minor axis"),
+    setting<kLimits, &Thresholds::min_contour_size>(
+        "min-contour-size", kContourSizeRangePx, true, "Shortest contour that is looked at, in px"),
+    setting<&TrackerSettings::max_scale>(
+        "max-scale", kMaxScaleRange, false, "Coarsest frame scale: frames shrink up to this"),
+    setting<&TrackerSettings::min_target_size_px>(
+        "min-target-size",
+        kAxisRangePx,
+        true,
+        "Below this full major axis at the processed scale the scale gets finer, in px"),
+    setting<&TrackerSettings::max_target_size_px>(
+        "max-target-size",
+        kAxisRangePx,
+        true,
+        "Above this full major axis at the processed scale the scale gets coarser, in px"),
+    setting<&TrackerSettings::roi_expansion>(
+        "roi-expansion",
+        kRoiExpansionRange,
+        true,
+        "Width and height of the search region over those of the target's box"),
+    setting<kLimits, &Thresholds::edge_low>(
+        "edge-low",
+        kEdgeRange,
+        true,
+        "Lower edge threshold in grey levels per px; 0 = adapts to the picture"),
+    setting<kLimits, &Thresholds::edge_high>(
+        "edge-high",
+        kEdgeRange,
+        true,
+        "Upper edge threshold in grey levels per px; 0 = adapts to the picture"),
+};
+
+constexpr const char* kDetectorNicks[] = {"contours"};
+constexpr const char* kTrackingNicks[] = {"none", "redetect"};
+
+template <class Enum>
+Enum from_nick(std::string_view name, std::string_view nick, std::span<const char* const> nicks) {
+  const auto found = std::find(nicks.begin(), nicks.end(), nick);
+  if (found != nicks.end()) return static_cast<Enum>(found - nicks.begin());
+  std::string message = std::string(name) + " = \"" + std::string(nick) + "\" is none of:";
+  for (const char* each : nicks) message += std::string(" ") + each;
+  throw std::invalid_argument(message);
+}
+
+double number(std::string_view name, std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return value;
+  throw std::invalid_argument(std::string(name) + " = \"" + std::string(text) +
+                              "\" is not a number");
+}
+
+}  // namespace
+
+void TrackerSettings::validate() const {
+  for (const SettingInfo& info : kSettings) check_range(info.name, info.get(*this), info.range);
+  check_range("max-axis", limits.max_axis_px, {limits.min_axis_px, kAxisRangePx.max});
+  check_range("max-target-size", max_target_size_px, {min_target_size_px, kAxisRangePx.max});
+  limits.validate();
+}
+
+std::span<const SettingInfo> setting_infos() {
+  return kSettings;
+}
+
+std::span<const char* const> detector_nicks() {
+  return kDetectorNicks;
+}
+
+std::span<const char* const> tracking_nicks() {
+  return kTrackingNicks;
+}
+
+void set_by_name(TrackerSettings& settings, std::string_view name, std::string_view value) {
+  if (name == "detector") {
+    settings.detector = from_nick<DetectorKind>(name, value, kDetectorNicks);
+    return;
+  }
+  if (name == "tracking") {
+    settings.tracking = from_nick<TrackingMode>(name, value, kTrackingNicks);
+    return;
+  }
+  const auto found = std::find_if(
+      kSettings.begin(), kSettings.end(), [&](const SettingInfo& i) { return name == i.name; });
+  if (found == kSettings.end()) {
+    throw std::invalid_argument("unknown property \"" + std::string(name) + "\"");
+  }
+  const double parsed = number(name, value);
+  check_range(found->name, parsed, found->range);
+  found->set(settings, parsed);
+}
+
+}  // namespace ellipse

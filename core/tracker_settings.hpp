@@ -1,0 +1,60 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <span>
+#include <string_view>
+
+#include "core/detector.hpp"
+#include "core/thresholds.hpp"
+
+namespace ellipse {
+
+enum class DetectorKind {
+  kContours,  ///< [Keipour2021] Algorithm 1.
+};
+
+enum class TrackingMode {
+  kNone,      ///< Every frame by itself, the whole of it, at scale 1.
+  kRedetect,  ///< [Keipour2021] Algorithm 2: lowered thresholds, region of interest, frame scale.
+};
+
+/// Every tunable of a tracker. A value: copy it, change it, hand it over.
+struct TrackerSettings {
+  DetectorKind detector = DetectorKind::kContours;
+  TrackingMode tracking = TrackingMode::kRedetect;
+  Overlaps detect_overlaps = {};      ///< Each 0 = the detector's own.
+  Overlaps track_overlaps = {};       ///< Each 0 = the detector's own.
+  Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
+  double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
+  double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
+  int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.
+  double roi_expansion = 2.0;         ///< Region of interest over the target's box, 1 to 10.
+
+  /// Throws std::invalid_argument that names the field.
+  void validate() const;
+
+  bool operator==(const TrackerSettings&) const = default;
+};
+
+/// One number among the settings, as programs offer it to people.
+struct SettingInfo {
+  const char* name;         ///< In kebab-case; also the name of the element's property.
+  const char* description;  ///< A sentence with the unit.
+  Range range;
+  bool is_integer;
+  bool is_controllable;  ///< May follow a curve over time.
+  double (*get)(const TrackerSettings&);
+  void (*set)(TrackerSettings&, double);
+};
+
+/// All of them, in the order in which [Keipour2021] speaks of them.
+[[nodiscard]] std::span<const SettingInfo> setting_infos();
+
+/// The nicks of the enumerations, in their order.
+[[nodiscard]] std::span<const char* const> detector_nicks();
+[[nodiscard]] std::span<const char* const> tracking_nicks();
+
+/// Sets one setting by name from text: a number, or a nick for "detector" and "tracking".
+/// Throws std::invalid_argument that names the setting where it is unknown, or the value no good.
+void set_by_name(TrackerSettings& settings, std::string_view name, std::string_view value);
+
+}  // namespace ellipse

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/measures.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace evaluate {
+namespace {
+
+constexpr double kLeastIou = 0.8;
+
+double ratio(int part, int whole) {
+  return whole > 0 ? static_cast<double>(part) / whole : std::numeric_limits<double>::quiet_NaN();
+}
+
+void append(std::vector<double>& to, const std::vector<double>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+template <class Lists>
+std::vector<double> joined(const Lists& lists) {
+  std::vector<double> all;
+  for (const std::vector<double>& list : lists) append(all, list);
+  return all;
+}
+
+bool is_within_tenth(double answer, double truth) {
+  return std::abs(answer - truth) <= 0.1 * truth;
+}
+
+double visible_fraction(const Truth& truth, const FrameSize& frame) {
+  if (!truth.target) return 0.0;
+  return truth.visible_fraction.value_or(
+      ellipse::visible_fraction(*truth.target, frame.width, frame.height));
+}
+
+}  // namespace
+
+bool is_right(const ellipse::Ellipse& answer,
+              const ellipse::Ellipse& truth,
+              const FrameSize& frame,
+              Rule rule) {
+  if (rule == Rule::kIou) {
+    return ellipse::iou_inside(answer, truth, frame.width, frame.height) >= kLeastIou;
+  }
+  const double apart = (answer.center() - truth.center()).norm();
+  return apart <= 0.1 * 2.0 * truth.semi_minor &&
+         is_within_tenth(answer.semi_major, truth.semi_major) &&
+         is_within_tenth(answer.semi_minor, truth.semi_minor);
+}
+
+Outcome judge(const std::optional<ellipse::Ellipse>& answer,
+              const Truth& truth,
+              const FrameSize& frame,
+              Rule rule) {
+  if (!truth.is_labelled) return Outcome::kNotJudged;
+  const double visible = visible_fraction(truth, frame);
+  if (!(visible > 0.0)) return answer ? Outcome::kFalsePositive : Outcome::kTrueNegative;
+  const bool may_go_unseen = visible < kLeastVisible;
+  if (!answer) return may_go_unseen ? Outcome::kTrueNegative : Outcome::kFalseNegative;
+  if (is_right(*answer, *truth.target, frame, rule)) return Outcome::kTruePositive;
+  return may_go_unseen ? Outcome::kNotJudged : Outcome::kWrong;
+}
+
+void Measures::add(const Result& result) {
+  times_ms_[static_cast<std::size_t>(result.outcome)].push_back(result.processing_ms);
+  reference_ms_.push_back(result.reference_ms);
+  if (result.outcome != Outcome::kTruePositive) return;
+  const int log2_scale = std::bit_width(static_cast<unsigned>(result.scale)) - 1;
+  const int slot = std::clamp(log2_scale, 0, kScales - 1);
+  centre_errors_px_[static_cast<std::size_t>(slot)].push_back(result.centre_error_px);
+}
+
+void Measures::add(const Measures& other) {
+  for (std::size_t i = 0; i < times_ms_.size(); ++i) append(times_ms_[i], other.times_ms_[i]);
+  for (std::size_t i = 0; i < centre_errors_px_.size(); ++i) {
+    append(centre_errors_px_[i], other.centre_errors_px_[i]);
+  }
+  append(reference_ms_, other.reference_ms_);
+}
+
+int Measures::count(Outcome outcome) const {
+  return static_cast<int>(times_ms(outcome).size());
+}
+
+int Measures::judged() const {
+  return static_cast<int>(all_times_ms().size()) - count(Outcome::kNotJudged);
+}
+
+double Measures::accuracy() const {
+  return ratio(count(Outcome::kTruePositive) + count(Outcome::kTrueNegative), judged());
+}
+
+double Measures::precision() const {
+  const int right = count(Outcome::kTruePositive);
+  return ratio(right, right + count(Outcome::kFalsePositive) + count(Outcome::kWrong));
+}
+
+double Measures::recall() const {
+  const int right = count(Outcome::kTruePositive);
+  return ratio(right, right + count(Outcome::kFalseNegative) + count(Outcome::kWrong));
+}
+
+double Measures::f1() const {
+  return 2.0 * recall() * precision() / (recall() + precision());
+}
+
+const std::vector<double>& Measures::times_ms(Outcome outcome) const {
+  return times_ms_[static_cast<std::size_t>(outcome)];
+}
+
+std::vector<double> Measures::all_times_ms() const {
+  return joined(times_ms_);
+}
+
+const std::vector<double>& Measures::centre_errors_px(int log2_scale) const {
+  return centre_errors_px_[static_cast<std::size_t>(log2_scale)];
+}
+
+std::vector<double> Measures::all_centre_errors_px() const {
+  return joined(centre_errors_px_);
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+}  // namespace evaluate

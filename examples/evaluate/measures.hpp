@@ -1,0 +1,93 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/ellipse.hpp"
+#include "examples/evaluate/dataset.hpp"
+
+namespace evaluate {
+
+/// What became of a frame, [Keipour2021] III.A.
+enum class Outcome {
+  kTruePositive,   ///< The right target.
+  kTrueNegative,   ///< None, and there is none.
+  kFalsePositive,  ///< One, though there is none.
+  kFalseNegative,  ///< None, though the target is visible.
+  kWrong,          ///< Another one, though the target is visible.
+  kNotJudged,      ///< Not labelled, or too little visible and the answer is wrong.
+};
+inline constexpr int kOutcomes = 6;
+inline constexpr std::array<const char*, kOutcomes> kOutcomeNames = {
+    "TP", "TN", "FP", "FN", "WD", "not judged"};
+
+/// When an answer is right.
+enum class Rule {
+  kIou,        ///< Intersection over union inside the frame >= 0.8.
+  kPublished,  ///< Centre within 10 % of the smaller full axis, each axis within 10 %.
+};
+
+/// A target with less of its perimeter than this inside the frame may go unseen.
+inline constexpr double kLeastVisible = 0.3;
+
+struct FrameSize {
+  int width = 0;
+  int height = 0;
+};
+
+[[nodiscard]] bool is_right(const ellipse::Ellipse& answer,
+                            const ellipse::Ellipse& truth,
+                            const FrameSize& frame,
+                            Rule rule);
+
+[[nodiscard]] Outcome judge(const std::optional<ellipse::Ellipse>& answer,
+                            const Truth& truth,
+                            const FrameSize& frame,
+                            Rule rule);
+
+/// What was measured on one frame.
+struct Result {
+  Outcome outcome = Outcome::kNotJudged;
+  double processing_ms = 0.0;
+  double reference_ms = 0.0;     ///< Edges and contours alone, on the same frame.
+  double centre_error_px = 0.0;  ///< Where the outcome is kTruePositive.
+  int scale = 1;                 ///< Frame scale, where the outcome is kTruePositive.
+};
+
+/// The results of many frames.
+class Measures {
+ public:
+  static constexpr int kScales = 8;  ///< 1, 2, 4, ... 128
+
+  void add(const Result& result);
+  void add(const Measures& other);
+
+  [[nodiscard]] int count(Outcome outcome) const;
+  [[nodiscard]] int judged() const;
+
+  /// [Keipour2021] III.A; NaN where nothing was counted.
+  [[nodiscard]] double accuracy() const;
+  [[nodiscard]] double precision() const;
+  [[nodiscard]] double recall() const;
+  [[nodiscard]] double f1() const;
+
+  /// Processing times [ms] of the frames with one outcome, and of all.
+  [[nodiscard]] const std::vector<double>& times_ms(Outcome outcome) const;
+  [[nodiscard]] std::vector<double> all_times_ms() const;
+  [[nodiscard]] const std::vector<double>& reference_times_ms() const { return reference_ms_; }
+
+  /// Distances of the centre to the truth [px] of right answers found at a frame scale of 2^k.
+  [[nodiscard]] const std::vector<double>& centre_errors_px(int log2_scale) const;
+  [[nodiscard]] std::vector<double> all_centre_errors_px() const;
+
+ private:
+  std::array<std::vector<double>, kOutcomes> times_ms_;
+  std::array<std::vector<double>, kScales> centre_errors_px_;
+  std::vector<double> reference_ms_;
+};
+
+/// The q-quantile (0 to 1) of unsorted values; NaN where there are none.
+[[nodiscard]] double quantile(std::vector<double> values, double q);
+
+}  // namespace evaluate
