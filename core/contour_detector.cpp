@@ -20,8 +20,15 @@ constexpr double kHighOverNoise = 5.0;
 constexpr double kLowOverHigh = 0.5;
 constexpr double kLeastHigh = 1.0;  // [grey levels / px], above the steps of rounding
 
-constexpr double kSobelGain =
-    8.0;  // Sobel's 3 x 3 kernels weigh a slope of 1 grey level / px by 8.
+// Between the gradient and the normal of an ellipse whose edge it is: 30 degrees.
+constexpr double kLeastCosine = 0.87;
+
+constexpr int kContourSteps = 3;
+constexpr int kEdgeSteps = 2;
+constexpr int kBorderPx = 3;  // How far smoothing and gradient reach.
+
+// Sobel's 3 x 3 kernels weigh a slope of one grey level per pixel by 8.
+constexpr double kSobelGain = 8.0;
 constexpr int kHistogramBins = 2048;
 
 // max(|x|, |y|) + 3/8 min(|x|, |y|): the Euclidean norm within 7 %.
@@ -51,22 +58,100 @@ double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& hi
   return quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile));
 }
 
-// [Keipour2021] II.2: the least-squares ellipse of one contour.
-std::optional<Ellipse> fit_contour(std::span<const cv::Point> contour) {
+// The edge map and the gradient it was made of.
+struct EdgeField {
+  const cv::Mat& edges;
+  const cv::Mat& gradient_x;
+  const cv::Mat& gradient_y;
+
+  // Nearer to the border the smoothing has bent the edges.
+  [[nodiscard]] bool is_inside(const cv::Point& p) const {
+    return p.x >= kBorderPx && p.y >= kBorderPx && p.x < edges.cols - kBorderPx &&
+           p.y < edges.rows - kBorderPx;
+  }
+  [[nodiscard]] Eigen::Vector2d gradient(const cv::Point& p) const {
+    return {gradient_x.at<short>(p), gradient_y.at<short>(p)};
+  }
+};
+
+// [Keipour2021] II.3b: the least-squares ellipse of one contour.
+std::optional<Ellipse> fit_contour(std::span<const cv::Point> contour, const EdgeField& field) {
   const cv::Point& first = contour.front();
   Moments moments(Eigen::Vector2d(first.x, first.y));
-  for (const cv::Point& pixel : contour) moments.add(Eigen::Vector2d(pixel.x, pixel.y));
+  for (const cv::Point& pixel : contour) {
+    if (field.is_inside(pixel)) moments.add(Eigen::Vector2d(pixel.x, pixel.y));
+  }
   return fit_ellipse(moments);
+}
+
+// Where the gradient has its crest, across the edge through a pixel of it: the vertex of the
+// parabola through three pixels along the axis closest to the gradient [Devernay1995] 2.
+Eigen::Vector2d crest(const EdgeField& field, const cv::Point& p, const Eigen::Vector2d& gradient) {
+  const bool is_steep = std::abs(gradient.y()) > std::abs(gradient.x());
+  const cv::Point across = is_steep ? cv::Point(0, 1) : cv::Point(1, 0);
+  const double before = field.gradient(p - across).norm();
+  const double here = gradient.norm();
+  const double after = field.gradient(p + across).norm();
+  const double curvature = before - 2.0 * here + after;
+  const double offset =
+      curvature < 0.0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0.0;
+  return {p.x + across.x * offset, p.y + across.y * offset};
+}
+
+// One step towards the ellipse through the crests of its own contour.
+std::optional<Ellipse> refined_on_contour(const Ellipse& e,
+                                          std::span<const cv::Point> contour,
+                                          const EdgeField& field) {
+  GeometricFit fit(e);
+  for (const cv::Point& pixel : contour) {
+    if (!field.is_inside(pixel)) continue;
+    const Eigen::Vector2d point = crest(field, pixel, field.gradient(pixel));
+    if (std::abs(fit.distance_px(point)) <= kOverlapTolerancePx) fit.add(point);
+  }
+  return fit.solve();
+}
+
+// One step towards the ellipse through the crests of all edges along it, of whatever contour.
+std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field) {
+  GeometricFit fit(e);
+  walk_perimeter(e, [&](const PerimeterStep& step) {
+    for (int k = -1; k <= 1; ++k) {
+      const Eigen::Vector2d at = step.point + k * step.normal();
+      const cv::Point pixel(static_cast<int>(std::lround(at.x())),
+                            static_cast<int>(std::lround(at.y())));
+      if (!field.is_inside(pixel) || field.edges.at<std::uint8_t>(pixel) == 0) continue;
+      const Eigen::Vector2d gradient = field.gradient(pixel);
+      if (std::abs(gradient.dot(step.normal())) < kLeastCosine * gradient.norm()) continue;
+      fit.add(crest(field, pixel, gradient));
+    }
+  });
+  return fit.solve();
+}
+
+// This frees an ellipse of what else hangs on its contour, joins the parts of it that lie in
+// several contours, and makes it finer than pixels.
+Ellipse refined(Ellipse e, std::span<const cv::Point> contour, const EdgeField& field) {
+  for (int i = 0; i < kContourSteps; ++i) {
+    e = refined_on_contour(e, contour, field).value_or(e);
+  }
+  for (int i = 0; i < kEdgeSteps; ++i) e = refined_on_edges(e, field).value_or(e);
+  return e;
+}
+
+Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thick_edges) {
+  const PerimeterSupport support = perimeter_support(e, thick_edges);
+  return {e, contour_overlap, support.ellipse_overlap(), contour_overlap * support.on_edge_px};
 }
 
 // [Keipour2021] Algorithm 1, the body of its loop: every rejection in the paper's order.
 std::optional<Detection> examine(std::span<const cv::Point> contour,
+                                 const EdgeField& field,
                                  const ImageView& thick_edges,
                                  const Thresholds& limits) {
   const auto pixels = static_cast<double>(contour.size());
   if (pixels < limits.min_contour_size) return std::nullopt;
 
-  const std::optional<Ellipse> e = fit_contour(contour);
+  const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;
   if (2.0 * e->semi_major > limits.max_axis_px) return std::nullopt;
   if (2.0 * e->semi_minor < limits.min_axis_px) return std::nullopt;
@@ -74,48 +159,10 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
 
   const double on_ellipse = contour_overlap(contour, *e);
   if (on_ellipse < limits.contour_overlap) return std::nullopt;
-  const double on_edges = ellipse_overlap(*e, thick_edges);
-  if (on_edges < limits.ellipse_overlap) return std::nullopt;
-  return Detection{*e, on_ellipse, on_edges, on_ellipse * on_edges * pixels};
-}
-
-struct Gradient {
-  const cv::Mat& x;
-  const cv::Mat& y;
-
-  [[nodiscard]] bool has_neighbours(const cv::Point& p) const {
-    return p.x > 0 && p.y > 0 && p.x + 1 < x.cols && p.y + 1 < x.rows;
-  }
-  [[nodiscard]] double norm(int column, int row) const {
-    return std::hypot(x.at<short>(row, column), y.at<short>(row, column));
-  }
-};
-
-// Where the gradient has its crest, across the edge through a pixel of it: the vertex of the
-// parabola through three pixels along the axis closest to the gradient [Devernay1995] 2.
-Eigen::Vector2d crest(const Gradient& gradient, const cv::Point& p) {
-  const bool is_steep = std::abs(gradient.y.at<short>(p)) > std::abs(gradient.x.at<short>(p));
-  const int dx = is_steep ? 0 : 1;
-  const int dy = is_steep ? 1 : 0;
-  const double before = gradient.norm(p.x - dx, p.y - dy);
-  const double here = gradient.norm(p.x, p.y);
-  const double after = gradient.norm(p.x + dx, p.y + dy);
-  const double curvature = before - 2.0 * here + after;
-  if (curvature >= 0.0) return {p.x, p.y};
-  const double offset = std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5);
-  return {p.x + dx * offset, p.y + dy * offset};
-}
-
-// The ellipse once more, through the crests at those pixels of its contour that lie on it: free of
-// what else hangs on the contour, and finer than pixels.
-Ellipse refined(const Ellipse& e, std::span<const cv::Point> contour, const Gradient& gradient) {
-  Moments moments(e.center());
-  for (const cv::Point& pixel : contour) {
-    if (!gradient.has_neighbours(pixel)) continue;
-    const Eigen::Vector2d point = crest(gradient, pixel);
-    if (std::abs(sampson_distance(e, point)) <= kOverlapTolerancePx) moments.add(point);
-  }
-  return fit_ellipse(moments).value_or(e);
+  const Detection found = scored(*e, on_ellipse, thick_edges);
+  if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
+  const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
+  return better.ellipse_overlap >= found.ellipse_overlap ? better : found;
 }
 
 ImageView view_of(const cv::Mat& mat) {
@@ -150,11 +197,10 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   detect_edges(luma, thresholds);
   cv::dilate(edges_, thick_edges_, cv::Mat());
   cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+  const EdgeField field{edges_, gradient_x_, gradient_y_};
   for (const std::vector<cv::Point>& contour : contours_) {
-    auto detection = examine(contour, view_of(thick_edges_), thresholds);
-    if (!detection) continue;
-    detection->ellipse = refined(detection->ellipse, contour, {gradient_x_, gradient_y_});
-    detections_.push_back(*detection);
+    const auto detection = examine(contour, field, view_of(thick_edges_), thresholds);
+    if (detection) detections_.push_back(*detection);
   }
   return detections_;
 }

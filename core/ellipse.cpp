@@ -154,18 +154,15 @@ double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
 }
 
 double visible_fraction(const Ellipse& e, int width, int height) {
-  constexpr int kSamples = 720;
   double inside = 0.0;
   double total = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    const double t = 2.0 * std::numbers::pi * (i + 0.5) / kSamples;
-    const double length = std::hypot(e.semi_major * std::sin(t), e.semi_minor * std::cos(t));
-    const Eigen::Vector2d p = e.point_at(t);
-    total += length;
+  walk_perimeter(e, [&](const PerimeterStep& step) {
+    const Eigen::Vector2d& p = step.point;
+    total += step.length_px;
     if (p.x() >= -0.5 && p.y() >= -0.5 && p.x() < width - 0.5 && p.y() < height - 0.5) {
-      inside += length;
+      inside += step.length_px;
     }
-  }
+  });
   return total > 0.0 ? inside / total : 0.0;
 }
 

@@ -20,6 +20,37 @@ struct Ellipse {
   bool operator==(const Ellipse&) const = default;
 };
 
+/// A short piece of an ellipse's perimeter.
+struct PerimeterStep {
+  Eigen::Vector2d point;    ///< [px]
+  Eigen::Vector2d tangent;  ///< Unit vector.
+  double length_px = 0.0;   ///< At most 1.
+  [[nodiscard]] Eigen::Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
+};
+
+/// Walks once around the perimeter in steps of at most a pixel. Allocates nothing.
+template <class Use>
+void walk_perimeter(const Ellipse& e, const Use& use) {
+  constexpr double kTwoPi = 2.0 * std::numbers::pi;
+  const int steps = std::clamp(static_cast<int>(std::ceil(kTwoPi * e.semi_major)), 16, 1 << 16);
+  const double step_cos = std::cos(kTwoPi / steps);
+  const double step_sin = std::sin(kTwoPi / steps);
+  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d major = e.semi_major * axis;
+  const Eigen::Vector2d minor = e.semi_minor * Eigen::Vector2d(-axis.y(), axis.x());
+  double cos_t = 1.0;
+  double sin_t = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::Vector2d velocity = cos_t * minor - sin_t * major;
+    const double speed = velocity.norm();
+    use(PerimeterStep{
+        e.center() + cos_t * major + sin_t * minor, velocity / speed, speed * kTwoPi / steps});
+    const double next_cos = step_cos * cos_t - step_sin * sin_t;
+    sin_t = step_sin * cos_t + step_cos * sin_t;
+    cos_t = next_cos;
+  }
+}
+
 /// Half the width and height of the upright box around the ellipse [px].
 [[nodiscard]] Eigen::Vector2d half_extent(const Ellipse& e);
 

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace ellipse {
@@ -56,6 +57,15 @@ Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(constraint, symmetric);
   if (solver.info() != Eigen::Success) return Eigen::Vector3d::Zero();
   return solver.eigenvectors().col(2);
+}
+
+// A Gauss-Newton step changes no semi-axis by more than this share.
+constexpr double kLongestStep = 0.3;
+
+Eigen::Matrix2d square_root_of_shape(const Ellipse& e) {
+  const Eigen::Vector2d major(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d minor(-major.y(), major.x());
+  return e.semi_major * major * major.transpose() + e.semi_minor * minor * minor.transpose();
 }
 
 bool is_collinear(const Moments& standardized) {
@@ -153,6 +163,46 @@ std::optional<Ellipse> fit_ellipse(const Moments& moments) {
   const Eigen::Vector2d center = moments.mean() + spread * fit->center();
   return Ellipse{
       center.x(), center.y(), fit->semi_major * spread, fit->semi_minor * spread, fit->angle_rad};
+}
+
+GeometricFit::GeometricFit(const Ellipse& start)
+    : center_(start.center()),
+      stretch_(square_root_of_shape(start)),
+      inverse_stretch_(stretch_.inverse()) {}
+
+double GeometricFit::distance_px(const Eigen::Vector2d& point_px) const {
+  const Eigen::Vector2d w = inverse_stretch_ * (point_px - center_);
+  const double r = w.norm();
+  return (r - 1.0) * r / (inverse_stretch_ * w).norm();
+}
+
+void GeometricFit::add(const Eigen::Vector2d& point_px) {
+  const Eigen::Vector2d w = inverse_stretch_ * (point_px - center_);
+  const double r = w.norm();
+  if (!(r > 0.0)) return;
+  const Eigen::Vector2d u = w / r;
+  const double slope = 1.0 / (inverse_stretch_ * u).norm();  // px per unit of r
+  // r - 1 = u . t + s + e1 cos 2 phi + e2 sin 2 phi for c + M t and M (I + [s+e1 e2; e2 s-e1]).
+  Vector5d row;
+  row << u.x(), u.y(), 1.0, u.x() * u.x() - u.y() * u.y(), 2.0 * u.x() * u.y();
+  row *= slope;
+  normal_.noalias() += row * row.transpose();
+  right_side_ += row * ((r - 1.0) * slope);
+  ++points_;
+}
+
+std::optional<Ellipse> GeometricFit::solve() const {
+  if (points_ < kMinPoints) return std::nullopt;
+  Matrix5d damped = normal_;
+  damped.diagonal() *= 1.0 + 1e-9;
+  const Eigen::LDLT<Matrix5d> factors(damped);
+  Vector5d step = factors.solve(right_side_);
+  if (factors.info() != Eigen::Success || !step.allFinite()) return std::nullopt;
+  step *= std::min(1.0, kLongestStep / step.norm());
+  Eigen::Matrix2d change;
+  change << 1.0 + step(2) + step(3), step(4), step(4), 1.0 + step(2) - step(3);
+  const Eigen::Matrix2d stretched = stretch_ * change;
+  return from_shape(center_ + stretch_ * step.head<2>(), stretched * stretched.transpose());
 }
 
 }  // namespace ellipse

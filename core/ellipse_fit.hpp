@@ -45,4 +45,34 @@ class Moments {
 /// The same from moments: O(1).
 [[nodiscard]] std::optional<Ellipse> fit_ellipse(const Moments& moments);
 
+/// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
+/// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
+/// not.
+///
+/// The ellipse is {c + M u, |u| = 1}, M symmetric: its five parameters move c within M and stretch
+/// M, so that no direction is singular, at a circle neither. Allocates nothing; O(1) a point.
+class GeometricFit {
+ public:
+  explicit GeometricFit(const Ellipse& start);
+
+  void add(const Eigen::Vector2d& point_px);
+
+  /// Distance of a point to the starting ellipse [px], as sampson_distance().
+  [[nodiscard]] double distance_px(const Eigen::Vector2d& point_px) const;
+
+  /// The ellipse after the step; nullopt for fewer than 5 points or a singular system.
+  [[nodiscard]] std::optional<Ellipse> solve() const;
+
+ private:
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  using Matrix5d = Eigen::Matrix<double, 5, 5>;
+
+  Eigen::Vector2d center_;
+  Eigen::Matrix2d stretch_;          // M
+  Eigen::Matrix2d inverse_stretch_;  // M^-1
+  Matrix5d normal_ = Matrix5d::Zero();
+  Vector5d right_side_ = Vector5d::Zero();
+  int points_ = 0;
+};
+
 }  // namespace ellipse

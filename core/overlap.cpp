@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/overlap.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 namespace ellipse {
 
@@ -30,36 +28,16 @@ double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e) {
   return static_cast<double>(on_ellipse) / static_cast<double>(contour.size());
 }
 
-double ellipse_overlap(const Ellipse& e, const ImageView& thick_edges) {
-  // Steps of at most a pixel along the perimeter, weighted by their length.
-  const int steps =
-      std::clamp(static_cast<int>(std::ceil(2.0 * std::numbers::pi * e.semi_major)), 16, 1 << 16);
-  const double step_rad = 2.0 * std::numbers::pi / steps;
-  const double turn_cos = std::cos(step_rad);
-  const double turn_sin = std::sin(step_rad);
-  const Eigen::Vector2d major =
-      e.semi_major * Eigen::Vector2d(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d minor =
-      e.semi_minor * Eigen::Vector2d(-std::sin(e.angle_rad), std::cos(e.angle_rad));
-
-  double inside = 0.0;
-  double on_edge = 0.0;
-  double u = 1.0;
-  double v = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const Eigen::Vector2d p = e.center() + u * major + v * minor;
-    const int x = static_cast<int>(std::lround(p.x()));
-    const int y = static_cast<int>(std::lround(p.y()));
-    if (thick_edges.bounds().contains(x, y)) {
-      const double length = (v * major - u * minor).norm();
-      inside += length;
-      if (thick_edges.row(y)[x] != 0) on_edge += length;
-    }
-    const double next_u = turn_cos * u - turn_sin * v;
-    v = turn_sin * u + turn_cos * v;
-    u = next_u;
-  }
-  return inside > 0.0 ? on_edge / inside : 0.0;
+PerimeterSupport perimeter_support(const Ellipse& e, const ImageView& thick_edges) {
+  PerimeterSupport support;
+  walk_perimeter(e, [&](const PerimeterStep& step) {
+    const int x = static_cast<int>(std::lround(step.point.x()));
+    const int y = static_cast<int>(std::lround(step.point.y()));
+    if (!thick_edges.bounds().contains(x, y)) return;
+    support.inside_px += step.length_px;
+    if (thick_edges.row(y)[x] != 0) support.on_edge_px += step.length_px;
+  });
+  return support;
 }
 
 }  // namespace ellipse

@@ -17,11 +17,20 @@ inline constexpr double kOverlapTolerancePx = 1.5;
 /// Thread-safe, allocates nothing; O(pixels).
 [[nodiscard]] double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e);
 
-/// EllipseOverlap: the share of the ellipse's perimeter that meets edges, 0 to 1.
-/// [Keipour2021] Eq. (2). Only the perimeter inside the picture counts. 0 where none is inside.
-///
+/// How much of an ellipse's perimeter meets edges.
+struct PerimeterSupport {
+  double inside_px = 0.0;   ///< Length of the perimeter inside the picture.
+  double on_edge_px = 0.0;  ///< Length of that part of it which lies on edges.
+
+  /// EllipseOverlap: the share of the perimeter that meets edges, 0 to 1. [Keipour2021] Eq. (2).
+  /// Only the perimeter inside the picture counts. 0 where none is inside.
+  [[nodiscard]] double ellipse_overlap() const {
+    return inside_px > 0.0 ? on_edge_px / inside_px : 0.0;
+  }
+};
+
 /// @param thick_edges  Edge map, not 0 on an edge, already thickened 3 x 3.
 /// Thread-safe, allocates nothing; O(perimeter).
-[[nodiscard]] double ellipse_overlap(const Ellipse& e, const ImageView& thick_edges);
+[[nodiscard]] PerimeterSupport perimeter_support(const Ellipse& e, const ImageView& thick_edges);
 
 }  // namespace ellipse
