@@ -148,8 +148,7 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
                                  const EdgeField& field,
                                  const ImageView& thick_edges,
                                  const Thresholds& limits) {
-  const auto pixels = static_cast<double>(contour.size());
-  if (pixels < limits.min_contour_size) return std::nullopt;
+  if (std::ssize(contour) < limits.min_contour_size) return std::nullopt;
 
   const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;

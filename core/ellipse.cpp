@@ -16,23 +16,6 @@ double normalized_axis_angle(double angle_rad) {
   return angle_rad <= -std::numbers::pi / 2 ? std::numbers::pi / 2 : angle_rad;
 }
 
-struct Interval {
-  double begin = 0.0;
-  double end = 0.0;
-
-  [[nodiscard]] double length() const { return std::max(0.0, end - begin); }
-};
-
-// The part of the horizontal line at y inside the ellipse.
-Interval chord(const Ellipse& e, const Eigen::Matrix2d& shape, double y) {
-  const double dy = y - e.cy;
-  const double room = 1.0 - dy * dy / shape(1, 1);
-  if (room <= 0.0) return {};
-  const double middle = e.cx + shape(0, 1) / shape(1, 1) * dy;
-  const double half = std::sqrt(shape.determinant() / shape(1, 1) * room);
-  return {middle - half, middle + half};
-}
-
 Interval clip(const Interval& a, double begin, double end) {
   return {std::max(a.begin, begin), std::min(a.end, end)};
 }
@@ -49,6 +32,16 @@ Eigen::Vector2d Ellipse::point_at(double t_rad) const {
 
 Eigen::Vector2d half_extent(const Ellipse& e) {
   return shape_matrix(e).diagonal().cwiseSqrt();
+}
+
+Interval chord(const Ellipse& e, double y) {
+  const Eigen::Matrix2d shape = shape_matrix(e);
+  const double dy = y - e.cy;
+  const double room = 1.0 - dy * dy / shape(1, 1);
+  if (!(room > 0.0)) return {};
+  const double middle = e.cx + shape(0, 1) / shape(1, 1) * dy;
+  const double half = std::sqrt(shape.determinant() / shape(1, 1) * room);
+  return {middle - half, middle + half};
 }
 
 double perimeter_px(const Ellipse& e) {
@@ -131,10 +124,8 @@ double sampson_distance(const Ellipse& e, const Eigen::Vector2d& point_px) {
 }
 
 double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
-  const Eigen::Matrix2d shape_a = shape_matrix(a);
-  const Eigen::Matrix2d shape_b = shape_matrix(b);
-  const double half_a = std::sqrt(shape_a(1, 1));
-  const double half_b = std::sqrt(shape_b(1, 1));
+  const double half_a = half_extent(a).y();
+  const double half_b = half_extent(b).y();
   const double top = std::max(-0.5, std::min(a.cy - half_a, b.cy - half_b));
   const double bottom = std::min(height - 0.5, std::max(a.cy + half_a, b.cy + half_b));
   if (!(bottom > top)) return 0.0;
@@ -144,8 +135,8 @@ double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
   double either = 0.0;
   for (int i = 0; i < lines; ++i) {
     const double y = top + (i + 0.5) * (bottom - top) / lines;
-    const Interval in_a = clip(chord(a, shape_a, y), -0.5, width - 0.5);
-    const Interval in_b = clip(chord(b, shape_b, y), -0.5, width - 0.5);
+    const Interval in_a = clip(chord(a, y), -0.5, width - 0.5);
+    const Interval in_b = clip(chord(b, y), -0.5, width - 0.5);
     const double both = clip(in_a, in_b.begin, in_b.end).length();
     common += both;
     either += in_a.length() + in_b.length() - both;

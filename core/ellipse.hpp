@@ -54,6 +54,17 @@ void walk_perimeter(const Ellipse& e, const Use& use) {
 /// Half the width and height of the upright box around the ellipse [px].
 [[nodiscard]] Eigen::Vector2d half_extent(const Ellipse& e);
 
+/// A part of a horizontal line, empty where end <= begin.
+struct Interval {
+  double begin = 0.0;
+  double end = 0.0;
+
+  [[nodiscard]] double length() const { return std::max(0.0, end - begin); }
+};
+
+/// The part of the horizontal line at y inside the ellipse [px].
+[[nodiscard]] Interval chord(const Ellipse& e, double y);
+
 /// Circumference [px], [Ramanujan1914]; relative error below 4e-5 up to an aspect ratio of 5.
 [[nodiscard]] double perimeter_px(const Ellipse& e);
 

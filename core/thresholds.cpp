@@ -9,7 +9,7 @@ namespace ellipse {
 namespace {
 
 // The shortest contour that says anything of an ellipse, at whatever scale.
-constexpr double kLeastContourSizePx = 12.0;
+constexpr int kLeastContourSizePx = 12;
 
 }  // namespace
 

@@ -13,7 +13,7 @@ struct Range {
 inline constexpr Range kShareRange{0.0, 1.0};
 inline constexpr Range kAxisRangePx{1.0, 32768.0};
 inline constexpr Range kAxisRatioRange{1.0, 100.0};
-inline constexpr Range kContourSizeRangePx{5.0, 1e9};
+inline constexpr Range kContourSizeRangePx{5.0, 2147483647.0};
 inline constexpr Range kEdgeRange{0.0, 1e4};
 
 /// Throws std::invalid_argument that names the field, the value and the range, where it is outside.
@@ -22,14 +22,14 @@ void check_range(const char* field, double value, const Range& range);
 /// What a detection is judged by, with the names and the defaults of [Keipour2021] Table I and
 /// III.A (detecting).
 struct Thresholds {
-  double contour_overlap = 0.95;   ///< Eq. (1), smallest accepted share, 0 to 1.
-  double ellipse_overlap = 0.95;   ///< Eq. (2), smallest accepted share, 0 to 1.
-  double min_axis_px = 5.0;        ///< mnAxSize: smallest accepted minor axis, full length.
-  double max_axis_px = 700.0;      ///< mxAxSize: largest accepted major axis, full length.
-  double max_axis_ratio = 5.0;     ///< maxAxisRatio: largest accepted major / minor axis.
-  double min_contour_size = 50.0;  ///< minContourSize: shortest accepted contour [px].
-  double edge_low = 0.0;           ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
-  double edge_high = 0.0;          ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
+  double contour_overlap = 0.95;  ///< Eq. (1), smallest accepted share, 0 to 1.
+  double ellipse_overlap = 0.95;  ///< Eq. (2), smallest accepted share, 0 to 1.
+  double min_axis_px = 5.0;       ///< mnAxSize: smallest accepted minor axis, full length.
+  double max_axis_px = 700.0;     ///< mxAxSize: largest accepted major axis, full length.
+  double max_axis_ratio = 5.0;    ///< maxAxisRatio: largest accepted major / minor axis.
+  int min_contour_size = 50;      ///< minContourSize: shortest accepted contour [px].
+  double edge_low = 0.0;          ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
+  double edge_high = 0.0;         ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
 
   /// Throws std::invalid_argument that names the field, where a value is NaN, out of its range, or
   /// a pair is the wrong way round.

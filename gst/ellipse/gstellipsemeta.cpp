@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT */
+#include "gst/ellipse/gstellipsemeta.h"
+
+#include <gst/video/gstvideometa.h>
+#include <gst/video/video.h>
+
+#include <cmath>
+#include <optional>
+
+#include "core/ellipse.hpp"
+
+GType gst_ellipse_role_get_type(void) {
+  static const GEnumValue kValues[] = {
+      {GST_ELLIPSE_ROLE_TARGET, "GST_ELLIPSE_ROLE_TARGET", "target"},
+      {GST_ELLIPSE_ROLE_CANDIDATE, "GST_ELLIPSE_ROLE_CANDIDATE", "candidate"},
+      {GST_ELLIPSE_ROLE_TRUTH, "GST_ELLIPSE_ROLE_TRUTH", "truth"},
+      {0, nullptr, nullptr},
+  };
+  static const GType kType = g_enum_register_static("GstEllipseRole", kValues);
+  return kType;
+}
+
+GType gst_ellipse_state_get_type(void) {
+  static const GEnumValue kValues[] = {
+      {GST_ELLIPSE_STATE_DETECTED, "GST_ELLIPSE_STATE_DETECTED", "detected"},
+      {GST_ELLIPSE_STATE_TRACKED, "GST_ELLIPSE_STATE_TRACKED", "tracked"},
+      {GST_ELLIPSE_STATE_PREDICTED, "GST_ELLIPSE_STATE_PREDICTED", "predicted"},
+      {0, nullptr, nullptr},
+  };
+  static const GType kType = g_enum_register_static("GstEllipseState", kValues);
+  return kType;
+}
+
+GType gst_ellipse_meta_api_get_type(void) {
+  static const gchar* kTags[] = {GST_META_TAG_VIDEO_STR,
+                                 GST_META_TAG_VIDEO_SIZE_STR,
+                                 GST_META_TAG_VIDEO_ORIENTATION_STR,
+                                 nullptr};
+  static const GType kType = gst_meta_api_type_register("GstEllipseMetaAPI", kTags);
+  return kType;
+}
+
+static const gchar* nick_of(GType type, gint value) {
+  auto* enum_class = static_cast<GEnumClass*>(g_type_class_ref(type));
+  const GEnumValue* entry = g_enum_get_value(enum_class, value);
+  const gchar* nick = entry != nullptr ? entry->value_nick : "unknown";
+  g_type_class_unref(enum_class);  // static types keep their strings
+  return nick;
+}
+
+// All fields but the parent.
+static void copy_fields(GstEllipseMeta* to, const GstEllipseMeta* from) {
+  const GstMeta parent = to->meta;
+  *to = *from;
+  to->meta = parent;
+}
+
+static gboolean ellipse_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
+  GstEllipseMeta empty = {};
+  empty.scale = 1;
+  empty.pts = GST_CLOCK_TIME_NONE;
+  empty.processing_time = GST_CLOCK_TIME_NONE;
+  copy_fields(reinterpret_cast<GstEllipseMeta*>(meta), &empty);
+  return TRUE;
+}
+
+// x becomes (x + 0.5) s - 0.5 in each direction, so that pixels keep the area that they cover.
+static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* scale) {
+  const double sx = GST_VIDEO_INFO_WIDTH(scale->out_info) /
+                    static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->in_info));
+  const double sy = GST_VIDEO_INFO_HEIGHT(scale->out_info) /
+                    static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->in_info));
+  const ellipse::Ellipse before{
+      meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
+  const Eigen::Vector2d factors(sx, sy);
+  const Eigen::Vector2d shift = 0.5 * (factors - Eigen::Vector2d::Ones());
+  const std::optional<ellipse::Ellipse> after =
+      ellipse::transformed(before, factors.asDiagonal(), shift);
+  if (!after) return FALSE;
+  meta->cx = after->cx;
+  meta->cy = after->cy;
+  meta->semi_major = after->semi_major;
+  meta->semi_minor = after->semi_minor;
+  meta->angle_rad = after->angle_rad;
+  const int right = static_cast<int>(std::ceil((meta->roi_x + int(meta->roi_width)) * sx));
+  const int bottom = static_cast<int>(std::ceil((meta->roi_y + int(meta->roi_height)) * sy));
+  meta->roi_x = static_cast<int>(std::floor(meta->roi_x * sx));
+  meta->roi_y = static_cast<int>(std::floor(meta->roi_y * sy));
+  meta->roi_width = static_cast<guint>(right - meta->roi_x);
+  meta->roi_height = static_cast<guint>(bottom - meta->roi_y);
+  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(scale->out_info));
+  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(scale->out_info));
+  return TRUE;
+}
+
+static gboolean ellipse_meta_transform(
+    GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
+  const auto* source = reinterpret_cast<GstEllipseMeta*>(meta);
+  GstEllipseMeta moved = *source;
+  if (GST_META_TRANSFORM_IS_COPY(type)) {
+    // A part of the bytes is no picture any more.
+    if (static_cast<GstMetaTransformCopy*>(data)->region) return FALSE;
+  } else if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type) ||
+             !scale_fields(&moved, static_cast<GstVideoMetaTransform*>(data))) {
+    return FALSE;
+  }
+  GstEllipseMeta* copy = gst_buffer_add_ellipse_meta(to, source->role);
+  if (copy == nullptr) return FALSE;
+  copy_fields(copy, &moved);
+  return TRUE;
+}
+
+const GstMetaInfo* gst_ellipse_meta_get_info(void) {
+  static const GstMetaInfo* kInfo = gst_meta_register(GST_ELLIPSE_META_API_TYPE,
+                                                      "GstEllipseMeta",
+                                                      sizeof(GstEllipseMeta),
+                                                      ellipse_meta_init,
+                                                      nullptr,
+                                                      ellipse_meta_transform);
+  return kInfo;
+}
+
+/**
+ * gst_buffer_add_ellipse_meta:
+ * @buffer: (transfer none): a writable #GstBuffer
+ * @role: what the ellipse stands for
+ *
+ * Attaches an ellipse, all of whose numbers are still to be filled in: 0, the scale 1, the times
+ * %GST_CLOCK_TIME_NONE.
+ *
+ * Returns: (transfer none): the #GstEllipseMeta, owned by the buffer
+ */
+GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  auto* meta = reinterpret_cast<GstEllipseMeta*>(
+      gst_buffer_add_meta(buffer, GST_ELLIPSE_META_INFO, nullptr));
+  if (meta != nullptr) meta->role = role;
+  return meta;
+}
+
+/**
+ * gst_buffer_iterate_ellipse_meta:
+ * @buffer: (transfer none): a #GstBuffer
+ * @state: (inout): opaque, to be %NULL before the first call
+ *
+ * The ellipses of a buffer, one after the other.
+ *
+ * Returns: (transfer none) (nullable): the next #GstEllipseMeta, %NULL after the last one
+ */
+GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* state) {
+  return reinterpret_cast<GstEllipseMeta*>(
+      gst_buffer_iterate_meta_filtered(buffer, state, GST_ELLIPSE_META_API_TYPE));
+}
+
+/**
+ * gst_buffer_get_ellipse_meta:
+ * @buffer: (transfer none): a #GstBuffer
+ * @role: the role that is looked for
+ *
+ * Returns: (transfer none) (nullable): the first ellipse with that role, %NULL where there is none
+ */
+GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
+  gpointer state = nullptr;
+  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    if (meta->role == role) return meta;
+  }
+  return nullptr;
+}
+
+/**
+ * gst_ellipse_meta_to_structure:
+ * @meta: a #GstEllipseMeta
+ *
+ * All fields by their names in a structure named "ellipse"; role and state as their nicks.
+ *
+ * Returns: (transfer full): a new #GstStructure
+ */
+GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  // clang-format off
+  return gst_structure_new("ellipse",
+                           "role", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_ROLE, meta->role),
+                           "state", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_STATE, meta->state),
+                           "id", G_TYPE_UINT64, meta->id,
+                           "cx", G_TYPE_DOUBLE, meta->cx,
+                           "cy", G_TYPE_DOUBLE, meta->cy,
+                           "semi_major", G_TYPE_DOUBLE, meta->semi_major,
+                           "semi_minor", G_TYPE_DOUBLE, meta->semi_minor,
+                           "angle_rad", G_TYPE_DOUBLE, meta->angle_rad,
+                           "contour_overlap", G_TYPE_DOUBLE, meta->contour_overlap,
+                           "ellipse_overlap", G_TYPE_DOUBLE, meta->ellipse_overlap,
+                           "visible_fraction", G_TYPE_DOUBLE, meta->visible_fraction,
+                           "scale", G_TYPE_UINT, meta->scale,
+                           "roi_x", G_TYPE_INT, meta->roi_x,
+                           "roi_y", G_TYPE_INT, meta->roi_y,
+                           "roi_width", G_TYPE_UINT, meta->roi_width,
+                           "roi_height", G_TYPE_UINT, meta->roi_height,
+                           "frame_width", G_TYPE_UINT, meta->frame_width,
+                           "frame_height", G_TYPE_UINT, meta->frame_height,
+                           "pts", GST_TYPE_CLOCK_TIME, meta->pts,
+                           "processing_time", GST_TYPE_CLOCK_TIME, meta->processing_time,
+                           nullptr);
+  // clang-format on
+}
+
+// With a point whatever the locale; JSON knows no NaN.
+static void append_number(GString* json, const gchar* name, const gchar* format, gdouble value) {
+  gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+  g_string_append_printf(
+      json,
+      ",\"%s\":%s",
+      name,
+      std::isfinite(value) ? g_ascii_formatd(text, sizeof text, format, value) : "null");
+}
+
+/**
+ * gst_ellipse_meta_to_json:
+ * @meta: a #GstEllipseMeta
+ *
+ * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
+ * angle_rad, contour_overlap, ellipse_overlap, visible, scale. The truth has neither state nor
+ * overlaps.
+ *
+ * Returns: (transfer full): a new string
+ */
+gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  GString* json = g_string_new(nullptr);
+  g_string_append_printf(json,
+                         "{\"role\":\"%s\",\"id\":%" G_GUINT64_FORMAT,
+                         nick_of(GST_TYPE_ELLIPSE_ROLE, meta->role),
+                         meta->id);
+  const bool was_found = meta->role != GST_ELLIPSE_ROLE_TRUTH;
+  if (was_found) {
+    g_string_append_printf(json, ",\"state\":\"%s\"", nick_of(GST_TYPE_ELLIPSE_STATE, meta->state));
+  }
+  append_number(json, "cx", "%.4f", meta->cx);
+  append_number(json, "cy", "%.4f", meta->cy);
+  append_number(json, "semi_major", "%.4f", meta->semi_major);
+  append_number(json, "semi_minor", "%.4f", meta->semi_minor);
+  append_number(json, "angle_rad", "%.6f", meta->angle_rad);
+  if (was_found) {
+    append_number(json, "contour_overlap", "%.4f", meta->contour_overlap);
+    append_number(json, "ellipse_overlap", "%.4f", meta->ellipse_overlap);
+  }
+  append_number(json, "visible", "%.4f", meta->visible_fraction);
+  if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);
+  g_string_append_c(json, '}');
+  return g_string_free(json, FALSE);
+}

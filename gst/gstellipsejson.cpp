@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+
+/**
+ * SECTION:element-ellipsejson
+ * @title: ellipsejson
+ *
+ * Turns the ellipses on video buffers into text, one JSON object and one line a frame, also where
+ * nothing was found. Any sink carries it: filesink, fdsink, udpsink, tcpserversink.
+ *
+ * |[
+ * gst-launch-1.0 -q ellipsetestsrc num-buffers=3 ! ellipsetrack ! ellipsejson ! fdsink
+ * ]|
+ */
+
+#include "gst/gstellipsejson.h"
+
+#include <gst/video/video.h>
+
+#include "gst/ellipse/gstellipsemeta.h"
+
+struct _GstEllipseJson {
+  GstBaseTransform parent;
+
+  GstVideoInfo info;
+  guint64 frame;
+};
+
+G_DEFINE_TYPE(GstEllipseJson, gst_ellipse_json, GST_TYPE_BASE_TRANSFORM)
+
+GST_ELEMENT_REGISTER_DEFINE(ellipsejson, "ellipsejson", GST_RANK_NONE, GST_TYPE_ELLIPSE_JSON)
+
+#define SINK_CAPS "video/x-raw(ANY)"
+#define SRC_CAPS "application/x-ndjson"
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(SINK_CAPS));
+
+static GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(SRC_CAPS));
+
+static GstCaps* gst_ellipse_json_transform_caps(GstBaseTransform*,
+                                                GstPadDirection direction,
+                                                GstCaps*,
+                                                GstCaps* filter) {
+  GstCaps* all = gst_caps_from_string(direction == GST_PAD_SINK ? SRC_CAPS : SINK_CAPS);
+  if (filter == nullptr) return all;
+  GstCaps* some = gst_caps_intersect_full(filter, all, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(all);
+  return some;
+}
+
+static gboolean gst_ellipse_json_set_caps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
+  return gst_video_info_from_caps(&GST_ELLIPSE_JSON(base)->info, in);
+}
+
+static void append_time(GString* line, const gchar* name, GstClockTime time) {
+  if (GST_CLOCK_TIME_IS_VALID(time)) {
+    g_string_append_printf(line, ",\"%s\":%" G_GUINT64_FORMAT, name, time);
+  } else {
+    g_string_append_printf(line, ",\"%s\":null", name);
+  }
+}
+
+static GString* line_of(GstEllipseJson* self, GstBuffer* buffer) {
+  GString* line = g_string_new(nullptr);
+  g_string_append_printf(line, "{\"frame\":%" G_GUINT64_FORMAT, self->frame);
+  append_time(line, "pts_ns", GST_BUFFER_PTS(buffer));
+  g_string_append_printf(line,
+                         ",\"width\":%d,\"height\":%d",
+                         GST_VIDEO_INFO_WIDTH(&self->info),
+                         GST_VIDEO_INFO_HEIGHT(&self->info));
+  const GstEllipseMeta* target = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  append_time(
+      line, "processing_ns", target != nullptr ? target->processing_time : GST_CLOCK_TIME_NONE);
+  g_string_append(line, ",\"targets\":[");
+  gpointer state = nullptr;
+  const gchar* separator = "";
+  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    gchar* json = gst_ellipse_meta_to_json(meta);
+    g_string_append_printf(line, "%s%s", separator, json);
+    g_free(json);
+    separator = ",";
+  }
+  g_string_append(line, "]}\n");
+  return line;
+}
+
+static GstFlowReturn gst_ellipse_json_prepare_output_buffer(GstBaseTransform* base,
+                                                            GstBuffer* in,
+                                                            GstBuffer** out) {
+  auto* self = GST_ELLIPSE_JSON(base);
+  GString* line = line_of(self, in);
+  ++self->frame;
+  const gsize length = line->len;
+  *out = gst_buffer_new_wrapped(g_string_free(line, FALSE), length);
+  gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
+  return GST_FLOW_OK;
+}
+
+// The output is complete when it has been prepared.
+static GstFlowReturn gst_ellipse_json_transform(GstBaseTransform*, GstBuffer*, GstBuffer*) {
+  return GST_FLOW_OK;
+}
+
+static gboolean gst_ellipse_json_start(GstBaseTransform* base) {
+  GST_ELLIPSE_JSON(base)->frame = 0;
+  return TRUE;
+}
+
+static gboolean gst_ellipse_json_propose_allocation(GstBaseTransform*, GstQuery*, GstQuery* query) {
+  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+  return TRUE;
+}
+
+static void gst_ellipse_json_init(GstEllipseJson* self) {
+  gst_video_info_init(&self->info);
+}
+
+static void gst_ellipse_json_class_init(GstEllipseJsonClass* klass) {
+  auto* element_class = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element_class,
+                                        "Ellipses to JSON",
+                                        "Filter/Converter/Video",
+                                        "Writes the ellipses that buffers carry as JSON lines",
+                                        "The gst-ellipse authors");
+  gst_element_class_add_static_pad_template(element_class, &sink_template);
+  gst_element_class_add_static_pad_template(element_class, &src_template);
+
+  auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
+  base_class->transform_caps = gst_ellipse_json_transform_caps;
+  base_class->set_caps = gst_ellipse_json_set_caps;
+  base_class->prepare_output_buffer = gst_ellipse_json_prepare_output_buffer;
+  base_class->transform = gst_ellipse_json_transform;
+  base_class->start = gst_ellipse_json_start;
+  base_class->propose_allocation = gst_ellipse_json_propose_allocation;
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+
+/**
+ * SECTION:element-ellipseoverlay
+ * @title: ellipseoverlay
+ *
+ * Draws the ellipses that a buffer carries as #GstEllipseMeta. It needs nothing else, so that it
+ * can stand after a tee, a scaler or a decoder that keeps metadata. A buffer without an ellipse
+ * passes untouched.
+ *
+ * |[
+ * gst-launch-1.0 ellipsetestsrc ! ellipsetrack ! videoscale ! video/x-raw,width=1280,height=720 \
+ *     ! ellipseoverlay ! videoconvert ! autovideosink
+ * ]|
+ */
+
+#include "gst/gstellipseoverlay.h"
+
+#include "gst/overlay.hpp"
+#include "gst/video_view.hpp"
+
+enum { PROP_0, PROP_TRUTH, PROP_OVERLAY, PROP_OVERLAY_COLOR, PROP_LINE_WIDTH };
+
+static constexpr auto kDefaultParts = static_cast<GstEllipseOverlayFlags>(
+    GST_ELLIPSE_OVERLAY_ELLIPSE | GST_ELLIPSE_OVERLAY_CENTRE | GST_ELLIPSE_OVERLAY_LABEL);
+static constexpr guint kTruthColor = 0xffff4040U;
+
+struct _GstEllipseOverlay {
+  GstVideoFilter parent;
+
+  // Under the object lock.
+  OverlayStyle* style;
+  gboolean shows_truth;
+};
+
+G_DEFINE_TYPE(GstEllipseOverlay, gst_ellipse_overlay, GST_TYPE_VIDEO_FILTER)
+
+GST_ELEMENT_REGISTER_DEFINE(ellipseoverlay,
+                            "ellipseoverlay",
+                            GST_RANK_NONE,
+                            GST_TYPE_ELLIPSE_OVERLAY)
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink",
+                            GST_PAD_SINK,
+                            GST_PAD_ALWAYS,
+                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
+
+static GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src",
+                            GST_PAD_SRC,
+                            GST_PAD_ALWAYS,
+                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
+
+static void gst_ellipse_overlay_set_property(GObject* object,
+                                             guint id,
+                                             const GValue* value,
+                                             GParamSpec* pspec) {
+  auto* self = GST_ELLIPSE_OVERLAY(object);
+  GST_OBJECT_LOCK(self);
+  if (id == PROP_TRUTH) {
+    self->shows_truth = g_value_get_boolean(value);
+  } else if (id >= PROP_OVERLAY && id <= PROP_LINE_WIDTH) {
+    set_overlay_property(*self->style, id - PROP_OVERLAY, value);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+  }
+  GST_OBJECT_UNLOCK(self);
+}
+
+static void gst_ellipse_overlay_get_property(GObject* object,
+                                             guint id,
+                                             GValue* value,
+                                             GParamSpec* pspec) {
+  auto* self = GST_ELLIPSE_OVERLAY(object);
+  GST_OBJECT_LOCK(self);
+  if (id == PROP_TRUTH) {
+    g_value_set_boolean(value, self->shows_truth);
+  } else if (id >= PROP_OVERLAY && id <= PROP_LINE_WIDTH) {
+    get_overlay_property(*self->style, id - PROP_OVERLAY, value);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+  }
+  GST_OBJECT_UNLOCK(self);
+}
+
+static void draw_all(GstVideoFrame& frame, const OverlayStyle& style, bool shows_truth) {
+  OverlayStyle truth_style = style;
+  truth_style.color_argb = kTruthColor;
+  gpointer state = nullptr;
+  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(frame.buffer, &state)) {
+    const bool is_truth = meta->role == GST_ELLIPSE_ROLE_TRUTH;
+    if (is_truth && !shows_truth) continue;
+    draw_overlay(frame, *meta, is_truth ? truth_style : style);
+  }
+}
+
+static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
+  auto* self = GST_ELLIPSE_OVERLAY(base);
+  GST_OBJECT_LOCK(self);
+  const OverlayStyle style = *self->style;
+  const bool shows_truth = self->shows_truth != FALSE;
+  GST_OBJECT_UNLOCK(self);
+
+  gpointer state = nullptr;
+  if (gst_buffer_iterate_ellipse_meta(buffer, &state) == nullptr) return GST_FLOW_OK;
+  MappedFrame mapped(GST_VIDEO_FILTER(base)->in_info, buffer, GST_MAP_READWRITE);
+  if (!mapped.is_mapped()) {
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
+    return GST_FLOW_OK;
+  }
+  draw_all(mapped.frame(), style, shows_truth);
+  return GST_FLOW_OK;
+}
+
+static gboolean gst_ellipse_overlay_propose_allocation(GstBaseTransform* base,
+                                                       GstQuery* decide_query,
+                                                       GstQuery* query) {
+  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+  return GST_BASE_TRANSFORM_CLASS(gst_ellipse_overlay_parent_class)
+      ->propose_allocation(base, decide_query, query);
+}
+
+static void gst_ellipse_overlay_finalize(GObject* object) {
+  delete GST_ELLIPSE_OVERLAY(object)->style;
+  G_OBJECT_CLASS(gst_ellipse_overlay_parent_class)->finalize(object);
+}
+
+static void gst_ellipse_overlay_init(GstEllipseOverlay* self) {
+  self->style = new OverlayStyle();
+  self->style->parts = kDefaultParts;
+  gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+}
+
+static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
+  auto* object_class = G_OBJECT_CLASS(klass);
+  object_class->set_property = gst_ellipse_overlay_set_property;
+  object_class->get_property = gst_ellipse_overlay_get_property;
+  object_class->finalize = gst_ellipse_overlay_finalize;
+  g_object_class_install_property(
+      object_class,
+      PROP_TRUTH,
+      g_param_spec_boolean("truth",
+                           "Truth",
+                           "Also draw where a test source says that the target is",
+                           FALSE,
+                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                    GST_PARAM_MUTABLE_PLAYING)));
+  install_overlay_properties(object_class, PROP_OVERLAY, kDefaultParts);
+
+  auto* element_class = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element_class,
+                                        "Ellipse overlay",
+                                        "Filter/Effect/Video",
+                                        "Draws the ellipses that buffers carry as metadata",
+                                        "The gst-ellipse authors");
+  gst_element_class_add_static_pad_template(element_class, &sink_template);
+  gst_element_class_add_static_pad_template(element_class, &src_template);
+
+  auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
+  base_class->transform_ip = gst_ellipse_overlay_transform_ip;
+  base_class->propose_allocation = gst_ellipse_overlay_propose_allocation;
+}
