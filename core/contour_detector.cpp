@@ -23,7 +23,12 @@ constexpr double kLeastHigh = 1.0;  // [grey levels / px], above the steps of ro
 // Between the gradient and the normal of an ellipse whose edge it is: 30 degrees.
 constexpr double kLeastCosine = 0.87;
 
-constexpr int kContourSteps = 3;
+// A corner: over this many pixels before and after it a contour turns by more than 45 degrees.
+constexpr std::size_t kCornerReach = 5;
+constexpr double kCornerCosine = 0.7;
+constexpr int kLeastPartPx = 16;
+
+constexpr int kContourSteps = 2;
 constexpr int kEdgeSteps = 2;
 constexpr int kBorderPx = 3;  // How far smoothing and gradient reach.
 
@@ -117,8 +122,7 @@ std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field
   walk_perimeter(e, [&](const PerimeterStep& step) {
     for (int k = -1; k <= 1; ++k) {
       const Eigen::Vector2d at = step.point + k * step.normal();
-      const cv::Point pixel(static_cast<int>(std::lround(at.x())),
-                            static_cast<int>(std::lround(at.y())));
+      const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
       if (!field.is_inside(pixel) || field.edges.at<std::uint8_t>(pixel) == 0) continue;
       const Eigen::Vector2d gradient = field.gradient(pixel);
       if (std::abs(gradient.dot(step.normal())) < kLeastCosine * gradient.norm()) continue;
@@ -143,13 +147,12 @@ Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thic
   return {e, contour_overlap, support.ellipse_overlap(), contour_overlap * support.on_edge_px};
 }
 
-// [Keipour2021] Algorithm 1, the body of its loop: every rejection in the paper's order.
+// [Keipour2021] Algorithm 1, the body of its loop after the contour's size: every rejection in the
+// paper's order.
 std::optional<Detection> examine(std::span<const cv::Point> contour,
                                  const EdgeField& field,
                                  const ImageView& thick_edges,
                                  const Thresholds& limits) {
-  if (std::ssize(contour) < limits.min_contour_size) return std::nullopt;
-
   const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;
   if (2.0 * e->semi_major > limits.max_axis_px) return std::nullopt;
@@ -162,6 +165,27 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
   if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
   return better.ellipse_overlap >= found.ellipse_overlap ? better : found;
+}
+
+// Whether a contour turns sharply at one of its pixels.
+bool is_corner(std::span<const cv::Point> contour, std::size_t i) {
+  const cv::Point before = contour[i] - contour[i - kCornerReach];
+  const cv::Point after = contour[i + kCornerReach] - contour[i];
+  const double dot = before.dot(after);
+  return dot <= 0.0 ||
+         dot * dot < kCornerCosine * kCornerCosine * before.dot(before) * after.dot(after);
+}
+
+// Calls use(part) for each part of a contour between its corners.
+template <class Use>
+void for_each_smooth_part(std::span<const cv::Point> contour, const Use& use) {
+  std::size_t begin = 0;
+  for (std::size_t i = kCornerReach; i + kCornerReach < contour.size(); ++i) {
+    if (!is_corner(contour, i)) continue;
+    if (i > begin) use(contour.subspan(begin, i - begin));
+    begin = i + 1;
+  }
+  if (begin > 0) use(contour.subspan(begin));
 }
 
 ImageView view_of(const cv::Mat& mat) {
@@ -197,9 +221,22 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   cv::dilate(edges_, thick_edges_, cv::Mat());
   cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
   const EdgeField field{edges_, gradient_x_, gradient_y_};
-  for (const std::vector<cv::Point>& contour : contours_) {
-    const auto detection = examine(contour, field, view_of(thick_edges_), thresholds);
+  const ImageView thick = view_of(thick_edges_);
+  const auto try_contour = [&](std::span<const cv::Point> contour) {
+    const auto detection = examine(contour, field, thick, thresholds);
     if (detection) detections_.push_back(*detection);
+  };
+  std::erase_if(contours_, [&](const auto& contour) {
+    return std::ssize(contour) < thresholds.min_contour_size;
+  });
+  for (const auto& contour : contours_) try_contour(contour);
+  if (!detections_.empty()) return detections_;
+
+  // Gaps and occluders join an ellipse's edge with others: what is between the corners may be it.
+  for (const auto& contour : contours_) {
+    for_each_smooth_part(contour, [&](std::span<const cv::Point> part) {
+      if (std::ssize(part) >= kLeastPartPx) try_contour(part);
+    });
   }
   return detections_;
 }

@@ -8,7 +8,7 @@ namespace ellipse {
 
 double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e) {
   if (contour.empty()) return 0.0;
-  // |r - 1| r / |(u/a, v/b)| <= t, the Sampson distance, with its divisions turned into products.
+  // |r - 1| r / |(u/a, v/b)| < t, the Sampson distance, with its divisions turned into products.
   const double c = std::cos(e.angle_rad);
   const double s = std::sin(e.angle_rad);
   const double inverse_a = 1.0 / e.semi_major;
@@ -23,7 +23,7 @@ double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e) {
     const double gradient_sq = u * u * inverse_a * inverse_a + v * v * inverse_b * inverse_b;
     const double off = std::sqrt(r_sq) - 1.0;
     on_ellipse +=
-        off * off * r_sq <= kOverlapTolerancePx * kOverlapTolerancePx * gradient_sq ? 1 : 0;
+        off * off * r_sq < kOverlapTolerancePx * kOverlapTolerancePx * gradient_sq ? 1 : 0;
   }
   return static_cast<double>(on_ellipse) / static_cast<double>(contour.size());
 }
@@ -31,8 +31,8 @@ double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e) {
 PerimeterSupport perimeter_support(const Ellipse& e, const ImageView& thick_edges) {
   PerimeterSupport support;
   walk_perimeter(e, [&](const PerimeterStep& step) {
-    const int x = static_cast<int>(std::lround(step.point.x()));
-    const int y = static_cast<int>(std::lround(step.point.y()));
+    const int x = cvRound(step.point.x());
+    const int y = cvRound(step.point.y());
     if (!thick_edges.bounds().contains(x, y)) return;
     support.inside_px += step.length_px;
     if (thick_edges.row(y)[x] != 0) support.on_edge_px += step.length_px;

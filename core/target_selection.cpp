@@ -62,19 +62,22 @@ ConcentricSet set_around(const Detection& seed, std::span<const Detection> detec
   return set;
 }
 
+// Better than another member of the same set, both with enough of the set's best score.
+bool is_better(const Detection& a, const Detection& b) {
+  return are_one_edge(a.ellipse, b.ellipse) ? a.score > b.score
+                                            : a.ellipse.semi_major > b.ellipse.semi_major;
+}
+
 Detection outermost(const Detection& seed,
                     const ConcentricSet& set,
                     std::span<const Detection> detections) {
-  Detection result = seed;
-  for (const Detection& other : detections) {
-    if (!are_concentric(seed.ellipse, other.ellipse)) continue;
-    if (other.score < kLeastShareOfBestScore * set.best_score) continue;
-    const bool is_better = are_one_edge(result.ellipse, other.ellipse)
-                               ? other.score > result.score
-                               : other.ellipse.semi_major > result.ellipse.semi_major;
-    if (is_better) result = other;
+  const Detection* result = nullptr;
+  for (const Detection& member : detections) {
+    if (!are_concentric(seed.ellipse, member.ellipse)) continue;
+    if (member.score < kLeastShareOfBestScore * set.best_score) continue;
+    if (result == nullptr || is_better(member, *result)) result = &member;
   }
-  return result;
+  return result != nullptr ? *result : seed;
 }
 
 }  // namespace

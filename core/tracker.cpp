@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracker.hpp"
 
+#include <utility>
+
 #include "core/contour_detector.hpp"
 #include "core/roi.hpp"
 #include "core/target_selection.hpp"
@@ -14,7 +16,11 @@ double or_own(double setting, double own) {
 
 }  // namespace
 
-Tracker::Tracker(const TrackerSettings& settings) : detector_(std::make_unique<ContourDetector>()) {
+Tracker::Tracker(const TrackerSettings& settings)
+    : Tracker(settings, std::make_unique<ContourDetector>()) {}
+
+Tracker::Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector)
+    : detector_(std::move(detector)) {
   configure(settings);
 }
 

@@ -36,6 +36,8 @@ class Tracker {
  public:
   /// Throws std::invalid_argument where the settings are not valid.
   explicit Tracker(const TrackerSettings& settings = {});
+  /// With a detector of one's own, instead of the one that settings.detector names.
+  Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector);
   ~Tracker();
 
   /// From the next frame on. Throws like the constructor, and then keeps the old ones.

@@ -2,6 +2,7 @@
 //
 // ellipse-evaluate: runs the tracker over data sets with ground truth and prints the measures and
 // the times of [Keipour2021] III.
+#include <gst/gst.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,7 +12,6 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
@@ -20,6 +20,7 @@
 #include "core/tracker.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/tables.hpp"
 
 namespace evaluate {
@@ -126,10 +127,7 @@ class Evaluation {
 
  private:
   Result run_frame(ellipse::Tracker& tracker, const Frame& frame, std::int64_t pts_ns) {
-    const cv::Mat picture = cv::imread(frame.image.string(), cv::IMREAD_GRAYSCALE);
-    if (picture.empty()) {
-      throw std::runtime_error(frame.image.string() + ": is no picture that can be read");
-    }
+    const cv::Mat picture = reader_.read(frame.image);
     const FrameSize size{picture.cols, picture.rows};
     const ellipse::ImageView view{
         picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
@@ -153,6 +151,7 @@ class Evaluation {
   ellipse::TrackerSettings settings_;
   Rule rule_;
   std::ostream* frames_out_;
+  PictureReader reader_;
   Reference reference_;
 };
 
@@ -214,6 +213,7 @@ void run(const Options& options) {
 }  // namespace evaluate
 
 int main(int argc, char** argv) {
+  gst_init(nullptr, nullptr);
   evaluate::Options options;
   CLI::App app{"Measures the ellipse tracker on data sets with ground truth."};
   app.name("ellipse-evaluate");

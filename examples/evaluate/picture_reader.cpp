@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/picture_reader.hpp"
+
+#include <gst/app/app.h>
+#include <gst/video/video.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace evaluate {
+namespace {
+
+constexpr GstClockTime kPatience = 10 * GST_SECOND;
+
+[[noreturn]] void fail(const std::filesystem::path& file) {
+  throw std::runtime_error(file.string() + ": is no picture that can be read");
+}
+
+bool is_jpeg(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  return extension == ".jpg" || extension == ".jpeg" || extension == ".JPG";
+}
+
+cv::Mat copy_of(GstSample* sample) {
+  GstVideoInfo info;
+  GstVideoFrame frame;
+  if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
+      !gst_video_frame_map(&frame, &info, gst_sample_get_buffer(sample), GST_MAP_READ)) {
+    return {};
+  }
+  cv::Mat picture = cv::Mat(GST_VIDEO_FRAME_HEIGHT(&frame),
+                            GST_VIDEO_FRAME_WIDTH(&frame),
+                            CV_8UC1,
+                            GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
+                            static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)))
+                        .clone();
+  gst_video_frame_unmap(&frame);
+  return picture;
+}
+
+}  // namespace
+
+class PictureReader::JpegPipeline {
+ public:
+  JpegPipeline() {
+    pipeline_ = gst_parse_launch(
+        "appsrc name=in caps=image/jpeg,framerate=30/1 format=time ! jpegdec ! videoconvert "
+        "! video/x-raw,format=GRAY8 ! appsink name=out sync=false",
+        nullptr);
+    if (pipeline_ == nullptr) throw std::runtime_error("GStreamer has no jpegdec");
+    in_ = GST_APP_SRC(gst_bin_get_by_name(GST_BIN(pipeline_), "in"));
+    out_ = GST_APP_SINK(gst_bin_get_by_name(GST_BIN(pipeline_), "out"));
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  }
+
+  ~JpegPipeline() {
+    gst_element_set_state(pipeline_, GST_STATE_NULL);
+    gst_object_unref(in_);
+    gst_object_unref(out_);
+    gst_object_unref(pipeline_);
+  }
+
+  JpegPipeline(const JpegPipeline&) = delete;
+  JpegPipeline& operator=(const JpegPipeline&) = delete;
+
+  /// An empty picture where the bytes are none.
+  cv::Mat decode(GBytes* bytes) {
+    GstBuffer* buffer = gst_buffer_new_wrapped_bytes(bytes);
+    GST_BUFFER_PTS(buffer) = time_;
+    time_ += GST_SECOND / 30;
+    gst_app_src_push_buffer(in_, buffer);
+    GstSample* sample = gst_app_sink_try_pull_sample(out_, kPatience);
+    if (sample == nullptr) return {};
+    cv::Mat picture = copy_of(sample);
+    gst_sample_unref(sample);
+    return picture;
+  }
+
+ private:
+  GstElement* pipeline_ = nullptr;
+  GstAppSrc* in_ = nullptr;
+  GstAppSink* out_ = nullptr;
+  GstClockTime time_ = 0;
+};
+
+PictureReader::PictureReader() = default;
+
+PictureReader::~PictureReader() = default;
+
+cv::Mat PictureReader::read(const std::filesystem::path& file) {
+  cv::Mat picture;
+  if (!is_jpeg(file)) {
+    picture = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  } else {
+    gchar* contents = nullptr;
+    gsize length = 0;
+    if (!g_file_get_contents(file.c_str(), &contents, &length, nullptr)) fail(file);
+    GBytes* bytes = g_bytes_new_take(contents, length);
+    if (!jpeg_) jpeg_ = std::make_unique<JpegPipeline>();
+    picture = jpeg_->decode(bytes);
+    g_bytes_unref(bytes);
+    if (picture.empty()) jpeg_.reset();  // its pipeline has stopped with an error
+  }
+  if (picture.empty()) fail(file);
+  return picture;
+}
+
+}  // namespace evaluate

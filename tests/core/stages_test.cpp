@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+//
+// The small stages around the detector: luma, overlap, thresholds, settings, scale, roi.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/luma.hpp"
+#include "core/overlap.hpp"
+#include "core/roi.hpp"
+#include "core/scale.hpp"
+#include "core/tracker_settings.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ImageView, RegionIsClipped) {
+  const support::Picture picture(10, 8);
+  const ImageView part = picture.view().region({6, -2, 20, 5});
+  EXPECT_EQ(part.width, 4);
+  EXPECT_EQ(part.height, 3);
+  EXPECT_EQ(part.data, picture.pixels.data() + 6);
+  EXPECT_TRUE(picture.view().region({10, 0, 5, 5}).empty());
+}
+
+TEST(LumaReader, ReadsPlainLumaWhereItLies) {
+  const support::Picture picture(10, 8, 7);
+  LumaReader reader;
+  const ImageView region = reader.read(picture.view(), {2, 3, 4, 4});
+  EXPECT_EQ(region.data, picture.pixels.data() + 32);
+  EXPECT_EQ(region.stride, 10);
+}
+
+TEST(LumaReader, WeighsColoursInAnyOrder) {
+  // One pixel, red 200, green 100, blue 50: luma 0.299 R + 0.587 G + 0.114 B = 124.2.
+  const std::array<std::uint8_t, 4> xrgb = {9, 200, 100, 50};
+  const std::array<std::uint8_t, 4> bgr = {50, 100, 200, 9};
+  using Kind = PixelLayout::Kind;
+  LumaReader reader;
+  EXPECT_EQ(*reader.read({xrgb.data(), 1, 1, 4, {Kind::kRgb, 4, 0, 1, 2, 3}}, {0, 0, 1, 1}).data,
+            124);
+  EXPECT_EQ(*reader.read({bgr.data(), 1, 1, 3, {Kind::kRgb, 3, 0, 2, 1, 0}}, {0, 0, 1, 1}).data,
+            124);
+}
+
+TEST(LumaReader, ConvertsOnlyTheRegion) {
+  const std::array<std::uint8_t, 8> yuy2 = {10, 128, 20, 128, 30, 128, 40, 128};
+  LumaReader reader;
+  const ImageView luma =
+      reader.read({yuy2.data(), 4, 1, 8, {PixelLayout::Kind::kLuma, 2}}, {1, 0, 2, 1});
+  ASSERT_EQ(luma.width, 2);
+  EXPECT_EQ(luma.data[0], 20);
+  EXPECT_EQ(luma.data[1], 30);
+}
+
+TEST(LumaReader, TurnsPicturesThatLieUpsideDown) {
+  const std::array<std::uint8_t, 4> rows = {1, 2, 3, 4};
+  LumaReader reader;
+  const ImageView luma = reader.read(ImageView{rows.data() + 2, 2, 2, -2}, {0, 0, 2, 2});
+  EXPECT_GE(luma.stride, 0);
+  EXPECT_EQ(luma.row(0)[0], 3);
+  EXPECT_EQ(luma.row(1)[1], 2);
+}
+
+TEST(ContourOverlap, IsShareOfPixelsNearTheEllipse) {
+  const Ellipse circle{50.0, 50.0, 20.0, 20.0, 0.0};
+  const std::array<cv::Point, 4> contour = {
+      cv::Point{70, 50}, cv::Point{50, 31}, cv::Point{30, 50}, cv::Point{50, 50}};
+  EXPECT_DOUBLE_EQ(contour_overlap(contour, circle), 0.75);
+  EXPECT_EQ(contour_overlap({}, circle), 0.0);
+}
+
+TEST(EllipseOverlap, CountsThePerimeterInsideThePictureOnly) {
+  support::Picture edges(100, 100);
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 50; ++x) edges.at(x, y) = 255;
+  }
+  const Ellipse whole{49.5, 50.0, 20.0, 20.0, 0.0};
+  EXPECT_NEAR(perimeter_support(whole, edges.view()).ellipse_overlap(), 0.5, 0.02);
+  const Ellipse cut{-0.5, 50.0, 20.0, 20.0, 0.0};
+  const PerimeterSupport support = perimeter_support(cut, edges.view());
+  EXPECT_DOUBLE_EQ(support.ellipse_overlap(), 1.0);
+  EXPECT_NEAR(support.inside_px, std::acos(-1.0) * 20.0, 1.5);
+  const Ellipse outside{-80.0, 50.0, 20.0, 20.0, 0.0};
+  EXPECT_EQ(perimeter_support(outside, edges.view()).ellipse_overlap(), 0.0);
+}
+
+TEST(Thresholds, HaveThePapersDefaults) {
+  const Thresholds t;
+  EXPECT_EQ(t.contour_overlap, 0.95);
+  EXPECT_EQ(t.ellipse_overlap, 0.95);
+  EXPECT_EQ(t.min_axis_px, 5);
+  EXPECT_EQ(t.max_axis_px, 700);
+  EXPECT_EQ(t.max_axis_ratio, 5);
+  EXPECT_EQ(t.min_contour_size, 50);
+  EXPECT_NO_THROW(t.validate());
+}
+
+TEST(Thresholds, NameTheFieldThatIsWrong) {
+  Thresholds t;
+  t.max_axis_px = 3.0;
+  EXPECT_NE(message_of([&] { t.validate(); }).find("max_axis_px"), std::string::npos);
+  t = {};
+  t.contour_overlap = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message_of([&] { t.validate(); }).find("contour_overlap"), std::string::npos);
+  t = {};
+  t.edge_low = 9.0;
+  t.edge_high = 5.0;
+  EXPECT_NE(message_of([&] { t.validate(); }).find("edge_low"), std::string::npos);
+}
+
+TEST(Thresholds, ShrinkWithThePicture) {
+  const Thresholds at_four = Thresholds{}.at_scale(4);
+  EXPECT_EQ(at_four.max_axis_px, 175.0);
+  EXPECT_EQ(at_four.min_axis_px, 1.25);
+  EXPECT_EQ(at_four.min_contour_size, 12);
+  EXPECT_EQ(at_four.contour_overlap, 0.95);
+}
+
+TEST(TrackerSettings, EachNumberIsSetByItsName) {
+  for (const SettingInfo& info : setting_infos()) {
+    TrackerSettings settings;
+    const double wanted = info.is_integer ? 100.0 : 0.5 * info.range.max;
+    set_by_name(settings, info.name, std::to_string(wanted));
+    EXPECT_EQ(info.get(settings), wanted) << info.name;
+  }
+}
+
+TEST(TrackerSettings, RefuseWhatTheyDoNotKnow) {
+  TrackerSettings s;
+  const auto set = [&](const char* name, const char* value) {
+    return message_of([&] { set_by_name(s, name, value); });
+  };
+  EXPECT_NE(set("no-such-thing", "1").find("no-such-thing"), std::string::npos);
+  EXPECT_NE(set("min-axis", "many").find("min-axis"), std::string::npos);
+  EXPECT_NE(set("min-axis", "nan").find("min-axis"), std::string::npos);
+  EXPECT_NE(set("roi-expansion", "99").find("roi-expansion"), std::string::npos);
+  EXPECT_NE(set("tracking", "magic").find("redetect"), std::string::npos);
+  EXPECT_EQ(s, TrackerSettings{});
+}
+
+TEST(TrackerSettings, RefusePairsTheWrongWayRound) {
+  TrackerSettings s;
+  s.min_target_size_px = 500.0;
+  EXPECT_NE(message_of([&] { s.validate(); }).find("max-target-size"), std::string::npos);
+}
+
+TEST(Scaler, AveragesBlocksAndCutsTheRest) {
+  support::Picture picture(5, 4, 10);
+  picture.at(0, 0) = 50;
+  Scaler scaler;
+  const ImageView half = scaler.reduce(picture.view(), 2);
+  EXPECT_EQ(half.width, 2);
+  EXPECT_EQ(half.height, 2);
+  EXPECT_EQ(half.row(0)[0], 20);
+  EXPECT_EQ(half.row(1)[1], 10);
+  EXPECT_EQ(scaler.reduce(picture.view(), 1).data, picture.pixels.data());
+  EXPECT_TRUE(scaler.reduce(picture.view(), 8).empty());
+}
+
+TEST(Scale, RegionAndFrameAreInverse) {
+  const Ellipse e{100.3, 50.7, 20.0, 10.0, 0.3};
+  const Ellipse there = to_region(e, {32, 16, 100, 100}, 4);
+  EXPECT_NEAR(there.cx, (100.3 - 32 + 0.5) / 4 - 0.5, 1e-12);
+  EXPECT_NEAR(to_frame(there, {32, 16, 100, 100}, 4).cy, e.cy, 1e-12);
+}
+
+TEST(Scale, DoublesAndHalvesWithinItsLimits) {
+  EXPECT_EQ(next_scale(1, 100, 200.0, 40.0, 120.0), 2);
+  EXPECT_EQ(next_scale(64, 100, 200.0, 40.0, 120.0), 64);
+  EXPECT_EQ(next_scale(4, 100, 20.0, 40.0, 120.0), 2);
+  EXPECT_EQ(next_scale(1, 100, 20.0, 40.0, 120.0), 1);
+  EXPECT_EQ(next_scale(4, 100, 80.0, 40.0, 120.0), 4);
+}
+
+TEST(Roi, SurroundsTheTargetOnTheGridOfTheScale) {
+  const Rect roi = calculate_roi({100.0, 80.0, 20.0, 10.0, 0.0}, 2.0, 4, 640, 360);
+  EXPECT_EQ(roi.x % 4, 0);
+  EXPECT_EQ(roi.y % 4, 0);
+  EXPECT_LE(roi.x, 60);
+  EXPECT_GE(roi.x + roi.width, 141);
+  EXPECT_LE(roi.y, 50);
+  EXPECT_GE(roi.y + roi.height, 111);
+}
+
+TEST(Roi, IsClippedToTheFrame) {
+  const Rect all = calculate_roi({5.0, 5.0, 400.0, 300.0, 0.1}, 2.0, 2, 321, 241);
+  EXPECT_EQ(all, (Rect{0, 0, 321, 241}));
+  EXPECT_TRUE(calculate_roi({-500.0, 5.0, 20.0, 20.0, 0.0}, 2.0, 1, 320, 240).empty());
+}
+
+}  // namespace
+}  // namespace ellipse

@@ -1,0 +1,53 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <vector>
+
+#include "core/image_view.hpp"
+#include "core/scene.hpp"
+
+namespace support {
+
+/// An 8-bit picture that owns its pixels.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+
+  Picture(int width_px, int height_px, std::uint8_t level = 0)
+      : width(width_px),
+        height(height_px),
+        pixels(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), level) {}
+
+  [[nodiscard]] std::uint8_t& at(int x, int y) {
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(x)];
+  }
+  [[nodiscard]] ellipse::ImageView view() const { return {pixels.data(), width, height, width}; }
+};
+
+/// Renders a scene in which the pad's outer edge is exactly this ellipse.
+inline Picture rendered(const ellipse::Scene& scene,
+                        const ellipse::Ellipse& outer_edge,
+                        int width = 320,
+                        int height = 240,
+                        std::uint64_t frame = 0) {
+  Picture picture(width, height);
+  ellipse::render(scene,
+                  ellipse::image_from_pad(outer_edge),
+                  frame,
+                  {picture.pixels.data(), width, height, width});
+  return picture;
+}
+
+/// A ring alone on an even, bright plate that fills the picture.
+inline ellipse::Scene plain_ring() {
+  ellipse::Scene scene;
+  scene.pattern = ellipse::Pattern::kRing;
+  scene.plate_half_width = 0.0;
+  scene.ground_level = 200.0;
+  scene.ground_contrast = 0.0;
+  return scene;
+}
+
+}  // namespace support
