@@ -268,9 +268,19 @@ void draw_label(GstVideoFrame& frame, const GstEllipseMeta& meta, const OverlayS
 
 }  // namespace
 
+// Numbers of a picture. Metadata may come from anybody, and lines of 1e300 px are never done.
+static bool is_drawable(const GstEllipseMeta& meta) {
+  constexpr double kFarthestPx = 1e5;
+  const auto is_near = [](double value) { return std::abs(value) <= kFarthestPx; };  // NaN is not
+  return is_near(meta.cx) && is_near(meta.cy) && is_near(meta.semi_major) &&
+         is_near(meta.semi_minor) && meta.semi_minor >= 0.1 && meta.semi_major >= meta.semi_minor &&
+         std::isfinite(meta.angle_rad) && is_near(meta.roi_x) && is_near(meta.roi_y) &&
+         is_near(meta.roi_width) && is_near(meta.roi_height);
+}
+
 void draw_overlay(GstVideoFrame& frame, const GstEllipseMeta& meta, const OverlayStyle& style) {
+  if (!is_drawable(meta)) return;
   const Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
-  if (!(e.semi_minor > 0.0) || !std::isfinite(e.cx + e.cy + e.semi_major)) return;
   Painter painter(frame, style.color_argb);
   const double width = style.line_width_px;
   if ((style.parts & GST_ELLIPSE_OVERLAY_ROI) != 0) draw_region(painter, meta, 1.0);

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+
+#include "core/ellipse.hpp"
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::Owned;
+
+GstEllipseMeta* add_example(GstBuffer* buffer) {
+  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  meta->state = GST_ELLIPSE_STATE_TRACKED;
+  meta->id = 7;
+  meta->cx = 99.5;
+  meta->cy = 49.5;
+  meta->semi_major = 40.0;
+  meta->semi_minor = 20.0;
+  meta->angle_rad = 0.7;
+  meta->roi_x = 11;
+  meta->roi_y = 20;
+  meta->roi_width = 101;
+  meta->roi_height = 60;
+  meta->frame_width = 320;
+  meta->frame_height = 240;
+  meta->pts = 123;
+  return meta;
+}
+
+Owned<GstBuffer> empty_buffer() {
+  return Owned<GstBuffer>(gst_buffer_new_allocate(nullptr, 16, nullptr));
+}
+
+// As a scaler does.
+GstEllipseMeta* scaled_to(GstBuffer* from, GstBuffer* to, int width, int height) {
+  GstVideoInfo in = support::info_of("GRAY8", 320, 240);
+  GstVideoInfo out = support::info_of("GRAY8", width, height);
+  GstVideoMetaTransform transform = {&in, &out};
+  GstMeta* meta = gst_buffer_get_meta(from, GST_ELLIPSE_META_API_TYPE);
+  meta->info->transform_func(
+      to, meta, from, gst_video_meta_transform_scale_get_quark(), &transform);
+  return gst_buffer_get_ellipse_meta(to, GST_ELLIPSE_ROLE_TARGET);
+}
+
+TEST(EllipseMeta, StartsEmpty) {
+  const auto buffer = empty_buffer();
+  const GstEllipseMeta* meta =
+      gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
+  EXPECT_EQ(meta->role, GST_ELLIPSE_ROLE_CANDIDATE);
+  EXPECT_EQ(meta->scale, 1U);
+  EXPECT_EQ(meta->cx, 0.0);
+  EXPECT_EQ(meta->pts, GST_CLOCK_TIME_NONE);
+}
+
+TEST(EllipseMeta, SeveralStandOnABufferByRole) {
+  const auto buffer = empty_buffer();
+  gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH)->cx = 1.0;
+  gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->cx = 2.0;
+  EXPECT_EQ(gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->cx, 2.0);
+  EXPECT_EQ(gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE), nullptr);
+  gpointer state = nullptr;
+  int count = 0;
+  while (gst_buffer_iterate_ellipse_meta(buffer.get(), &state) != nullptr) ++count;
+  EXPECT_EQ(count, 2);
+}
+
+TEST(EllipseMeta, IsCopiedWithTheBuffer) {
+  const auto buffer = empty_buffer();
+  add_example(buffer.get());
+  const Owned<GstBuffer> copy(gst_buffer_copy(buffer.get()));
+  const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(copy.get(), GST_ELLIPSE_ROLE_TARGET);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_EQ(meta->id, 7U);
+  EXPECT_EQ(meta->angle_rad, 0.7);
+  EXPECT_EQ(meta->pts, 123U);
+}
+
+TEST(EllipseMeta, IsNotCopiedWithAPartOfTheBytes) {
+  const auto buffer = empty_buffer();
+  add_example(buffer.get());
+  const Owned<GstBuffer> part(gst_buffer_copy_region(
+      buffer.get(), static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_ALL), 0, 8));
+  EXPECT_EQ(gst_buffer_get_ellipse_meta(part.get(), GST_ELLIPSE_ROLE_TARGET), nullptr);
+}
+
+TEST(EllipseMeta, FollowsAScaler) {
+  const auto from = empty_buffer();
+  const auto to = empty_buffer();
+  add_example(from.get());
+  const GstEllipseMeta* meta = scaled_to(from.get(), to.get(), 640, 480);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->cx, 199.5, 1e-9);  // (99.5 + 0.5) 2 - 0.5
+  EXPECT_NEAR(meta->cy, 99.5, 1e-9);
+  EXPECT_NEAR(meta->semi_major, 80.0, 1e-9);
+  EXPECT_NEAR(meta->angle_rad, 0.7, 1e-9);
+  EXPECT_EQ(meta->roi_x, 22);
+  EXPECT_EQ(meta->roi_width, 202U);
+  EXPECT_EQ(meta->frame_width, 640U);
+  EXPECT_EQ(meta->id, 7U);
+}
+
+TEST(EllipseMeta, TurnsUnderANonUniformScale) {
+  const auto from = empty_buffer();
+  const auto to = empty_buffer();
+  const GstEllipseMeta* before = add_example(from.get());
+  const GstEllipseMeta* after = scaled_to(from.get(), to.get(), 640, 120);
+  ASSERT_NE(after, nullptr);
+  const ellipse::Ellipse a{before->cx, before->cy, 40.0, 20.0, 0.7};
+  const ellipse::Ellipse b{
+      after->cx, after->cy, after->semi_major, after->semi_minor, after->angle_rad};
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::Vector2d p = a.point_at(0.5 * i);
+    const Eigen::Vector2d q((p.x() + 0.5) * 2.0 - 0.5, (p.y() + 0.5) * 0.5 - 0.5);
+    EXPECT_NEAR(ellipse::sampson_distance(b, q), 0.0, 1e-9);
+  }
+}
+
+TEST(EllipseMeta, StructureHasAllFields) {
+  const auto buffer = empty_buffer();
+  const Owned<GstStructure> s(gst_ellipse_meta_to_structure(add_example(buffer.get())));
+  double cx = 0.0;
+  guint64 id = 0;
+  EXPECT_STREQ(gst_structure_get_name(s.get()), "ellipse");
+  EXPECT_TRUE(gst_structure_get_double(s.get(), "cx", &cx));
+  EXPECT_TRUE(gst_structure_get_uint64(s.get(), "id", &id));
+  EXPECT_EQ(cx, 99.5);
+  EXPECT_EQ(id, 7U);
+  EXPECT_STREQ(gst_structure_get_string(s.get(), "state"), "tracked");
+  EXPECT_STREQ(gst_structure_get_string(s.get(), "role"), "target");
+}
+
+TEST(EllipseMeta, JsonIsOneValidObjectWithoutNaN) {
+  const auto buffer = empty_buffer();
+  GstEllipseMeta* meta = add_example(buffer.get());
+  meta->contour_overlap = std::numeric_limits<double>::quiet_NaN();
+  gchar* text = gst_ellipse_meta_to_json(meta);
+  const Owned<JsonParser> parser(json_parser_new());
+  ASSERT_TRUE(json_parser_load_from_data(parser.get(), text, -1, nullptr)) << text;
+  JsonObject* object = json_node_get_object(json_parser_get_root(parser.get()));
+  EXPECT_DOUBLE_EQ(json_object_get_double_member(object, "cx"), 99.5);
+  EXPECT_STREQ(json_object_get_string_member(object, "state"), "tracked");
+  EXPECT_TRUE(json_object_get_null_member(object, "contour_overlap"));
+  EXPECT_EQ(std::strchr(text, '\n'), nullptr);
+  g_free(text);
+}
+
+TEST(EllipseMeta, TypesAreNamed) {
+  EXPECT_STREQ(g_type_name(GST_TYPE_ELLIPSE_ROLE), "GstEllipseRole");
+  EXPECT_STREQ(g_type_name(GST_TYPE_ELLIPSE_STATE), "GstEllipseState");
+  EXPECT_TRUE(gst_meta_api_type_has_tag(GST_ELLIPSE_META_API_TYPE,
+                                        g_quark_from_static_string(GST_META_TAG_VIDEO_SIZE_STR)));
+}
+
+}  // namespace

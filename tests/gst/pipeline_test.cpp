@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+//
+// Whole pipelines with real files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "core/ellipse.hpp"
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::object_of;
+using support::read_ndjson;
+using support::run_pipeline;
+using support::TemporaryFolder;
+
+// The ellipse with a role on a line, or nothing.
+std::optional<ellipse::Ellipse> ellipse_on(JsonObject* line, const std::string& role) {
+  JsonArray* targets = json_object_get_array_member(line, "targets");
+  for (guint i = 0; i < json_array_get_length(targets); ++i) {
+    JsonObject* t = json_array_get_object_element(targets, i);
+    if (json_object_get_string_member(t, "role") != role) continue;
+    return ellipse::Ellipse{json_object_get_double_member(t, "cx"),
+                            json_object_get_double_member(t, "cy"),
+                            json_object_get_double_member(t, "semi_major"),
+                            json_object_get_double_member(t, "semi_minor"),
+                            json_object_get_double_member(t, "angle_rad")};
+  }
+  return std::nullopt;
+}
+
+TEST(Pipeline, TracksAVideoFileReadBackFromDisk) {
+  const TemporaryFolder folder;
+  const std::string video = folder.file("approach.avi");
+  const std::string truth_file = folder.file("truth.ndjson");
+  const std::string found_file = folder.file("found.ndjson");
+  ASSERT_EQ(run_pipeline("ellipsetestsrc num-buffers=60 ! tee name=t t. ! queue ! jpegenc "
+                         "quality=90 ! avimux ! filesink location=" +
+                         video + " t. ! queue ! ellipsejson ! filesink location=" + truth_file),
+            "");
+  ASSERT_EQ(run_pipeline("filesrc location=" + video +
+                         " ! decodebin ! videoconvert ! ellipsetrack ! ellipsejson ! filesink "
+                         "location=" +
+                         found_file),
+            "");
+  const auto truth = read_ndjson(truth_file);
+  const auto found = read_ndjson(found_file);
+  ASSERT_EQ(truth.size(), 60U);
+  ASSERT_EQ(found.size(), 60U);
+  int right = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto a = ellipse_on(object_of(truth[i]), "truth");
+    const auto b = ellipse_on(object_of(found[i]), "target");
+    right += a && b && ellipse::iou_inside(*a, *b, 640, 360) >= 0.9 ? 1 : 0;
+  }
+  EXPECT_GE(right, 59);
+}
+
+TEST(Pipeline, MetadataFollowsConversionAndScaling) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("scaled.ndjson");
+  ASSERT_EQ(run_pipeline("ellipsetestsrc num-buffers=5 ! video/x-raw,width=640,height=360 ! "
+                         "ellipsetrack ! queue ! videoconvert ! "
+                         "video/x-raw,format=BGRx ! videoscale add-borders=false ! "
+                         "video/x-raw,width=320,height=360,pixel-aspect-ratio=1/1 ! ellipsejson ! "
+                         "filesink location=" +
+                         file),
+            "");
+  for (const auto& line : read_ndjson(file)) {
+    const auto truth = ellipse_on(object_of(line), "truth");
+    const auto target = ellipse_on(object_of(line), "target");
+    ASSERT_TRUE(truth && target);
+    EXPECT_GT(truth->aspect_ratio(), 1.3);  // squeezed to half the width
+    EXPECT_GT(ellipse::iou_inside(*truth, *target, 320, 360), 0.97);
+  }
+}
+
+TEST(Pipeline, TwoTrackersShareAFrameAfterATee) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_pipeline("ellipsetestsrc num-buffers=20 ! tee name=t "
+                         "t. ! queue ! ellipsetrack ! ellipsejson ! filesink location=" +
+                         folder.file("a") +
+                         " t. ! queue ! ellipsetrack detector=contours tracking=none ! ellipsejson "
+                         "! filesink location=" +
+                         folder.file("b")),
+            "");
+  EXPECT_EQ(read_ndjson(folder.file("a")).size(), 20U);
+  EXPECT_EQ(read_ndjson(folder.file("b")).size(), 20U);
+}
+
+TEST(Pipeline, LeaksNothing) {
+  // In a process of its own, because the tracer watches a whole process.
+  const TemporaryFolder folder;
+  const std::string log = folder.file("leaks.log");
+  const std::string command =
+      "GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log +
+      " gst-launch-1.0 -q ellipsetestsrc num-buffers=30 ! ellipsetrack overlay=ellipse+label ! "
+      "tee name=t t. ! queue ! ellipseoverlay ! fakesink t. ! queue ! ellipsejson ! fakesink";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  std::ifstream in(log);
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  EXPECT_NE(text.find("GST_TRACER"), std::string::npos);
+  EXPECT_EQ(text.find("object-alive, type-name=(string)Gst"), std::string::npos) << text;
+}
+
+TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
+  const char* folder_name = std::getenv("ELLIPSE_AIRLAB_DATA");
+  const char* evaluate = std::getenv("ELLIPSE_EVALUATE");
+  if (folder_name == nullptr || evaluate == nullptr || !std::filesystem::exists(folder_name)) {
+    GTEST_SKIP() << "the AirLab frames are not here: set ELLIPSE_AIRLAB_DATA to their folder";
+  }
+  const TemporaryFolder folder;
+  const std::string expected_file = folder.file("expected.ndjson");
+  const std::string command = std::string(evaluate) + " '" + folder_name + "' --frames " +
+                              expected_file + " > " + folder.file("tables.txt");
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto expected = read_ndjson(expected_file);
+
+  std::size_t next = 0;
+  while (next < expected.size()) {
+    // A run of frames named <sequence>/frame<number>.jpg.
+    const auto name_of = [&](std::size_t i) {
+      return std::string(json_object_get_string_member(object_of(expected[i]), "image"));
+    };
+    const std::string sequence = name_of(next).substr(0, name_of(next).find('/'));
+    const std::size_t first = next;
+    while (next < expected.size() && name_of(next).starts_with(sequence + "/")) ++next;
+    const int number = std::stoi(name_of(first).substr(name_of(first).find("frame") + 5));
+    const std::string found_file = folder.file(sequence);
+    ASSERT_EQ(run_pipeline("multifilesrc location=" + std::string(folder_name) + "/images/" +
+                           sequence + "/frame%04d.jpg start-index=" + std::to_string(number) +
+                           " stop-index=" + std::to_string(number + int(next - first) - 1) +
+                           " caps=image/jpeg,framerate=30/1 ! jpegdec ! videoconvert ! "
+                           "video/x-raw,format=GRAY8 ! ellipsetrack ! ellipsejson ! filesink "
+                           "location=" +
+                           found_file),
+              "");
+    const auto found = read_ndjson(found_file);
+    ASSERT_EQ(found.size(), next - first);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto target = ellipse_on(object_of(found[i]), "target");
+      JsonObject* line = object_of(expected[first + i]);
+      const bool is_expected = !json_object_get_null_member(line, "target");
+      ASSERT_EQ(target.has_value(), is_expected) << name_of(first + i);
+      if (!target) continue;
+      JsonArray* numbers = json_object_get_array_member(line, "target");
+      EXPECT_NEAR(target->cx, json_array_get_double_element(numbers, 0), 1e-3);
+      EXPECT_NEAR(target->semi_minor, json_array_get_double_element(numbers, 3), 1e-3);
+    }
+  }
+  EXPECT_EQ(next, expected.size());
+}
+
+}  // namespace

@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: MIT
+#include <gst/controller/controller.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::buffer_of;
+using support::BusTap;
+using support::caps_of;
+using support::gray_buffer_of;
+using support::info_of;
+using support::Owned;
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+const ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
+
+Picture ring_picture(int width = 320, int height = 240) {
+  return rendered(plain_ring(), kRing, width, height);
+}
+
+Owned<GstHarness> tracker(const std::string& settings = "",
+                          const std::string& caps = caps_of("GRAY8", 320, 240)) {
+  Owned<GstHarness> harness(gst_harness_new_parse(("ellipsetrack name=t " + settings).c_str()));
+  gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
+  return harness;
+}
+
+// The element itself: gst_harness_new_parse wraps it in a bin.
+GstElement* element_of(const Owned<GstHarness>& harness) {
+  GstElement* found = GST_IS_BIN(harness->element)
+                          ? gst_bin_get_by_name(GST_BIN(harness->element), "t")
+                          : GST_ELEMENT(gst_object_ref(harness->element));
+  gst_object_unref(found);  // the harness keeps it
+  return found;
+}
+
+Owned<GstBuffer> push(const Owned<GstHarness>& harness, Owned<GstBuffer> buffer) {
+  return Owned<GstBuffer>(gst_harness_push_and_pull(harness.get(), buffer.release()));
+}
+
+GstEllipseMeta* target_on(const Owned<GstBuffer>& buffer) {
+  return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
+}
+
+GstStructure* structure_property(GstElement* element, const char* name) {
+  GstStructure* structure = nullptr;
+  g_object_get(element, name, &structure, nullptr);
+  return structure;
+}
+
+guint64 stat(GstElement* element, const char* name) {
+  const Owned<GstStructure> stats(structure_property(element, "stats"));
+  guint64 value = 0;
+  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), name, &value)) << name;
+  return value;
+}
+
+TEST(EllipseTrack, AttachesTheTarget) {
+  const auto harness = tracker();
+  const auto out = push(harness, gray_buffer_of(ring_picture()));
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->cx, kRing.cx, 0.1);
+  EXPECT_NEAR(meta->cy, kRing.cy, 0.1);
+  EXPECT_NEAR(meta->semi_major, kRing.semi_major, 0.2);
+  EXPECT_NEAR(meta->semi_minor, kRing.semi_minor, 0.2);
+  EXPECT_NEAR(meta->angle_rad, kRing.angle_rad, 0.02);
+  EXPECT_EQ(meta->state, GST_ELLIPSE_STATE_DETECTED);
+  EXPECT_EQ(meta->id, 1U);
+  EXPECT_EQ(meta->frame_width, 320U);
+  EXPECT_EQ(meta->pts, 0U);
+  EXPECT_GT(meta->processing_time, 0U);
+  EXPECT_NEAR(meta->visible_fraction, 1.0, 1e-9);
+}
+
+TEST(EllipseTrack, AttachesNothingWhereNothingIs) {
+  const auto harness = tracker();
+  const auto out = push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  EXPECT_EQ(target_on(out), nullptr);
+}
+
+TEST(EllipseTrack, RoiMetaSurroundsTheTarget) {
+  const auto harness = tracker();
+  const auto out = push(harness, gray_buffer_of(ring_picture()));
+  const auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(
+      gst_buffer_get_meta(out.get(), GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE));
+  ASSERT_NE(roi, nullptr);
+  EXPECT_LE(roi->x, 103U);
+  EXPECT_GE(roi->x + roi->w, 197U);
+  EXPECT_LE(roi->y + roi->h, 240U);
+  const auto without = tracker("attach-roi-meta=false");
+  const auto bare = push(without, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(gst_buffer_get_meta(bare.get(), GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE), nullptr);
+}
+
+ellipse::Ellipse found_in(const std::string& format, int width) {
+  const auto harness = tracker("", caps_of(format, width, 240));
+  const auto out = push(harness, buffer_of(ring_picture(width, 240), info_of(format, width, 240)));
+  const GstEllipseMeta* meta = target_on(out);
+  if (meta == nullptr) return {};
+  return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
+}
+
+class Formats : public testing::TestWithParam<int> {};
+
+TEST_P(Formats, PlanarOnesGiveTheSameBitForBit) {
+  const ellipse::Ellipse gray = found_in("GRAY8", GetParam());
+  ASSERT_GT(gray.semi_major, 0.0);
+  for (const char* format : {"I420", "YV12", "NV12", "NV21", "NV16", "Y41B", "Y42B", "Y444"}) {
+    EXPECT_EQ(found_in(format, GetParam()), gray) << format;
+  }
+}
+
+TEST_P(Formats, PackedOnesGiveTheSameWithinRounding) {
+  const ellipse::Ellipse gray = found_in("GRAY8", GetParam());
+  for (const char* format : {"YUY2",
+                             "UYVY",
+                             "YVYU",
+                             "RGB",
+                             "BGR",
+                             "RGBx",
+                             "BGRx",
+                             "xRGB",
+                             "xBGR",
+                             "RGBA",
+                             "BGRA",
+                             "ARGB",
+                             "ABGR"}) {
+    const ellipse::Ellipse found = found_in(format, GetParam());
+    EXPECT_NEAR(found.cx, gray.cx, 0.1) << format;
+    EXPECT_NEAR(found.cy, gray.cy, 0.1) << format;
+    EXPECT_NEAR(found.semi_major, gray.semi_major, 0.1) << format;
+    EXPECT_NEAR(found.semi_minor, gray.semi_minor, 0.1) << format;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, Formats, testing::Values(320, 321, 322));
+
+TEST(EllipseTrack, HonoursStrideAndOffsetOfTheVideoMeta) {
+  // The picture lies 37 bytes into the buffer, its rows 400 bytes apart, noise between them.
+  const Picture picture = ring_picture(321, 240);
+  constexpr gsize kOffset = 37;
+  constexpr gint kStride = 400;
+  Owned<GstBuffer> buffer(gst_buffer_new_allocate(nullptr, kOffset + kStride * 240, nullptr));
+  gst_buffer_memset(buffer.get(), 0, 0xa5, kOffset + kStride * 240);
+  for (int y = 0; y < 240; ++y) {
+    gst_buffer_fill(buffer.get(),
+                    kOffset + static_cast<gsize>(kStride) * static_cast<gsize>(y),
+                    picture.view().row(y),
+                    321);
+  }
+  gsize offsets[GST_VIDEO_MAX_PLANES] = {kOffset};
+  gint strides[GST_VIDEO_MAX_PLANES] = {kStride};
+  gst_buffer_add_video_meta_full(buffer.get(),
+                                 GST_VIDEO_FRAME_FLAG_NONE,
+                                 GST_VIDEO_FORMAT_GRAY8,
+                                 321,
+                                 240,
+                                 1,
+                                 offsets,
+                                 strides);
+  const auto harness = tracker("", caps_of("GRAY8", 321, 240));
+  const auto out = push(harness, std::move(buffer));
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_EQ(meta->cx, found_in("GRAY8", 321).cx);
+}
+
+TEST(EllipseTrack, SharedPixelsStayTheSameMemory) {
+  const auto harness = tracker();
+  auto buffer = gray_buffer_of(ring_picture());
+  GstBuffer* shared = gst_buffer_ref(buffer.get());  // as after a tee
+  GstMemory* memory = gst_buffer_peek_memory(shared, 0);
+  const auto out = push(harness, std::move(buffer));
+  EXPECT_NE(out.get(), shared);
+  EXPECT_NE(target_on(out), nullptr);
+  EXPECT_EQ(gst_buffer_peek_memory(out.get(), 0), memory);
+  EXPECT_EQ(gst_buffer_get_ellipse_meta(shared, GST_ELLIPSE_ROLE_TARGET), nullptr);
+  gst_buffer_unref(shared);
+}
+
+TEST(EllipseTrack, DrawsOnACopyOfSharedPixels) {
+  const auto harness = tracker("overlay=ellipse");
+  auto buffer = gray_buffer_of(ring_picture());
+  Owned<GstBuffer> shared(gst_buffer_ref(buffer.get()));
+  const auto out = push(harness, std::move(buffer));
+  const auto untouched = gray_buffer_of(ring_picture());
+  GstMapInfo before;
+  GstMapInfo kept;
+  GstMapInfo drawn;
+  gst_buffer_map(untouched.get(), &before, GST_MAP_READ);
+  gst_buffer_map(shared.get(), &kept, GST_MAP_READ);
+  gst_buffer_map(out.get(), &drawn, GST_MAP_READ);
+  EXPECT_EQ(std::memcmp(before.data, kept.data, before.size), 0);
+  EXPECT_NE(std::memcmp(before.data, drawn.data, before.size), 0);
+  gst_buffer_unmap(untouched.get(), &before);
+  gst_buffer_unmap(shared.get(), &kept);
+  gst_buffer_unmap(out.get(), &drawn);
+}
+
+TEST(EllipseTrack, AnalysesEveryNthFrame) {
+  const auto harness = tracker("interval=3");
+  std::string pattern;
+  for (int i = 0; i < 7; ++i) {
+    pattern += target_on(push(harness, gray_buffer_of(ring_picture()))) != nullptr ? 'x' : '.';
+  }
+  EXPECT_EQ(pattern, "x..x..x");
+  EXPECT_EQ(stat(element_of(harness), "analysed"), 3U);
+  EXPECT_EQ(stat(element_of(harness), "skipped"), 4U);
+  EXPECT_EQ(stat(element_of(harness), "frames"), 7U);
+}
+
+TEST(EllipseTrack, LatenessSkipsTheAnalysisNotTheFrame) {
+  const auto harness = tracker();
+  push(harness, gray_buffer_of(ring_picture()));
+  gst_harness_push_upstream_event(
+      harness.get(),
+      gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW, 0.5, 40 * GST_MSECOND, 20 * GST_MSECOND));
+  auto late = gray_buffer_of(ring_picture());
+  GST_BUFFER_PTS(late.get()) = 50 * GST_MSECOND;
+  EXPECT_EQ(target_on(push(harness, std::move(late))), nullptr);
+  auto on_time = gray_buffer_of(ring_picture());
+  GST_BUFFER_PTS(on_time.get()) = 120 * GST_MSECOND;
+  EXPECT_NE(target_on(push(harness, std::move(on_time))), nullptr);
+  EXPECT_EQ(stat(element_of(harness), "skipped"), 1U);
+}
+
+TEST(EllipseTrack, PropertiesChangeWhilePlaying) {
+  const auto harness = tracker();
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+  g_object_set(element_of(harness), "max-axis", 20.0, nullptr);
+  EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+  g_object_set(element_of(harness), "max-axis", 700.0, nullptr);
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+}
+
+TEST(EllipseTrack, RefusesAPairTheWrongWayRoundAndSaysSo) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  BusTap bus(element);
+  g_object_set(element, "min-axis", 800.0, nullptr);
+  double kept = 0.0;
+  g_object_get(element, "min-axis", &kept, nullptr);
+  EXPECT_EQ(kept, 5.0);
+  const auto warning = bus.pop(GST_MESSAGE_WARNING);
+  ASSERT_TRUE(warning);
+  GError* error = nullptr;
+  gst_message_parse_warning(warning.get(), &error, nullptr);
+  EXPECT_NE(std::string(error->message).find("max-axis"), std::string::npos) << error->message;
+  g_error_free(error);
+}
+
+TEST(EllipseTrack, NaNChangesNothing) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  for (const char* name : {"roi-expansion", "detect-contour-overlap", "edge-high", "max-axis"}) {
+    double before = 0.0;
+    double after = 0.0;
+    g_object_get(element, name, &before, nullptr);
+    g_object_set(element, name, std::nan(""), nullptr);  // GLib warns and names the property
+    g_object_get(element, name, &after, nullptr);
+    EXPECT_EQ(before, after) << name;
+  }
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+}
+
+TEST(EllipseTrack, ExtremeSettingsPass) {
+  const auto harness = tracker(
+      "max-scale=128 roi-expansion=10 min-contour-size=5 max-axis-ratio=100 min-axis=1 "
+      "max-axis=32768 min-target-size=1 max-target-size=1 track-contour-overlap=0.0001");
+  for (int i = 0; i < 20; ++i) push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(stat(element_of(harness), "frames"), 20U);
+}
+
+TEST(EllipseTrack, FollowsAController) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  GstControlSource* source = gst_interpolation_control_source_new();
+  g_object_set(source, "mode", GST_INTERPOLATION_MODE_NONE, nullptr);
+  gst_object_add_control_binding(
+      GST_OBJECT(element),
+      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "max-axis", source));
+  auto* values = GST_TIMED_VALUE_CONTROL_SOURCE(source);
+  gst_timed_value_control_source_set(values, 0, 700.0);
+  gst_timed_value_control_source_set(values, GST_SECOND, 20.0);
+  gst_object_unref(source);
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+  auto later = gray_buffer_of(ring_picture());
+  GST_BUFFER_PTS(later.get()) = 2 * GST_SECOND;
+  EXPECT_EQ(target_on(push(harness, std::move(later))), nullptr);
+}
+
+TEST(EllipseTrack, PostsAMessageOnChange) {
+  const auto harness = tracker();
+  BusTap bus(element_of(harness));
+  push(harness, gray_buffer_of(ring_picture()));
+  const auto detected = bus.pop(GST_MESSAGE_ELEMENT);
+  ASSERT_TRUE(detected);
+  const GstStructure* s = gst_message_get_structure(detected.get());
+  EXPECT_TRUE(gst_structure_has_name(s, "ellipse"));
+  EXPECT_STREQ(gst_structure_get_string(s, "state"), "detected");
+  for (const char* field : {"timestamp", "stream-time", "running-time", "duration"}) {
+    EXPECT_TRUE(gst_structure_has_field_typed(s, field, G_TYPE_UINT64)) << field;
+  }
+  EXPECT_TRUE(gst_structure_has_field_typed(s, "cx", G_TYPE_DOUBLE));
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_STREQ(gst_structure_get_string(
+                   gst_message_get_structure(bus.pop(GST_MESSAGE_ELEMENT).get()), "state"),
+               "tracked");
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_FALSE(bus.pop(GST_MESSAGE_ELEMENT));
+  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  const auto lost = bus.pop(GST_MESSAGE_ELEMENT);
+  ASSERT_TRUE(lost);
+  EXPECT_STREQ(gst_structure_get_string(gst_message_get_structure(lost.get()), "state"), "lost");
+}
+
+TEST(EllipseTrack, MessagesComeEveryFrameOrNever) {
+  const auto count = [](const char* setting) {
+    const auto harness = tracker(setting);
+    BusTap bus(element_of(harness));
+    for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
+    int messages = 0;
+    while (bus.pop(GST_MESSAGE_ELEMENT)) ++messages;
+    return messages;
+  };
+  EXPECT_EQ(count("messages=every-frame"), 4);
+  EXPECT_EQ(count("messages=none"), 0);
+}
+
+TEST(EllipseTrack, SignalsAcquisitionAndLoss) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  std::string heard;
+  g_signal_connect(element,
+                   "target-acquired",
+                   G_CALLBACK(+[](GstElement*, GstStructure* target, std::string* to) {
+                     *to += gst_structure_has_field(target, "cx") ? '+' : '?';
+                   }),
+                   &heard);
+  g_signal_connect(element,
+                   "target-lost",
+                   G_CALLBACK(+[](GstElement*, std::string* to) { *to += '-'; }),
+                   &heard);
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(heard, "+-+");
+}
+
+TEST(EllipseTrack, ResetStartsOver) {
+  const auto harness = tracker();
+  push(harness, gray_buffer_of(ring_picture()));
+  g_signal_emit_by_name(element_of(harness), "reset");
+  const auto out = push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(target_on(out)->state, GST_ELLIPSE_STATE_DETECTED);
+  EXPECT_EQ(target_on(out)->id, 2U);
+}
+
+TEST(EllipseTrack, TargetAndStatsAreReadable) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  EXPECT_EQ(structure_property(element, "target"), nullptr);
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(ring_picture()));
+  const Owned<GstStructure> target(structure_property(element, "target"));
+  ASSERT_TRUE(target);
+  EXPECT_STREQ(gst_structure_get_string(target.get(), "state"), "tracked");
+  EXPECT_EQ(stat(element, "detected"), 1U);
+  EXPECT_EQ(stat(element, "tracked"), 1U);
+  EXPECT_GT(stat(element, "processing-time-median"), 0U);
+  EXPECT_GE(stat(element, "processing-time-p99"), stat(element, "processing-time-median"));
+  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  EXPECT_EQ(structure_property(element, "target"), nullptr);
+  EXPECT_EQ(stat(element, "lost"), 1U);
+}
+
+TEST(EllipseTrack, CapsMayChangeAtAnyBuffer) {
+  const auto harness = tracker();
+  for (const char* format : {"I420", "BGR", "GRAY8", "YUY2"}) {
+    for (const int width : {320, 91, 322}) {
+      const std::string caps = caps_of(format, width, 240);
+      gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
+      const auto out =
+          push(harness, buffer_of(ring_picture(width, 240), info_of(format, width, 240)));
+      ASSERT_TRUE(out);
+      EXPECT_EQ(target_on(out) != nullptr, width > 91) << format << width;
+    }
+  }
+}
+
+TEST(EllipseTrack, UnsupportedCapsFailNegotiation) {
+  for (const char* format : {"GRAY16_LE", "RGB16", "v210", "P010_10LE"}) {
+    const std::string error = support::run_pipeline(
+        "videotestsrc num-buffers=1 ! video/x-raw,format=" + std::string(format) +
+        " ! ellipsetrack ! fakesink");
+    EXPECT_FALSE(error.empty()) << format;
+  }
+}
+
+TEST(EllipseTrack, TakesFramesOfAnySize) {
+  for (const int width : {1, 2, 3, 7, 33}) {
+    for (const int height : {1, 2, 5, 34}) {
+      for (const char* format : {"GRAY8", "I420", "YUY2", "BGR"}) {
+        const auto harness = tracker("overlay=ellipse+label", caps_of(format, width, height));
+        const auto out =
+            push(harness, buffer_of(Picture(width, height, 200), info_of(format, width, height)));
+        EXPECT_TRUE(out) << width << 'x' << height << format;
+      }
+    }
+  }
+}
+
+TEST(EllipseTrack, ABufferTooSmallForItsCapsPasses) {
+  const auto harness = tracker();
+  BusTap bus(element_of(harness));
+  Owned<GstBuffer> small(gst_buffer_new_allocate(nullptr, 100, nullptr));
+  EXPECT_TRUE(push(harness, std::move(small)));
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+}
+
+TEST(EllipseTrack, FlushStartsOver) {
+  const auto harness = tracker();
+  push(harness, gray_buffer_of(ring_picture()));
+  gst_harness_push_event(harness.get(), gst_event_new_flush_start());
+  gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+  const auto out = push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(target_on(out)->state, GST_ELLIPSE_STATE_DETECTED);
+}
+
+TEST(EllipseTrack, BuffersWithoutTimePass) {
+  const auto harness = tracker("messages=every-frame");
+  auto buffer = gray_buffer_of(ring_picture());
+  GST_BUFFER_PTS(buffer.get()) = GST_CLOCK_TIME_NONE;
+  GST_BUFFER_DURATION(buffer.get()) = GST_CLOCK_TIME_NONE;
+  const auto out = push(harness, std::move(buffer));
+  ASSERT_NE(target_on(out), nullptr);
+  EXPECT_EQ(target_on(out)->pts, GST_CLOCK_TIME_NONE);
+}
+
+TEST(EllipseTrack, OffersVideoMetaUpstream) {
+  const auto harness = tracker();
+  GstCaps* caps = gst_caps_from_string(caps_of("GRAY8", 320, 240).c_str());
+  GstQuery* query = gst_query_new_allocation(caps, FALSE);
+  GstPad* sink = gst_element_get_static_pad(element_of(harness), "sink");
+  EXPECT_TRUE(gst_pad_query(sink, query));
+  EXPECT_TRUE(gst_query_find_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr));
+  gst_object_unref(sink);
+  gst_query_unref(query);
+  gst_caps_unref(caps);
+}
+
+TEST(EllipseTrack, HasThePapersPreset) {
+  const auto harness = tracker("detect-contour-overlap=0.5 min-axis=9");
+  GstElement* element = element_of(harness);
+  ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Keipour 2021"));
+  double overlap = 0.0;
+  double min_axis = 0.0;
+  guint max_scale = 0;
+  g_object_get(element,
+               "detect-contour-overlap",
+               &overlap,
+               "min-axis",
+               &min_axis,
+               "max-scale",
+               &max_scale,
+               nullptr);
+  EXPECT_EQ(overlap, 0.95);
+  EXPECT_EQ(min_axis, 5.0);
+  EXPECT_EQ(max_scale, 100U);
+}
+
+}  // namespace
