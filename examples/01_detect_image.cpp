@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// The core alone, without GStreamer: which ellipses does a picture show, and which is the target?
+//   ./01_detect_image picture.jpg
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/contour_detector.hpp"
+#include "core/target_selection.hpp"
+
+int main(int argc, char** argv) {
+  const cv::Mat picture = argc == 2 ? cv::imread(argv[1], cv::IMREAD_GRAYSCALE) : cv::Mat();
+  if (picture.empty()) {
+    std::fprintf(stderr, "usage: %s PICTURE\n", argv[0]);
+    return 1;
+  }
+  ellipse::ContourDetector detector;
+  const auto found = detector.detect(
+      {picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)},
+      ellipse::Thresholds{});
+  for (const ellipse::Detection& d : found) {
+    std::printf("centre (%.2f, %.2f) semi-axes %.2f, %.2f angle %.3f rad\n",
+                d.ellipse.cx,
+                d.ellipse.cy,
+                d.ellipse.semi_major,
+                d.ellipse.semi_minor,
+                d.ellipse.angle_rad);
+  }
+  if (const auto target = ellipse::select_target(found)) {
+    std::printf("target: centre (%.2f, %.2f)\n", target->ellipse.cx, target->ellipse.cy);
+  }
+  return 0;
+}

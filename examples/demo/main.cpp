@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+//
+// ellipse-demo: runs the tracker over a test scene, a file, pictures, a camera or a URI, and writes
+// the annotated video, the NDJSON and a contact sheet.
+#include <gst/app/app.h>
+#include <gst/gst.h>
+#include <gst/video/video.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCameraFrames = 300;
+constexpr int kSheetColumns = 4;
+constexpr int kSheetRows = 3;
+constexpr int kThumbnailWidth = 480;
+
+struct Options {
+  std::string input;
+  std::string output = "out";
+  int frames = 0;  // 0 = all that there are; a camera and the test scene have no end
+};
+
+std::string quoted(const std::string& text) {
+  gchar* escaped = g_strescape(text.c_str(), nullptr);
+  std::string result = "\"" + std::string(escaped) + "\"";
+  g_free(escaped);
+  return result;
+}
+
+// The number of the first picture of a printf pattern such as frame%04d.jpg.
+int first_index(const std::string& pattern) {
+  constexpr int kMostTried = 100'000;
+  for (int i = 0; i < kMostTried; ++i) {
+    const int length = std::snprintf(nullptr, 0, pattern.c_str(), i);
+    std::string name(static_cast<std::size_t>(length), '\0');
+    std::snprintf(name.data(), name.size() + 1, pattern.c_str(), i);
+    if (fs::exists(name)) return i;
+  }
+  throw std::runtime_error("there is no such picture");
+}
+
+// A pattern with exactly one number in it, so that it is safe to print with.
+bool is_picture_pattern(const std::string& input) {
+  const std::size_t percent = input.find('%');
+  if (percent == std::string::npos || input.find('%', percent + 1) != std::string::npos) {
+    return false;
+  }
+  const std::size_t end = input.find_first_not_of("0123456789", percent + 1);
+  return end != std::string::npos && input[end] == 'd';
+}
+
+std::string picture_source(const std::string& pattern) {
+  const std::string extension = fs::path(pattern).extension().string();
+  const bool is_png = extension == ".png" || extension == ".PNG";
+  return "multifilesrc location=" + quoted(pattern) +
+         " start-index=" + std::to_string(first_index(pattern)) +
+         " caps=" + (is_png ? "image/png" : "image/jpeg") + ",framerate=30/1 ! " +
+         (is_png ? "pngdec" : "jpegdec");
+}
+
+std::string uri_source(const std::string& uri) {
+  return "uridecodebin uri=" + quoted(uri) + " caps=video/x-raw expose-all-streams=false";
+}
+
+std::string source_for(const Options& options) {
+  const std::string& input = options.input;
+  if (input.empty()) {
+    return "ellipsetestsrc num-buffers=" +
+           std::to_string(options.frames > 0 ? options.frames : 600);
+  }
+  if (input.starts_with("/dev/")) {
+    if (!fs::exists(input)) throw std::runtime_error("there is no such camera");
+    return "v4l2src device=" + quoted(input) +
+           " num-buffers=" + std::to_string(options.frames > 0 ? options.frames : kCameraFrames) +
+           " ! decodebin";
+  }
+  if (is_picture_pattern(input)) return picture_source(input);
+  if (input.find("://") != std::string::npos) return uri_source(input);
+  if (!fs::is_regular_file(input)) throw std::runtime_error("there is no such file");
+  gchar* uri = gst_filename_to_uri(input.c_str(), nullptr);
+  const std::string source = uri_source(uri);
+  g_free(uri);
+  return source;
+}
+
+// Some dozen frames, evenly spread over a stream whose length is not known beforehand.
+class ContactSheet {
+ public:
+  void add(const cv::Mat& frame) {
+    if (seen_++ % step_ != 0) return;
+    cv::Mat thumbnail;
+    const double scale = static_cast<double>(kThumbnailWidth) / frame.cols;
+    cv::resize(frame, thumbnail, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    if (!thumbnails_.empty() && thumbnails_.front().size() != thumbnail.size()) return;
+    thumbnails_.push_back(thumbnail);
+    if (thumbnails_.size() < 2 * kSheetColumns * kSheetRows) return;
+    for (std::size_t i = 0; i < thumbnails_.size() / 2; ++i) thumbnails_[i] = thumbnails_[2 * i];
+    thumbnails_.resize(thumbnails_.size() / 2);
+    step_ *= 2;
+  }
+
+  void write(const fs::path& file) const {
+    if (thumbnails_.empty()) return;
+    const std::size_t wanted = kSheetColumns * kSheetRows;
+    const cv::Size size = thumbnails_.front().size();
+    cv::Mat sheet = cv::Mat::zeros(kSheetRows * size.height, kSheetColumns * size.width, CV_8UC3);
+    for (std::size_t i = 0; i < std::min(wanted, thumbnails_.size()); ++i) {
+      const std::size_t from =
+          thumbnails_.size() <= wanted ? i : i * (thumbnails_.size() - 1) / (wanted - 1);
+      const int column = static_cast<int>(i) % kSheetColumns;
+      const int row = static_cast<int>(i) / kSheetColumns;
+      thumbnails_[from].copyTo(sheet({{column * size.width, row * size.height}, size}));
+    }
+    if (!cv::imwrite(file.string(), sheet)) {
+      throw std::runtime_error(file.string() + " cannot be written");
+    }
+  }
+
+  [[nodiscard]] std::size_t seen() const { return seen_; }
+
+ private:
+  std::vector<cv::Mat> thumbnails_;
+  std::size_t seen_ = 0;
+  std::size_t step_ = 1;
+};
+
+class Demo {
+ public:
+  explicit Demo(const Options& options) : options_(options) {
+    fs::create_directories(options.output);
+    const fs::path folder = options.output;
+    const std::string description =
+        source_for(options) +
+        " ! videoconvert ! ellipsetrack name=track ! tee name=analysed "
+        "analysed. ! queue ! ellipseoverlay overlay=ellipse+centre+label ! videoconvert "
+        "! tee name=drawn "
+        "drawn. ! queue ! videoconvert ! jpegenc ! matroskamux ! filesink location=" +
+        quoted(folder / "annotated.mkv") +
+        " drawn. ! queue ! videoconvert ! video/x-raw,format=BGR ! appsink name=frames sync=false "
+        "analysed. ! queue ! ellipsejson ! filesink location=" +
+        quoted(folder / "targets.ndjson");
+    GError* error = nullptr;
+    pipeline_ = gst_parse_launch(description.c_str(), &error);
+    if (error != nullptr) {
+      const std::string message = error->message;
+      g_error_free(error);
+      throw std::runtime_error(message);
+    }
+  }
+
+  ~Demo() {
+    gst_element_set_state(pipeline_, GST_STATE_NULL);
+    gst_object_unref(pipeline_);
+  }
+
+  Demo(const Demo&) = delete;
+  Demo& operator=(const Demo&) = delete;
+
+  void run() {
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+    GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline_), "frames");
+    const bool is_terminal = isatty(STDERR_FILENO) != 0;
+    while (GstSample* sample = next_sample(GST_APP_SINK(sink))) {
+      keep(sample);
+      gst_sample_unref(sample);
+      if (is_terminal && sheet_.seen() % 10 == 0) {
+        std::fprintf(stderr, "\r%zu frames", sheet_.seen());
+      }
+      if (options_.frames > 0 && sheet_.seen() == static_cast<std::size_t>(options_.frames)) {
+        gst_element_send_event(pipeline_, gst_event_new_eos());
+      }
+    }
+    if (is_terminal) std::fprintf(stderr, "\r\033[K");
+    gst_object_unref(sink);
+    await_end();
+    sheet_.write(fs::path(options_.output) / "contact_sheet.png");
+    if (sheet_.seen() == 0) throw std::runtime_error("it holds no picture");
+  }
+
+  void print_summary() const {
+    GstElement* track = gst_bin_get_by_name(GST_BIN(pipeline_), "track");
+    GstStructure* stats = nullptr;
+    g_object_get(track, "stats", &stats, nullptr);
+    const auto number = [&](const char* name) {
+      guint64 value = 0;
+      gst_structure_get_uint64(stats, name, &value);
+      return value;
+    };
+    const guint64 frames = number("analysed");
+    const guint64 found = number("detected") + number("tracked");
+    std::printf("frames                %8" G_GUINT64_FORMAT "\n", frames);
+    std::printf(
+        "with target           %8" G_GUINT64_FORMAT " (%.1f %%)\n",
+        found,
+        frames > 0 ? 100.0 * static_cast<double>(found) / static_cast<double>(frames) : 0.0);
+    std::printf("  of them tracked     %8" G_GUINT64_FORMAT "\n", number("tracked"));
+    std::printf("processing time       %8.3f ms median, %.3f ms p99\n",
+                static_cast<double>(number("processing-time-median")) * 1e-6,
+                static_cast<double>(number("processing-time-p99")) * 1e-6);
+    std::printf("written to %s: annotated.mkv, targets.ndjson, contact_sheet.png\n",
+                options_.output.c_str());
+    gst_structure_free(stats);
+    gst_object_unref(track);
+  }
+
+ private:
+  // Waits for a frame, but no longer than the pipeline lives. NULL at its end.
+  GstSample* next_sample(GstAppSink* sink) {
+    constexpr GstClockTime kGlance = 100 * GST_MSECOND;
+    GstBus* bus = gst_element_get_bus(pipeline_);
+    GstSample* sample = nullptr;
+    while (sample == nullptr && !gst_app_sink_is_eos(sink)) {
+      sample = gst_app_sink_try_pull_sample(sink, kGlance);
+      if (GstMessage* error = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+        gst_object_unref(bus);
+        if (sample != nullptr) gst_sample_unref(sample);
+        fail(error);
+      }
+    }
+    gst_object_unref(bus);
+    return sample;
+  }
+
+  [[noreturn]] void fail(GstMessage* message) const {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    const std::string text = error->message;
+    g_error_free(error);
+    gst_message_unref(message);
+    throw std::runtime_error(text);
+  }
+
+  void await_end() {
+    GstBus* bus = gst_element_get_bus(pipeline_);
+    GstMessage* message = gst_bus_timed_pop_filtered(
+        bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    gst_object_unref(bus);
+    if (message == nullptr) throw std::runtime_error("the pipeline does not end");
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) fail(message);
+    gst_message_unref(message);
+  }
+
+  void keep(GstSample* sample) {
+    GstVideoInfo info;
+    GstVideoFrame frame;
+    if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
+        !gst_video_frame_map(&frame, &info, gst_sample_get_buffer(sample), GST_MAP_READ)) {
+      return;
+    }
+    sheet_.add(cv::Mat(GST_VIDEO_FRAME_HEIGHT(&frame),
+                       GST_VIDEO_FRAME_WIDTH(&frame),
+                       CV_8UC3,
+                       GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
+                       static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0))));
+    gst_video_frame_unmap(&frame);
+  }
+
+  Options options_;
+  GstElement* pipeline_ = nullptr;
+  ContactSheet sheet_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  Options options;
+  CLI::App app{"Runs the ellipse tracker and shows what it found."};
+  app.name("ellipse-demo");
+  app.add_option("INPUT", options.input, "A file, frame%04d.jpg, /dev/video0 or a URI; or nothing");
+  app.add_option("--out", options.output, "Folder for the results")->capture_default_str();
+  app.add_option("--frames", options.frames, "Stop after so many frames");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    Demo demo(options);
+    demo.run();
+    demo.print_summary();
+  } catch (const std::exception& error) {
+    const std::string what = options.input.empty() ? "the test scene" : options.input;
+    std::cerr << "ellipse-demo: " << what << ": " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
