@@ -17,7 +17,7 @@ namespace {
 constexpr double kSmoothingPx = 1.0;
 constexpr double kNoiseQuantile = 0.3;
 constexpr double kHighOverNoise = 5.0;
-constexpr double kLowOverHigh = 0.5;
+constexpr double kLowOverHigh = 0.4;
 constexpr double kLeastHigh = 1.0;  // [grey levels / px], above the steps of rounding
 
 // Between the gradient and the normal of an ellipse whose edge it is: 30 degrees.

@@ -68,26 +68,17 @@ bool is_better(const Detection& a, const Detection& b) {
                                             : a.ellipse.semi_major > b.ellipse.semi_major;
 }
 
-Detection outermost(const Detection& seed,
-                    const ConcentricSet& set,
-                    std::span<const Detection> detections) {
-  const Detection* result = nullptr;
-  for (const Detection& member : detections) {
-    if (!are_concentric(seed.ellipse, member.ellipse)) continue;
-    if (member.score < kLeastShareOfBestScore * set.best_score) continue;
-    if (result == nullptr || is_better(member, *result)) result = &member;
-  }
-  return result != nullptr ? *result : seed;
-}
-
 }  // namespace
 
 std::optional<Detection> select_target(std::span<const Detection> detections,
                                        const std::optional<Ellipse>& last_target) {
+  const auto is_possible = [&](const Detection& detection) {
+    return !last_target || can_be_same_target(detection.ellipse, *last_target);
+  };
   const Detection* seed = nullptr;
   ConcentricSet best;
   for (const Detection& detection : detections) {
-    if (last_target && !can_be_same_target(detection.ellipse, *last_target)) continue;
+    if (!is_possible(detection)) continue;
     const ConcentricSet set = set_around(detection, detections);
     if (seed == nullptr || best < set) {
       seed = &detection;
@@ -95,7 +86,16 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
     }
   }
   if (seed == nullptr) return std::nullopt;
-  return outermost(*seed, best, detections);
+
+  const Detection* target = seed;
+  for (const Detection& member : detections) {
+    const bool counts = is_possible(member) && are_concentric(seed->ellipse, member.ellipse) &&
+                        member.score >= kLeastShareOfBestScore * best.best_score;
+    if (!counts) continue;
+    const bool seed_counts = target->score >= kLeastShareOfBestScore * best.best_score;
+    if (!seed_counts || is_better(member, *target)) target = &member;
+  }
+  return *target;
 }
 
 }  // namespace ellipse

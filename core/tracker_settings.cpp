@@ -89,7 +89,7 @@ const std::array kSettings = {
         "roi-expansion",
         kRoiExpansionRange,
         true,
-        "Width and height of the search region over those of the target's box"),
+        "Search region: the target's box and (this - 1) semi-major axes more on every side"),
     setting<kLimits, &Thresholds::edge_low>(
         "edge-low",
         kEdgeRange,
@@ -127,6 +127,9 @@ double number(std::string_view name, std::string_view text) {
 void TrackerSettings::validate() const {
   for (const SettingInfo& info : kSettings) check_range(info.name, info.get(*this), info.range);
   check_range("max-axis", limits.max_axis_px, {limits.min_axis_px, kAxisRangePx.max});
+  check_range("edge-low",
+              limits.edge_low,
+              {0.0, limits.edge_high > 0.0 ? limits.edge_high : kEdgeRange.max});
   check_range("max-target-size", max_target_size_px, {min_target_size_px, kAxisRangePx.max});
   limits.validate();
 }

@@ -27,7 +27,7 @@ struct TrackerSettings {
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
   int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.
-  double roi_expansion = 2.0;         ///< Region of interest over the target's box, 1 to 10.
+  double roi_expansion = 2.0;         ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
 
   /// Throws std::invalid_argument that names the field.
   void validate() const;

@@ -159,41 +159,38 @@ static const gchar* state_nick(const std::optional<ellipse::Target>& target) {
 
 /* Properties */
 
-// Refuses what does not fit together, names it, and keeps the old values.
-static void apply_tracker_settings(GstEllipseTrack* self, const ellipse::TrackerSettings& wanted) {
-  try {
-    wanted.validate();
-    GST_OBJECT_LOCK(self);
-    self->settings->tracker = wanted;
-    GST_OBJECT_UNLOCK(self);
-  } catch (const std::exception& error) {
-    GST_ELEMENT_WARNING(
-        self, LIBRARY, SETTINGS, ("Setting refused: %s", error.what()), ("the old value stays"));
-  }
-}
-
-static ellipse::TrackerSettings tracker_settings(GstEllipseTrack* self) {
-  GST_OBJECT_LOCK(self);
-  const ellipse::TrackerSettings settings = self->settings->tracker;
-  GST_OBJECT_UNLOCK(self);
-  return settings;
-}
-
 static double number_of(const GValue* value, bool is_integer) {
   return is_integer ? g_value_get_uint(value) : g_value_get_double(value);
 }
 
-static void set_tracker_property(GstEllipseTrack* self, guint id, const GValue* value) {
-  ellipse::TrackerSettings wanted = tracker_settings(self);
+static void change(ellipse::TrackerSettings& settings, guint id, const GValue* value) {
   if (id == PROP_DETECTOR) {
-    wanted.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
+    settings.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
   } else if (id == PROP_TRACKING) {
-    wanted.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
+    settings.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
   } else {
     const ellipse::SettingInfo& info = ellipse::setting_infos()[id - PROP_FIRST_SETTING];
-    info.set(wanted, number_of(value, info.is_integer));
+    info.set(settings, number_of(value, info.is_integer));
   }
-  apply_tracker_settings(self, wanted);
+}
+
+// Refuses what does not fit together, names it, and keeps the old value.
+static void set_tracker_property(GstEllipseTrack* self, guint id, const GValue* value) {
+  std::string refusal;
+  GST_OBJECT_LOCK(self);
+  ellipse::TrackerSettings wanted = self->settings->tracker;
+  try {
+    change(wanted, id, value);
+    wanted.validate();
+    self->settings->tracker = wanted;
+  } catch (const std::exception& error) {
+    refusal = error.what();
+  }
+  GST_OBJECT_UNLOCK(self);
+  if (refusal.empty()) return;
+  g_warning("%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
+  GST_ELEMENT_WARNING(
+      self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
 }
 
 static void gst_ellipse_track_set_property(GObject* object,
@@ -283,10 +280,10 @@ static void gst_ellipse_track_get_property(GObject* object,
 
 /* What goes out with a frame */
 
-static void attach_ellipse_meta(GstBuffer* buffer,
-                                const ellipse::Target& target,
-                                const GstVideoInfo& info,
-                                GstClockTime processing_time) {
+static const GstEllipseMeta* attach_ellipse_meta(GstBuffer* buffer,
+                                                 const ellipse::Target& target,
+                                                 const GstVideoInfo& info,
+                                                 GstClockTime processing_time) {
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
   meta->state = static_cast<GstEllipseState>(target.state);
   meta->id = target.id;
@@ -307,6 +304,7 @@ static void attach_ellipse_meta(GstBuffer* buffer,
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
   meta->pts = GST_BUFFER_PTS(buffer);
   meta->processing_time = processing_time;
+  return meta;
 }
 
 // The standard metadata for a region of interest: the target's upright box inside the frame.
@@ -357,15 +355,16 @@ static void emit_change(GstEllipseTrack* self,
   if (now && !is_same_target) g_signal_emit(self, signals[SIGNAL_TARGET_ACQUIRED], 0, details);
 }
 
-static void publish(GstEllipseTrack* self,
-                    GstBuffer* buffer,
-                    const Settings& settings,
-                    const std::optional<ellipse::Target>& target,
-                    GstClockTime processing_time) {
+// @return The metadata of the target, owned by the buffer; nullptr where there is none.
+static const GstEllipseMeta* publish(GstEllipseTrack* self,
+                                     GstBuffer* buffer,
+                                     const Settings& settings,
+                                     const std::optional<ellipse::Target>& target,
+                                     GstClockTime processing_time) {
+  const GstEllipseMeta* meta = nullptr;
   GstStructure* details = nullptr;
   if (target) {
-    attach_ellipse_meta(buffer, *target, GST_VIDEO_FILTER(self)->in_info, processing_time);
-    const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+    meta = attach_ellipse_meta(buffer, *target, GST_VIDEO_FILTER(self)->in_info, processing_time);
     if (settings.attach_roi_meta) attach_roi_meta(buffer, meta);
     details = gst_ellipse_meta_to_structure(meta);
   }
@@ -386,6 +385,7 @@ static void publish(GstEllipseTrack* self,
   }
   emit_change(self, before, target, details);
   gst_clear_structure(&details);
+  return meta;
 }
 
 /* Streaming */
@@ -421,11 +421,6 @@ static void skip(GstEllipseTrack* self) {
   GST_OBJECT_UNLOCK(self);
 }
 
-static void draw_target(GstVideoFrame& frame, const OverlayStyle& style) {
-  GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(frame.buffer, GST_ELLIPSE_ROLE_TARGET);
-  if (meta != nullptr) draw_overlay(frame, *meta, style);
-}
-
 static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const Settings& settings) {
   const bool draws = settings.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
   MappedFrame mapped(
@@ -440,8 +435,9 @@ static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const Settings& se
   tracker.configure(settings.tracker);
   const auto target =
       tracker.process(pixel_view_of(mapped.frame()), static_cast<gint64>(GST_BUFFER_PTS(buffer)));
-  publish(self, buffer, settings, target, gst_util_get_timestamp() - start);
-  if (draws) draw_target(mapped.frame(), settings.overlay);
+  const GstEllipseMeta* meta =
+      publish(self, buffer, settings, target, gst_util_get_timestamp() - start);
+  if (draws && meta != nullptr) draw_overlay(mapped.frame(), *meta, settings.overlay);
 }
 
 static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
@@ -461,6 +457,7 @@ static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstB
   } catch (const std::exception& error) {
     GST_ELEMENT_WARNING(
         self, STREAM, FAILED, ("A frame could not be analysed: %s", error.what()), ("it passes"));
+    skip(self);
   }
   return GST_FLOW_OK;
 }

@@ -231,7 +231,7 @@ std::string label_of(const GstEllipseMeta& meta) {
 // Below the ellipse, or wherever in the frame there is room for it, on a dark rim.
 void draw_label(GstVideoFrame& frame, const GstEllipseMeta& meta, const OverlayStyle& style) {
   const int height = GST_VIDEO_FRAME_HEIGHT(&frame);
-  const double size = std::clamp(height / 800.0, 0.35, 2.5);
+  const double size = std::clamp(height / 650.0, 0.4, 3.0);
   const int thickness = std::max(1, static_cast<int>(std::lround(size * 1.6)));
   const std::string text = label_of(meta);
   int baseline = 0;

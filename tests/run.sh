@@ -13,7 +13,7 @@ options=(-Dwerror=true)
 if [ "${1:-}" = "--sanitize" ]; then
   build="$project/build-sanitize"
   options+=(-Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false)
-  export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1
+  export ASAN_OPTIONS=detect_leaks=1:fast_unwind_on_malloc=0
   export LSAN_OPTIONS=suppressions="$project/tests/lsan.supp":print_suppressions=0
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 fi
@@ -24,19 +24,17 @@ else
 fi
 ninja -C "$build"
 
-results=$(mktemp -d)
-trap 'rm -rf "$results"' EXIT
+# Each suite writes how many of its tests ran, failed and were skipped.
+rm -f "$build"/*.xml
 status=0
-GTEST_OUTPUT="xml:$results/" meson test -C "$build" --print-errorlogs || status=$?
-
-# Each suite has written how many of its tests ran, failed and were skipped.
+meson test -C "$build" --print-errorlogs || status=$?
 count() {
-  cat "$results"/*.xml 2> /dev/null | grep -E '^<testsuites ' | grep -oE " $1=\"[0-9]+\"" |
+  cat "$build"/*.xml 2> /dev/null | grep -E '^<testsuites ' | grep -oE " $1=\"[0-9]+\"" |
     grep -oE '[0-9]+' | awk '{ sum += $1 } END { print sum + 0 }' || true
 }
 total=$(count tests)
 failed=$(($(count failures) + $(count errors)))
-skipped=$(cat "$results"/*.xml 2> /dev/null | grep -c 'result="skipped"' || true)
+skipped=$(cat "$build"/*.xml 2> /dev/null | grep -c 'result="skipped"' || true)
 # A suite that died wrote nothing: that is a failure too.
 if [ "$status" -ne 0 ] && [ "$failed" -eq 0 ]; then failed=1; fi
 if [ "$total" -eq 0 ]; then status=1; failed=1; fi

@@ -221,18 +221,24 @@ class Demo {
   // Waits for a frame, but no longer than the pipeline lives. NULL at its end.
   GstSample* next_sample(GstAppSink* sink) {
     constexpr GstClockTime kGlance = 100 * GST_MSECOND;
-    GstBus* bus = gst_element_get_bus(pipeline_);
     GstSample* sample = nullptr;
     while (sample == nullptr && !gst_app_sink_is_eos(sink)) {
       sample = gst_app_sink_try_pull_sample(sink, kGlance);
-      if (GstMessage* error = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
-        gst_object_unref(bus);
-        if (sample != nullptr) gst_sample_unref(sample);
-        fail(error);
-      }
+      watch_bus(0);
     }
-    gst_object_unref(bus);
     return sample;
+  }
+
+  // Throws where the pipeline has failed; notes where it has come to its end.
+  void watch_bus(GstClockTime patience) {
+    GstBus* bus = gst_element_get_bus(pipeline_);
+    GstMessage* message = gst_bus_timed_pop_filtered(
+        bus, patience, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    gst_object_unref(bus);
+    if (message == nullptr) return;
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) fail(message);
+    has_ended_ = true;
+    gst_message_unref(message);
   }
 
   [[noreturn]] void fail(GstMessage* message) const {
@@ -245,13 +251,8 @@ class Demo {
   }
 
   void await_end() {
-    GstBus* bus = gst_element_get_bus(pipeline_);
-    GstMessage* message = gst_bus_timed_pop_filtered(
-        bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
-    gst_object_unref(bus);
-    if (message == nullptr) throw std::runtime_error("the pipeline does not end");
-    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) fail(message);
-    gst_message_unref(message);
+    if (!has_ended_) watch_bus(10 * GST_SECOND);
+    if (!has_ended_) throw std::runtime_error("the pipeline does not end");
   }
 
   void keep(GstSample* sample) {
@@ -272,6 +273,7 @@ class Demo {
   Options options_;
   GstElement* pipeline_ = nullptr;
   ContactSheet sheet_;
+  bool has_ended_ = false;
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace evaluate {
 namespace {
 
-constexpr GstClockTime kPatience = 10 * GST_SECOND;
+constexpr GstClockTime kPatience = 3 * GST_SECOND;
 
 [[noreturn]] void fail(const std::filesystem::path& file) {
   throw std::runtime_error(file.string() + ": is no picture that can be read");
@@ -20,6 +20,13 @@ constexpr GstClockTime kPatience = 10 * GST_SECOND;
 bool is_jpeg(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   return extension == ".jpg" || extension == ".jpeg" || extension == ".JPG";
+}
+
+// The marker SOI, without which the decoder would wait for more.
+bool starts_as_jpeg(GBytes* bytes) {
+  gsize size = 0;
+  const auto* data = static_cast<const guint8*>(g_bytes_get_data(bytes, &size));
+  return size > 2 && data[0] == 0xff && data[1] == 0xd8;
 }
 
 cv::Mat copy_of(GstSample* sample) {
@@ -66,6 +73,7 @@ class PictureReader::JpegPipeline {
 
   /// An empty picture where the bytes are none.
   cv::Mat decode(GBytes* bytes) {
+    if (!starts_as_jpeg(bytes)) return {};
     GstBuffer* buffer = gst_buffer_new_wrapped_bytes(bytes);
     GST_BUFFER_PTS(buffer) = time_;
     time_ += GST_SECOND / 30;
@@ -100,7 +108,7 @@ cv::Mat PictureReader::read(const std::filesystem::path& file) {
     if (!jpeg_) jpeg_ = std::make_unique<JpegPipeline>();
     picture = jpeg_->decode(bytes);
     g_bytes_unref(bytes);
-    if (picture.empty()) jpeg_.reset();  // its pipeline has stopped with an error
+    if (picture.empty()) jpeg_.reset();  // it may be stuck in the middle of this one
   }
   if (picture.empty()) fail(file);
   return picture;

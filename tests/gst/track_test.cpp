@@ -258,6 +258,21 @@ TEST(EllipseTrack, RefusesAPairTheWrongWayRoundAndSaysSo) {
   g_error_free(error);
 }
 
+TEST(EllipseTrack, SpeaksOfItsOwnTargetBehindAnotherTracker) {
+  const auto harness = tracker("overlay=ellipse");
+  BusTap bus(element_of(harness));
+  auto buffer = gray_buffer_of(ring_picture());
+  gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->cx = -1.0;
+  const auto out = push(harness, std::move(buffer));
+  double cx = 0.0;
+  const auto message = bus.pop(GST_MESSAGE_ELEMENT);
+  gst_structure_get_double(gst_message_get_structure(message.get()), "cx", &cx);
+  EXPECT_NEAR(cx, kRing.cx, 0.1);
+  const Owned<GstStructure> target(structure_property(element_of(harness), "target"));
+  gst_structure_get_double(target.get(), "cx", &cx);
+  EXPECT_NEAR(cx, kRing.cx, 0.1);
+}
+
 TEST(EllipseTrack, NaNChangesNothing) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);

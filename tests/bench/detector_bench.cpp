@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+//
+// The detector and the tracker beside what any method on contours pays for its edges and contours
+// alone, on the same frames in the same run. The counter "ratio" is the time over that.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/contour_detector.hpp"
+#include "core/scene.hpp"
+#include "core/tracker.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<cv::Mat> approach(int width, int height) {
+  const ellipse::Scene scene;
+  std::vector<cv::Mat> frames;
+  for (int i = 0; i < 20; ++i) {
+    cv::Mat frame(height, width, CV_8UC1);
+    const auto pose = ellipse::approach_pose(2.0 + i / 30.0, 10.0);
+    ellipse::render(scene,
+                    ellipse::image_from_pad(pose, 1.012, width, height),
+                    static_cast<std::uint64_t>(i),
+                    {frame.data, width, height, static_cast<std::ptrdiff_t>(frame.step)});
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+double seconds(Clock::time_point since) {
+  return std::chrono::duration<double>(Clock::now() - since).count();
+}
+
+class Reference {
+ public:
+  void run(const cv::Mat& frame) {
+    cv::GaussianBlur(frame, smooth_, {5, 5}, 1.0);
+    cv::Canny(smooth_, edges_, 40, 80);
+    cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+  }
+
+ private:
+  cv::Mat smooth_;
+  cv::Mat edges_;
+  std::vector<std::vector<cv::Point>> contours_;
+};
+
+// Runs both on each frame in turn, so that both meet the same machine in the same mood.
+template <class Work>
+void compare(benchmark::State& state, const Work& work) {
+  cv::setNumThreads(1);
+  const auto width = static_cast<int>(state.range(0));
+  const auto height = static_cast<int>(state.range(1));
+  const std::vector<cv::Mat> frames = approach(width, height);
+  Reference reference;
+  double own_s = 0.0;
+  double reference_s = 0.0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const cv::Mat& frame = frames[i++ % frames.size()];
+    const auto start = Clock::now();
+    work(ellipse::ImageView{
+        frame.data, frame.cols, frame.rows, static_cast<std::ptrdiff_t>(frame.step)});
+    const double elapsed = seconds(start);
+    own_s += elapsed;
+    state.SetIterationTime(elapsed);
+    const auto reference_start = Clock::now();
+    reference.run(frame);
+    reference_s += seconds(reference_start);
+  }
+  state.counters["ratio"] = own_s / reference_s;
+}
+
+void contour_detector(benchmark::State& state) {
+  ellipse::ContourDetector detector;
+  compare(state, [&](const ellipse::ImageView& frame) {
+    benchmark::DoNotOptimize(detector.detect(frame, {}));
+  });
+}
+
+void tracker_redetect(benchmark::State& state) {
+  ellipse::Tracker tracker;
+  compare(state, [&](const ellipse::ImageView& frame) {
+    benchmark::DoNotOptimize(tracker.process(frame, 0));
+  });
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  benchmark->UseManualTime()->Unit(benchmark::kMillisecond);
+  benchmark->Args({640, 360})->Args({1280, 720})->Args({1920, 1080});
+}
+
+BENCHMARK(contour_detector)->Apply(sizes);
+BENCHMARK(tracker_redetect)->Apply(sizes);
+
+}  // namespace
+
+BENCHMARK_MAIN();
