@@ -16,6 +16,7 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kSmoothingPx = 1.0;
 constexpr double kNoiseQuantile = 0.3;
+constexpr int kNoiseRowStep = 6;  // every second pixel of every sixth row is enough
 constexpr double kHighOverNoise = 5.0;
 constexpr double kLowOverHigh = 0.4;
 constexpr double kLeastHigh = 1.0;  // [grey levels / px], above the steps of rounding
@@ -27,6 +28,8 @@ constexpr double kLeastCosine = 0.87;
 constexpr std::size_t kCornerReach = 5;
 constexpr double kCornerCosine = 0.7;
 constexpr int kLeastPartPx = 16;
+
+constexpr double kSameEdgePx = 0.75;
 
 constexpr int kContourSteps = 2;
 constexpr int kEdgeSteps = 2;
@@ -48,10 +51,10 @@ int approximate_norm(int x, int y) {
 double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& histogram) {
   histogram.assign(kHistogramBins, 0);
   int samples = 0;
-  for (int y = 0; y < gx.rows; y += 4) {
+  for (int y = 0; y < gx.rows; y += kNoiseRowStep) {
     const auto* row_x = gx.ptr<short>(y);
     const auto* row_y = gy.ptr<short>(y);
-    for (int x = y / 4 % 2; x < gx.cols; x += 2, ++samples) {
+    for (int x = y / kNoiseRowStep % 2; x < gx.cols; x += 2, ++samples) {
       ++histogram[std::min(approximate_norm(row_x[x], row_y[x]), kHistogramBins - 1)];
     }
   }
@@ -147,12 +150,19 @@ Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thic
   return {e, contour_overlap, support.ellipse_overlap(), contour_overlap * support.on_edge_px};
 }
 
+bool is_known(const Ellipse& e, std::span<const Detection> known) {
+  return std::any_of(known.begin(), known.end(), [&](const Detection& other) {
+    return max_difference_px(e, other.ellipse) <= kSameEdgePx;
+  });
+}
+
 // [Keipour2021] Algorithm 1, the body of its loop after the contour's size: every rejection in the
 // paper's order.
 std::optional<Detection> examine(std::span<const cv::Point> contour,
                                  const EdgeField& field,
                                  const ImageView& thick_edges,
-                                 const Thresholds& limits) {
+                                 const Thresholds& limits,
+                                 std::span<const Detection> known) {
   const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;
   if (2.0 * e->semi_major > limits.max_axis_px) return std::nullopt;
@@ -163,6 +173,7 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
   if (on_ellipse < limits.contour_overlap) return std::nullopt;
   const Detection found = scored(*e, on_ellipse, thick_edges);
   if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
+  if (is_known(*e, known)) return std::nullopt;  // from the other side of the same edge
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
   return better.ellipse_overlap >= found.ellipse_overlap ? better : found;
 }
@@ -223,7 +234,7 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   const EdgeField field{edges_, gradient_x_, gradient_y_};
   const ImageView thick = view_of(thick_edges_);
   const auto try_contour = [&](std::span<const cv::Point> contour) {
-    const auto detection = examine(contour, field, thick, thresholds);
+    const auto detection = examine(contour, field, thick, thresholds, detections_);
     if (detection) detections_.push_back(*detection);
   };
   std::erase_if(contours_, [&](const auto& contour) {

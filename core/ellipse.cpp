@@ -123,6 +123,13 @@ double sampson_distance(const Ellipse& e, const Eigen::Vector2d& point_px) {
   return (r - 1.0) * r / gradient;
 }
 
+double max_difference_px(const Ellipse& a, const Ellipse& b) {
+  return std::max({std::abs(a.cx - b.cx),
+                   std::abs(a.cy - b.cy),
+                   std::abs(a.semi_major - b.semi_major),
+                   std::abs(a.semi_minor - b.semi_minor)});
+}
+
 double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
   const double half_a = half_extent(a).y();
   const double half_b = half_extent(b).y();

@@ -94,6 +94,9 @@ struct Interval {
 /// Signed distance of a point to the perimeter [px], negative inside, to first order [Sampson1982].
 [[nodiscard]] double sampson_distance(const Ellipse& e, const Eigen::Vector2d& point_px);
 
+/// The largest difference among centre coordinates and semi-axes [px].
+[[nodiscard]] double max_difference_px(const Ellipse& a, const Ellipse& b);
+
 /// Intersection over union of two ellipses, counted inside a frame only; 0 where both miss it.
 [[nodiscard]] double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height);
 

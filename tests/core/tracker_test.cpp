@@ -194,11 +194,11 @@ TEST(Tracker, OffsetsAreCompensatedExactlyBetweenScales) {
   Scene scene = plain_ring();
   scene.noise = 0.0;
   scene.blur_px = 2.0;
-  constexpr int kPlaces = 12;
+  constexpr int kPlaces = 60;
   std::array<Eigen::Vector2d, 3> mean_error;
   mean_error.fill({0.0, 0.0});
   for (int place = 0; place < kPlaces; ++place) {
-    const Ellipse truth{331.37 + 0.71 * place, 171.81 + 1.37 * place, 130.0, 110.0, 0.3 * place};
+    const Ellipse truth{310.37 + 0.71 * place, 171.81 + 0.37 * place, 130.0, 110.0, 0.3 * place};
     const Picture picture = rendered(scene, truth, 640, 360);
     Tracker tracker;
     for (int step = 0; step < 3; ++step) {
