@@ -92,19 +92,33 @@ TEST(Pipeline, TwoTrackersShareAFrameAfterATee) {
   EXPECT_EQ(read_ndjson(folder.file("b")).size(), 20U);
 }
 
-TEST(Pipeline, LeaksNothing) {
-  // In a process of its own, because the tracer watches a whole process.
+// Runs some of these tests in a process of its own, because the tracer watches a whole process.
+// @return What was still alive at its end.
+std::string leaks_of(const std::string& tests) {
   const TemporaryFolder folder;
   const std::string log = folder.file("leaks.log");
   const std::string command =
-      "GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log +
-      " gst-launch-1.0 -q ellipsetestsrc num-buffers=30 ! ellipsetrack overlay=ellipse+label ! "
-      "tee name=t t. ! queue ! ellipseoverlay ! fakesink t. ! queue ! ellipsejson ! fakesink";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+      "GTEST_OUTPUT= GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log + " " +
+      std::filesystem::read_symlink("/proc/self/exe").string() +
+      " --gtest_also_run_disabled_tests --gtest_filter='" + tests + "' > " + folder.file("output");
+  if (std::system(command.c_str()) != 0) return "the tests failed";
   std::ifstream in(log);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  EXPECT_NE(text.find("GST_TRACER"), std::string::npos);
-  EXPECT_EQ(text.find("object-alive, type-name=(string)Gst"), std::string::npos) << text;
+  std::string alive;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("object-alive, type-name=(string)Gst") != std::string::npos) alive += line + "\n";
+  }
+  return alive;
+}
+
+TEST(Pipeline, DISABLED_LeavesABuffer) {
+  gst_buffer_new();
+}
+
+TEST(Pipeline, LeaksNothing) {
+  EXPECT_NE(leaks_of("Pipeline.DISABLED_LeavesABuffer"), "");  // the tracer works
+  EXPECT_EQ(leaks_of("Pipeline.T*:Pipeline.M*:EllipseTrack.*:EllipseOverlay.*:EllipseJson.*:"
+                     "EllipseTestSrc.*:EllipseMeta.*"),
+            "");
 }
 
 TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
