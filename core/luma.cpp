@@ -7,7 +7,7 @@ namespace ellipse {
 namespace {
 
 void copy_luma_row(const std::uint8_t* in, int pixel_stride, int width, std::uint8_t* out) {
-  for (int x = 0; x < width; ++x) out[x] = in[x * pixel_stride];
+  for (int x = 0; x < width; ++x) out[x] = in[std::ptrdiff_t{x} * pixel_stride];
 }
 
 // [BT601] 2.5.1: E'Y = 0.299 E'R + 0.587 E'G + 0.114 E'B, here in 1/256.
@@ -20,7 +20,7 @@ void convert_rgb_row(const std::uint8_t* in,
   const int green = layout.green;
   const int blue = layout.blue;
   for (int x = 0; x < width; ++x) {
-    const std::uint8_t* p = in + x * kPixelStride;
+    const std::uint8_t* p = in + std::ptrdiff_t{x} * kPixelStride;
     out[x] = static_cast<std::uint8_t>((77 * p[red] + 150 * p[green] + 29 * p[blue] + 128) >> 8);
   }
 }
@@ -42,7 +42,8 @@ ImageView LumaReader::read(const PixelView& picture, const Rect& region) {
   if (inside.empty()) return {};
   const PixelLayout& layout = picture.layout;
   const auto row = [&](int y) {
-    return picture.data + (inside.y + y) * picture.stride + inside.x * layout.pixel_stride;
+    return picture.data + (inside.y + y) * picture.stride +
+           std::ptrdiff_t{inside.x} * layout.pixel_stride;
   };
   if (layout.is_plain_luma() && picture.stride >= 0) {
     return {row(0) + layout.luma, inside.width, inside.height, picture.stride};
