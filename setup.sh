@@ -7,6 +7,7 @@ set -euo pipefail
 packages=(
   # build
   g++ meson ninja-build pkg-config
+  dpkg-dev  # tells meson where Debian keeps libraries
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libopencv-dev libeigen3-dev
   # examples
