@@ -214,14 +214,19 @@ void ContourDetector::detect_edges(const ImageView& luma, const Thresholds& thre
   cv::GaussianBlur(picture, smooth_, {5, 5}, kSmoothingPx, kSmoothingPx, cv::BORDER_REPLICATE);
   cv::spatialGradient(smooth_, gradient_x_, gradient_y_, 3, cv::BORDER_REPLICATE);
 
-  double high = kSobelGain * thresholds.edge_high;
+  double high = thresholds.edge_high;
   if (high == 0.0) {
-    high = std::max(kSobelGain * kLeastHigh,
-                    kHighOverNoise * gradient_noise(gradient_x_, gradient_y_, histogram_));
+    const double noise = gradient_noise(gradient_x_, gradient_y_, histogram_) / kSobelGain;
+    high = std::max(kLeastHigh, kHighOverNoise * noise);
   }
-  const double low =
-      thresholds.edge_low == 0.0 ? kLowOverHigh * high : kSobelGain * thresholds.edge_low;
-  cv::Canny(gradient_x_, gradient_y_, edges_, std::min(low, high), high, true);
+  const double low = thresholds.edge_low == 0.0 ? kLowOverHigh * high : thresholds.edge_low;
+  edge_thresholds_ = {std::min(low, high), high};
+  cv::Canny(gradient_x_,
+            gradient_y_,
+            edges_,
+            kSobelGain * edge_thresholds_.low,
+            kSobelGain * edge_thresholds_.high,
+            true);
 }
 
 std::span<const Detection> ContourDetector::detect(const ImageView& luma,

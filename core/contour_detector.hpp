@@ -7,6 +7,12 @@
 
 namespace ellipse {
 
+/// Canny's two thresholds [grey levels / px].
+struct EdgeThresholds {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// [Keipour2021] Algorithm 1, step by step on OpenCV: Canny's edges [Canny1986], the contours of
 /// [SuzukiAbe1985], one ellipse fitted to each contour and tested, the cheapest test first.
 ///
@@ -18,6 +24,9 @@ class ContourDetector final : public Detector {
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
 
+  /// Those of the last picture: what the adaptive rule has chosen, or what was asked for.
+  [[nodiscard]] const EdgeThresholds& edge_thresholds() const { return edge_thresholds_; }
+
  private:
   void detect_edges(const ImageView& luma, const Thresholds& thresholds);
 
@@ -26,6 +35,7 @@ class ContourDetector final : public Detector {
   cv::Mat gradient_y_;
   cv::Mat edges_;
   cv::Mat thick_edges_;
+  EdgeThresholds edge_thresholds_;
   std::vector<int> histogram_;
   std::vector<std::vector<cv::Point>> contours_;
   std::vector<Detection> detections_;

@@ -135,6 +135,27 @@ TEST(ContourDetector, AdaptsToTheLight) {
   EXPECT_GT(best_iou(rendered(noisy, truth), truth, tracking()), 0.95);
 }
 
+TEST(ContourDetector, TellsTheEdgeThresholdsThatItChose) {
+  ContourDetector detector;
+  const auto of_noise = [&](double noise) {
+    Scene scene = plain_ring();
+    scene.noise = noise;
+    const Picture picture = rendered(scene, {160.0, 120.0, 50.0, 40.0, 0.2});
+    (void)detector.detect(picture.view(), detecting());
+    return detector.edge_thresholds();
+  };
+  EXPECT_NEAR(of_noise(12.0).high / of_noise(6.0).high, 2.0, 0.15);
+  EXPECT_EQ(of_noise(0.0).high, 1.0);  // never below the steps of rounding
+  EXPECT_LT(of_noise(6.0).low, of_noise(6.0).high);
+  Thresholds asked;
+  asked.edge_low = 3.0;
+  asked.edge_high = 7.0;
+  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 50.0, 40.0, 0.2});
+  (void)detector.detect(picture.view(), asked);
+  EXPECT_EQ(detector.edge_thresholds().low, 3.0);
+  EXPECT_EQ(detector.edge_thresholds().high, 7.0);
+}
+
 TEST(ContourDetector, RejectsByEachThreshold) {
   const Ellipse truth{160.0, 120.0, 60.0, 20.0, 0.0};
   const Picture picture = rendered(plain_ring(), truth);
