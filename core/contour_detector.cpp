@@ -29,7 +29,9 @@ constexpr std::size_t kCornerReach = 5;
 constexpr double kCornerCosine = 0.7;
 constexpr int kLeastPartPx = 16;
 
-constexpr double kSameEdgePx = 0.75;
+constexpr std::size_t kMostDetections = 256;
+
+constexpr double kSameFitPx = 0.75;
 
 constexpr int kContourSteps = 2;
 constexpr int kEdgeSteps = 2;
@@ -150,9 +152,15 @@ Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thic
   return {e, contour_overlap, support.ellipse_overlap(), contour_overlap * support.on_edge_px};
 }
 
+bool has_reasonable_axes(const Ellipse& e, const Thresholds& limits) {
+  if (2.0 * e.semi_major > limits.max_axis_px) return false;
+  if (2.0 * e.semi_minor < limits.min_axis_px) return false;
+  return e.aspect_ratio() <= limits.max_axis_ratio;
+}
+
 bool is_known(const Ellipse& e, std::span<const Detection> known) {
   return std::any_of(known.begin(), known.end(), [&](const Detection& other) {
-    return max_difference_px(e, other.ellipse) <= kSameEdgePx;
+    return max_difference_px(e, other.ellipse) <= kSameFitPx;
   });
 }
 
@@ -165,9 +173,7 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
                                  std::span<const Detection> known) {
   const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;
-  if (2.0 * e->semi_major > limits.max_axis_px) return std::nullopt;
-  if (2.0 * e->semi_minor < limits.min_axis_px) return std::nullopt;
-  if (e->aspect_ratio() > limits.max_axis_ratio) return std::nullopt;
+  if (!has_reasonable_axes(*e, limits)) return std::nullopt;
 
   const double on_ellipse = contour_overlap(contour, *e);
   if (on_ellipse < limits.contour_overlap) return std::nullopt;
@@ -175,7 +181,9 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
   if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
   if (is_known(*e, known)) return std::nullopt;  // from the other side of the same edge
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
-  return better.ellipse_overlap >= found.ellipse_overlap ? better : found;
+  const bool is_better = better.ellipse_overlap >= found.ellipse_overlap &&
+                         has_reasonable_axes(better.ellipse, limits);
+  return is_better ? better : found;
 }
 
 // Whether a contour turns sharply at one of its pixels.
@@ -229,6 +237,17 @@ void ContourDetector::detect_edges(const ImageView& luma, const Thresholds& thre
             true);
 }
 
+// A picture full of ellipses keeps its best ones, so that no picture takes for ever.
+void ContourDetector::add_detection(const Detection& detection) {
+  detections_.push_back(detection);
+  if (detections_.size() < 2 * kMostDetections) return;
+  std::nth_element(detections_.begin(),
+                   detections_.begin() + kMostDetections,
+                   detections_.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  detections_.resize(kMostDetections);
+}
+
 std::span<const Detection> ContourDetector::detect(const ImageView& luma,
                                                    const Thresholds& thresholds) {
   detections_.clear();
@@ -240,7 +259,7 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   const ImageView thick = view_of(thick_edges_);
   const auto try_contour = [&](std::span<const cv::Point> contour) {
     const auto detection = examine(contour, field, thick, thresholds, detections_);
-    if (detection) detections_.push_back(*detection);
+    if (detection) add_detection(*detection);
   };
   std::erase_if(contours_, [&](const auto& contour) {
     return std::ssize(contour) < thresholds.min_contour_size;

@@ -28,6 +28,7 @@ class ContourDetector final : public Detector {
   [[nodiscard]] const EdgeThresholds& edge_thresholds() const { return edge_thresholds_; }
 
  private:
+  void add_detection(const Detection& detection);
   void detect_edges(const ImageView& luma, const Thresholds& thresholds);
 
   cv::Mat smooth_;

@@ -1,6 +1,9 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace ellipse {
@@ -32,7 +35,7 @@ struct PerimeterStep {
 template <class Use>
 void walk_perimeter(const Ellipse& e, const Use& use) {
   constexpr double kTwoPi = 2.0 * std::numbers::pi;
-  const int steps = std::clamp(static_cast<int>(std::ceil(kTwoPi * e.semi_major)), 16, 1 << 16);
+  const int steps = static_cast<int>(std::clamp(std::ceil(kTwoPi * e.semi_major), 16.0, 65536.0));
   const double step_cos = std::cos(kTwoPi / steps);
   const double step_sin = std::sin(kTwoPi / steps);
   const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));

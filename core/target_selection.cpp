@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/target_selection.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 

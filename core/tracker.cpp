@@ -114,6 +114,7 @@ void Tracker::configure(const TrackerSettings& settings) {
       settings.detector != settings_.detector || settings.tracking != settings_.tracking;
   settings_ = settings;
   if (starts_over) reset();
+  while (scale_ > settings_.max_scale) scale_ /= 2;
 }
 
 }  // namespace ellipse

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -162,6 +163,10 @@ void set_by_name(TrackerSettings& settings, std::string_view name, std::string_v
   }
   const double parsed = number(name, value);
   check_range(found->name, parsed, found->range);
+  if (found->is_integer && parsed != std::floor(parsed)) {
+    throw std::invalid_argument(std::string(name) + " = " + std::string(value) +
+                                " is not a whole number");
+  }
   found->set(settings, parsed);
 }
 

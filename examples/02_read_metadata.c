@@ -41,9 +41,15 @@ int main(int argc, char** argv) {
   GstBus* bus = gst_element_get_bus(pipeline);
   GstMessage* end =
       gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  const gboolean has_failed = GST_MESSAGE_TYPE(end) == GST_MESSAGE_ERROR;
+  if (has_failed) {
+    gst_message_parse_error(end, &error, NULL);
+    g_printerr("%s\n", error->message);
+    g_clear_error(&error);
+  }
   gst_message_unref(end);
   gst_object_unref(bus);
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(pipeline);
-  return 0;
+  return has_failed ? 1 : 0;
 }

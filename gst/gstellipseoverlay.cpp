@@ -16,6 +16,8 @@
 
 #include "gst/gstellipseoverlay.h"
 
+#include <exception>
+
 #include "gst/overlay.hpp"
 #include "gst/video_view.hpp"
 
@@ -110,7 +112,12 @@ static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, Gs
         self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
     return GST_FLOW_OK;
   }
-  draw_all(mapped.frame(), style, shows_truth);
+  try {
+    draw_all(mapped.frame(), style, shows_truth);
+  } catch (const std::exception& error) {
+    GST_ELEMENT_WARNING(
+        self, STREAM, FAILED, ("A frame could not be drawn on: %s", error.what()), ("it passes"));
+  }
   return GST_FLOW_OK;
 }
 

@@ -42,6 +42,8 @@ struct _GstEllipseTestSrc {
 
   GstVideoInfo info;
   guint64 frame;
+  guint64 first_frame;      // since the frame rate was last set
+  GstClockTime first_time;  // of that frame
 };
 
 G_DEFINE_TYPE(GstEllipseTestSrc, gst_ellipse_test_src, GST_TYPE_PUSH_SRC)
@@ -147,15 +149,30 @@ static GstCaps* gst_ellipse_test_src_fixate(GstBaseSrc* base, GstCaps* caps) {
   return GST_BASE_SRC_CLASS(gst_ellipse_test_src_parent_class)->fixate(base, caps);
 }
 
+// Frame rate 0/1 says "one picture, or any rate": then time goes on at 30 frames a second.
+static GstClockTime time_of(GstEllipseTestSrc* self, guint64 frame) {
+  const gint n = GST_VIDEO_INFO_FPS_N(&self->info);
+  const auto per_second = static_cast<guint64>(n > 0 ? n : 30);
+  const auto seconds = static_cast<guint64>(n > 0 ? GST_VIDEO_INFO_FPS_D(&self->info) : 1);
+  return self->first_time +
+         gst_util_uint64_scale(frame - self->first_frame, seconds * GST_SECOND, per_second);
+}
+
 static gboolean gst_ellipse_test_src_set_caps(GstBaseSrc* base, GstCaps* caps) {
   auto* self = GST_ELLIPSE_TEST_SRC(base);
+  const GstClockTime now = time_of(self, self->frame);
   if (!gst_video_info_from_caps(&self->info, caps)) return FALSE;
+  self->first_frame = self->frame;
+  self->first_time = now;
   gst_base_src_set_blocksize(base, static_cast<guint>(GST_VIDEO_INFO_SIZE(&self->info)));
   return TRUE;
 }
 
 static gboolean gst_ellipse_test_src_start(GstBaseSrc* base) {
-  GST_ELLIPSE_TEST_SRC(base)->frame = 0;
+  auto* self = GST_ELLIPSE_TEST_SRC(base);
+  self->frame = 0;
+  self->first_frame = 0;
+  self->first_time = 0;
   return TRUE;
 }
 
@@ -169,14 +186,6 @@ static void gst_ellipse_test_src_get_times(GstBaseSrc* base,
   if (!gst_base_src_is_live(base)) return;
   *start = GST_BUFFER_PTS(buffer);
   *end = *start + GST_BUFFER_DURATION(buffer);
-}
-
-// Frame rate 0/1 says "one picture, or any rate": then time goes on at 30 frames a second.
-static GstClockTime time_of(const GstVideoInfo& info, guint64 frame) {
-  const gint n = GST_VIDEO_INFO_FPS_N(&info);
-  const auto per_second = static_cast<guint64>(n > 0 ? n : 30);
-  const auto seconds = static_cast<guint64>(n > 0 ? GST_VIDEO_INFO_FPS_D(&info) : 1);
-  return gst_util_uint64_scale(frame, seconds * GST_SECOND, per_second);
 }
 
 static void fill_chroma(GstVideoFrame& frame) {
@@ -214,8 +223,8 @@ static GstFlowReturn gst_ellipse_test_src_fill(GstPushSrc* push, GstBuffer* buff
   const ellipse::Scene scene = *self->scene;
   GST_OBJECT_UNLOCK(self);
 
-  GST_BUFFER_PTS(buffer) = time_of(self->info, self->frame);
-  GST_BUFFER_DURATION(buffer) = time_of(self->info, self->frame + 1) - GST_BUFFER_PTS(buffer);
+  GST_BUFFER_PTS(buffer) = time_of(self, self->frame);
+  GST_BUFFER_DURATION(buffer) = time_of(self, self->frame + 1) - GST_BUFFER_PTS(buffer);
   GST_BUFFER_OFFSET(buffer) = self->frame;
   GST_BUFFER_OFFSET_END(buffer) = self->frame + 1;
 

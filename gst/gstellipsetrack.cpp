@@ -55,6 +55,10 @@ static guint signals[N_SIGNALS];
 namespace {
 
 constexpr guint kDefaultInterval = 1;
+
+// Skipping helps where the analysis is what is late. Where another element is, the target must not
+// be out of sight for good: after so many late frames one is analysed all the same.
+constexpr guint kMostLateFrames = 4;
 constexpr gboolean kDefaultAttachRoiMeta = TRUE;
 
 // All that properties set; the streaming thread takes one copy a frame.
@@ -70,6 +74,7 @@ struct Settings {
 struct Stream {
   ellipse::Tracker tracker;
   guint64 frame = 0;
+  guint late_frames = 0;  // in a row
   std::optional<ellipse::Target> last_target;
 };
 
@@ -325,12 +330,25 @@ static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta* meta) {
   gst_video_region_of_interest_meta_add_param(roi, gst_ellipse_meta_to_structure(meta));
 }
 
+// NONE where the segment is not in time, as behind a filesrc of raw frames.
+static GstClockTime stream_time_of(GstEllipseTrack* self, GstClockTime pts) {
+  const GstSegment& segment = GST_BASE_TRANSFORM(self)->segment;
+  if (segment.format != GST_FORMAT_TIME) return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_stream_time(&segment, GST_FORMAT_TIME, pts);
+}
+
+static GstClockTime running_time_of(GstEllipseTrack* self, GstClockTime pts) {
+  const GstSegment& segment = GST_BASE_TRANSFORM(self)->segment;
+  if (segment.format != GST_FORMAT_TIME) return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
+}
+
+// @param details  The target's structure; NULL where there is none.
 static void post_message(GstEllipseTrack* self,
-                         GstBuffer* buffer,
+                         GstClockTime pts,
+                         GstClockTime duration,
                          const std::optional<ellipse::Target>& target,
                          const GstStructure* details) {
-  const GstSegment& segment = GST_BASE_TRANSFORM(self)->segment;
-  const GstClockTime pts = GST_BUFFER_PTS(buffer);
   GstStructure* structure =
       details != nullptr ? gst_structure_copy(details) : gst_structure_new_empty("ellipse");
   // clang-format off
@@ -338,9 +356,9 @@ static void post_message(GstEllipseTrack* self,
       structure,
       "state", G_TYPE_STRING, state_nick(target),
       "timestamp", G_TYPE_UINT64, pts,
-      "stream-time", G_TYPE_UINT64, gst_segment_to_stream_time(&segment, GST_FORMAT_TIME, pts),
-      "running-time", G_TYPE_UINT64, gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts),
-      "duration", G_TYPE_UINT64, GST_BUFFER_DURATION(buffer),
+      "stream-time", G_TYPE_UINT64, stream_time_of(self, pts),
+      "running-time", G_TYPE_UINT64, running_time_of(self, pts),
+      "duration", G_TYPE_UINT64, duration,
       nullptr);
   // clang-format on
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_element(GST_OBJECT(self), structure));
@@ -381,7 +399,7 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                            (target && (before->id != target->id || before->state != target->state));
   if (settings.messages == MESSAGES_EVERY_FRAME ||
       (settings.messages == MESSAGES_ON_CHANGE && has_changed)) {
-    post_message(self, buffer, target, details);
+    post_message(self, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer), target, details);
   }
   emit_change(self, before, target, details);
   gst_clear_structure(&details);
@@ -390,29 +408,51 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
 
 /* Streaming */
 
+// Starts over, and says so to those who still count on the target.
+static void forget_target(GstEllipseTrack* self, const Settings& settings) {
+  self->stream->tracker.reset();
+  const std::optional<ellipse::Target> before = self->stream->last_target;
+  self->stream->last_target.reset();
+  GST_OBJECT_LOCK(self);
+  self->stats->forget_target();
+  gst_clear_structure(&self->target);
+  GST_OBJECT_UNLOCK(self);
+  if (!before) return;
+  if (settings.messages != MESSAGES_NONE) {
+    post_message(self, GST_CLOCK_TIME_NONE, GST_CLOCK_TIME_NONE, std::nullopt, nullptr);
+  }
+  emit_change(self, before, std::nullopt, nullptr);
+}
+
 static Settings take_settings(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
   const Settings settings = *self->settings;
   const bool reset_is_due = self->reset_is_due;
   self->reset_is_due = false;
   GST_OBJECT_UNLOCK(self);
-  if (reset_is_due) {
-    self->stream->tracker.reset();
-    self->stream->last_target.reset();
-  }
+  if (reset_is_due) forget_target(self, settings);
   return settings;
 }
 
 static bool is_too_late(GstEllipseTrack* self, GstBuffer* buffer) {
   auto* base = GST_BASE_TRANSFORM(self);
   if (!gst_base_transform_is_qos_enabled(base)) return false;
-  const GstClockTime running_time =
-      gst_segment_to_running_time(&base->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  const GstClockTime running_time = running_time_of(self, GST_BUFFER_PTS(buffer));
   GST_OBJECT_LOCK(self);
   const GstClockTime earliest_time = self->earliest_time;
   GST_OBJECT_UNLOCK(self);
   return GST_CLOCK_TIME_IS_VALID(running_time) && GST_CLOCK_TIME_IS_VALID(earliest_time) &&
          running_time <= earliest_time;
+}
+
+static bool must_hurry(GstEllipseTrack* self, GstBuffer* buffer) {
+  guint& late_frames = self->stream->late_frames;
+  if (is_too_late(self, buffer) && late_frames < kMostLateFrames) {
+    ++late_frames;
+    return true;
+  }
+  late_frames = 0;
+  return false;
 }
 
 static void skip(GstEllipseTrack* self) {
@@ -442,13 +482,12 @@ static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const Settings& se
 
 static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
   auto* self = GST_ELLIPSE_TRACK(base);
-  const GstClockTime stream_time =
-      gst_segment_to_stream_time(&base->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  const GstClockTime stream_time = stream_time_of(self, GST_BUFFER_PTS(buffer));
   if (GST_CLOCK_TIME_IS_VALID(stream_time)) gst_object_sync_values(GST_OBJECT(self), stream_time);
 
   const Settings settings = take_settings(self);
   const bool is_turn = self->stream->frame++ % settings.interval == 0;
-  if (!is_turn || is_too_late(self, buffer)) {
+  if (!is_turn || must_hurry(self, buffer)) {
     skip(self);
     return GST_FLOW_OK;
   }
@@ -480,13 +519,13 @@ static gboolean gst_ellipse_track_src_event(GstBaseTransform* base, GstEvent* ev
 }
 
 static void forget_stream(GstEllipseTrack* self) {
-  self->stream->tracker.reset();
-  self->stream->last_target.reset();
-  self->stream->frame = 0;
   GST_OBJECT_LOCK(self);
+  const Settings settings = *self->settings;
   self->earliest_time = GST_CLOCK_TIME_NONE;
-  gst_clear_structure(&self->target);
   GST_OBJECT_UNLOCK(self);
+  forget_target(self, settings);
+  self->stream->frame = 0;
+  self->stream->late_frames = 0;
 }
 
 static gboolean gst_ellipse_track_sink_event(GstBaseTransform* base, GstEvent* event) {

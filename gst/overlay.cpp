@@ -217,11 +217,12 @@ void draw_region(Painter& painter, const GstEllipseMeta& meta, double width_px) 
 
 std::string label_of(const GstEllipseMeta& meta) {
   static constexpr std::array kStates = {"detected", "tracked", "predicted"};
+  const auto state = static_cast<std::size_t>(meta.state);
   std::ostringstream label;
   if (meta.role == GST_ELLIPSE_ROLE_TRUTH) {
     label << "truth ";
   } else {
-    label << '#' << meta.id << ' ' << kStates.at(meta.state) << ' ';
+    label << '#' << meta.id << ' ' << (state < kStates.size() ? kStates[state] : "unknown") << ' ';
   }
   label << std::lround(2.0 * meta.semi_major) << " x " << std::lround(2.0 * meta.semi_minor)
         << " px";

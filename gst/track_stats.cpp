@@ -7,6 +7,11 @@ void TrackStats::add_skipped() {
   ++skipped_;
 }
 
+void TrackStats::forget_target() {
+  if (had_target_) ++lost_;
+  had_target_ = false;
+}
+
 void TrackStats::add_analysed(const std::optional<ellipse::Target>& target,
                               GstClockTime processing_time) {
   times_[analysed_ % kWindow] = processing_time;

@@ -12,6 +12,8 @@
 class TrackStats {
  public:
   void add_skipped();
+  /// Whatever was followed counts as lost.
+  void forget_target();
   void add_analysed(const std::optional<ellipse::Target>& target, GstClockTime processing_time);
 
   /// frames, analysed, skipped, detected, tracked, lost; median and 99th percentile of the

@@ -11,10 +11,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,10 +37,9 @@ struct Options {
 };
 
 std::string quoted(const std::string& text) {
-  gchar* escaped = g_strescape(text.c_str(), nullptr);
-  std::string result = "\"" + std::string(escaped) + "\"";
-  g_free(escaped);
-  return result;
+  std::ostringstream quoted_text;
+  quoted_text << std::quoted(text);
+  return quoted_text.str();
 }
 
 // The number of the first picture of a printf pattern such as frame%04d.jpg.
@@ -88,9 +89,12 @@ std::string source_for(const Options& options) {
            " num-buffers=" + std::to_string(options.frames > 0 ? options.frames : kCameraFrames) +
            " ! decodebin";
   }
-  if (is_picture_pattern(input)) return picture_source(input);
+  if (!fs::exists(input) && is_picture_pattern(input)) return picture_source(input);
   if (input.find("://") != std::string::npos) return uri_source(input);
-  if (!fs::is_regular_file(input)) throw std::runtime_error("there is no such file");
+  if (!fs::exists(input)) throw std::runtime_error("there is no such file");
+  if (fs::is_directory(input)) {
+    throw std::runtime_error("is a folder; name its pictures like " + input + "/frame%04d.jpg");
+  }
   gchar* uri = gst_filename_to_uri(input.c_str(), nullptr);
   const std::string source = uri_source(uri);
   g_free(uri);
@@ -141,11 +145,16 @@ class ContactSheet {
 class Demo {
  public:
   explicit Demo(const Options& options) : options_(options) {
-    fs::create_directories(options.output);
+    std::error_code problem;
+    fs::create_directories(options.output, problem);
+    if (problem) {
+      throw std::runtime_error("--out " + options.output + ": " + problem.message());
+    }
     const fs::path folder = options.output;
     const std::string description =
-        source_for(options) +
-        " ! videoconvert ! ellipsetrack name=track ! tee name=analysed "
+        source_for(options) + " ! videoconvert ! identity eos-after=" +
+        std::to_string(options.frames > 0 ? options.frames + 1 : -1) +
+        " ! ellipsetrack name=track ! tee name=analysed "
         "analysed. ! queue ! ellipseoverlay overlay=ellipse+centre+label ! videoconvert "
         "! tee name=drawn "
         "drawn. ! queue ! videoconvert ! jpegenc ! matroskamux ! filesink location=" +
@@ -179,9 +188,6 @@ class Demo {
       gst_sample_unref(sample);
       if (is_terminal && sheet_.seen() % 10 == 0) {
         std::fprintf(stderr, "\r%zu frames", sheet_.seen());
-      }
-      if (options_.frames > 0 && sheet_.seen() == static_cast<std::size_t>(options_.frames)) {
-        gst_element_send_event(pipeline_, gst_event_new_eos());
       }
     }
     if (is_terminal) std::fprintf(stderr, "\r\033[K");
@@ -285,7 +291,8 @@ int main(int argc, char** argv) {
   app.name("ellipse-demo");
   app.add_option("INPUT", options.input, "A file, frame%04d.jpg, /dev/video0 or a URI; or nothing");
   app.add_option("--out", options.output, "Folder for the results")->capture_default_str();
-  app.add_option("--frames", options.frames, "Stop after so many frames");
+  app.add_option("--frames", options.frames, "Stop after so many frames; 0 = at the end")
+      ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {
     Demo demo(options);

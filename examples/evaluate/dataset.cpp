@@ -147,22 +147,31 @@ bool natural_less(const std::string& a, const std::string& b) {
 
 using FramesBySequence = std::map<std::string, std::vector<Frame>>;
 
-void add_frame(FramesBySequence& frames, const fs::path& image, const Truth& truth) {
-  const std::string sequence = image.parent_path().filename().string();
+// A sequence is a folder of pictures, named by its path inside the data set.
+std::string sequence_of(const fs::path& image, const fs::path& dataset) {
+  const fs::path folder = image.parent_path().lexically_normal();
+  const std::string inside = folder.lexically_relative(dataset).generic_string();
+  if (inside == ".") return dataset.filename().string();
+  return inside.starts_with("images/") ? inside.substr(7) : inside;
+}
+
+void add_frame(FramesBySequence& frames,
+               const fs::path& dataset,
+               const fs::path& image,
+               const Truth& truth) {
+  const std::string sequence = sequence_of(image, dataset);
   frames[sequence].push_back({image, sequence + "/" + image.filename().string(), truth});
 }
 
-void read_csv(const fs::path& file, FramesBySequence& frames) {
-  const fs::path folder = fs::absolute(file).parent_path();
+void read_csv(const fs::path& file, const fs::path& dataset, FramesBySequence& frames) {
   for_each_row(file, ',', [&](const Row& row) {
-    add_frame(frames, folder / row.text("image"), truth_of_csv(row));
+    add_frame(frames, dataset, file.parent_path() / row.text("image"), truth_of_csv(row));
   });
 }
 
-void read_published(const fs::path& file, FramesBySequence& frames) {
-  const fs::path folder = fs::absolute(file).parent_path();
+void read_published(const fs::path& file, const fs::path& dataset, FramesBySequence& frames) {
   for_each_row(file, '\t', [&](const Row& row) {
-    add_frame(frames, folder / row.text("Filename"), truth_of_published(row));
+    add_frame(frames, dataset, file.parent_path() / row.text("Filename"), truth_of_published(row));
   });
 }
 
@@ -172,17 +181,22 @@ std::vector<Sequence> read_dataset(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": is no folder that can be read");
   }
+  const fs::path dataset = fs::canonical(folder);
   FramesBySequence frames;
-  if (fs::exists(folder / "gt.csv")) {
-    read_csv(folder / "gt.csv", frames);
+  bool has_table = fs::exists(dataset / "gt.csv");
+  if (has_table) {
+    read_csv(dataset / "gt.csv", dataset, frames);
   } else {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-      if (entry.path().filename() == "ground_truth.txt") read_published(entry.path(), frames);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset)) {
+      if (entry.path().filename() != "ground_truth.txt") continue;
+      has_table = true;
+      read_published(entry.path(), dataset, frames);
     }
   }
-  if (frames.empty()) {
+  if (!has_table) {
     throw std::runtime_error(folder.string() + ": holds neither gt.csv nor ground_truth.txt");
   }
+  if (frames.empty()) throw std::runtime_error(folder.string() + ": its table names no picture");
   std::vector<Sequence> sequences;
   for (auto& [name, list] : frames) {
     std::stable_sort(list.begin(), list.end(), [](const Frame& a, const Frame& b) {

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -95,8 +96,8 @@ void write_frame(std::ostream& out,
                  const std::optional<ellipse::Target>& target,
                  const Result& result,
                  const FrameSize& size) {
-  out << "{\"image\":\"" << frame.name << "\",\"size\":[" << size.width << ',' << size.height
-      << "],\"target\":";
+  out << "{\"image\":" << std::quoted(frame.name) << ",\"size\":[" << size.width << ','
+      << size.height << "],\"target\":";
   if (target) {
     const ellipse::Ellipse& e = target->ellipse;
     out << '[' << e.cx << ',' << e.cy << ',' << e.semi_major << ',' << e.semi_minor << ','
@@ -177,6 +178,10 @@ std::ofstream open_for_writing(const std::string& file) {
   return out;
 }
 
+void check_written(std::ofstream& out, const std::string& file) {
+  if (out.is_open() && !out.flush()) throw std::runtime_error(file + ": could not be written");
+}
+
 void run(const Options& options) {
   const ellipse::TrackerSettings settings = settings_from(options);
   const Rule rule = options.rule == "iou" ? Rule::kIou : Rule::kPublished;
@@ -207,6 +212,8 @@ void run(const Options& options) {
   print_times(std::cout, results.back().measures);
   print_centre_errors(std::cout, results.back().measures);
   if (json_out.is_open()) write_json(json_out, results);
+  check_written(frames_out, options.frames_file);
+  check_written(json_out, options.json_file);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
 #include <numeric>
 #include <ostream>
 
@@ -117,7 +118,8 @@ void write_json(std::ostream& out, const std::vector<NamedMeasures>& rows) {
   out << "{\"sequences\":[";
   const char* separator = "";
   for (const auto& [name, m] : rows) {
-    out << separator << "\n{\"name\":\"" << name << "\",\"accuracy\":" << json_number(m.accuracy())
+    out << separator << "\n{\"name\":" << std::quoted(name)
+        << ",\"accuracy\":" << json_number(m.accuracy())
         << ",\"precision\":" << json_number(m.precision())
         << ",\"recall\":" << json_number(m.recall()) << ",\"f1\":" << json_number(m.f1());
     for (std::size_t i = 0; i < kOutcomes; ++i) {

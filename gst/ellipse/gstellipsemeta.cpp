@@ -4,6 +4,7 @@
 #include <gst/video/gstvideometa.h>
 #include <gst/video/video.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -64,6 +65,16 @@ static gboolean ellipse_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
+// The whole pixels that a span of pixels covers after scaling.
+static void scale_span(gint& begin, guint& length, double factor) {
+  static constexpr double kFarthest = G_MAXINT / 2;
+  const auto near = [](double value) { return std::clamp(value, -kFarthest, kFarthest); };
+  const double end = near(std::ceil((static_cast<double>(begin) + length) * factor));
+  const double first = near(std::floor(begin * factor));
+  begin = static_cast<gint>(first);
+  length = static_cast<guint>(std::max(0.0, end - first));
+}
+
 // x becomes (x + 0.5) s - 0.5 in each direction, so that pixels keep the area that they cover.
 static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* scale) {
   const double sx = GST_VIDEO_INFO_WIDTH(scale->out_info) /
@@ -82,12 +93,8 @@ static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* 
   meta->semi_major = after->semi_major;
   meta->semi_minor = after->semi_minor;
   meta->angle_rad = after->angle_rad;
-  const int right = static_cast<int>(std::ceil((meta->roi_x + int(meta->roi_width)) * sx));
-  const int bottom = static_cast<int>(std::ceil((meta->roi_y + int(meta->roi_height)) * sy));
-  meta->roi_x = static_cast<int>(std::floor(meta->roi_x * sx));
-  meta->roi_y = static_cast<int>(std::floor(meta->roi_y * sy));
-  meta->roi_width = static_cast<guint>(right - meta->roi_x);
-  meta->roi_height = static_cast<guint>(bottom - meta->roi_y);
+  scale_span(meta->roi_x, meta->roi_width, sx);
+  scale_span(meta->roi_y, meta->roi_height, sy);
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(scale->out_info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(scale->out_info));
   return TRUE;

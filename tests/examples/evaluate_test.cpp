@@ -84,6 +84,17 @@ TEST_F(Dataset, ReadsThePublishedForm) {
   EXPECT_FALSE(frames[2].truth.is_labelled);
 }
 
+TEST_F(Dataset, KeepsFoldersOfTheSameNameApart) {
+  write("gt.csv",
+        "image,cx,cy,semi_major,semi_minor,angle_rad\n"
+        "one/img/1.png,,,,,\ntwo/img/1.png,,,,,\n3.png,,,,,\n");
+  const auto sequences = read_dataset(folder_);
+  ASSERT_EQ(sequences.size(), 3U);
+  EXPECT_EQ(sequences[0].name, folder_.filename().string());
+  EXPECT_EQ(sequences[1].name, "one/img");
+  EXPECT_EQ(sequences[2].name, "two/img");
+}
+
 TEST_F(Dataset, NamesFileAndLineOfWhatIsBroken) {
   EXPECT_NE(error().find("neither gt.csv nor ground_truth.txt"), std::string::npos);
   const std::string header = "image,cx,cy,semi_major,semi_minor,angle_rad\n";

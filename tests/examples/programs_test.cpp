@@ -54,8 +54,10 @@ TEST_F(Programs, DemoWritesVideoTextAndContactSheet) {
   // What it has written it can also read.
   const fs::path again = folder_ / "again";
   const Outcome second =
-      run("ellipse-demo", (folder_ / "annotated.mkv").string() + " --out " + again.string());
+      run("ellipse-demo",
+          (folder_ / "annotated.mkv").string() + " --frames 25 --out " + again.string());
   EXPECT_EQ(second.status, 0) << second.text;
+  EXPECT_NE(second.text.find("frames                      25"), std::string::npos) << second.text;
   EXPECT_TRUE(fs::exists(again / "contact_sheet.png"));
 }
 

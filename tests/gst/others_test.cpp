@@ -87,6 +87,17 @@ TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
   }
 }
 
+TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
+  const std::string caps = caps_of("GRAY8", 64, 64);
+  const auto harness = harness_of("ellipseoverlay overlay=label", caps, caps);
+  auto buffer = buffer_of(Picture(64, 64, 50), info_of("GRAY8", 64, 64));
+  add_circle(buffer.get(), 32.0, 32.0, 10.0);
+  gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->state =
+      static_cast<GstEllipseState>(7);
+  const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
+  EXPECT_TRUE(out);
+}
+
 TEST(EllipseOverlay, TransparentColourDrawsNothing) {
   const Picture picture = drawn("GRAY8", 100, 100, "overlay=ellipse overlay-color=0x00ffffff");
   for (const auto level : picture.pixels) EXPECT_EQ(level, 128);

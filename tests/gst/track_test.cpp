@@ -372,6 +372,66 @@ TEST(EllipseTrack, SignalsAcquisitionAndLoss) {
   EXPECT_EQ(heard, "+-+");
 }
 
+TEST(EllipseTrack, LatenessThatIsNotItsOwnLeavesItSomeFrames) {
+  const auto harness = tracker();
+  std::string pattern;
+  for (guint64 i = 0; i < 12; ++i) {
+    // The sink is a second late, frame after frame.
+    gst_harness_push_upstream_event(
+        harness.get(),
+        gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW, 0.5, GST_SECOND, i * 33 * GST_MSECOND));
+    auto buffer = gray_buffer_of(ring_picture());
+    GST_BUFFER_PTS(buffer.get()) = i * 33 * GST_MSECOND;
+    pattern += target_on(push(harness, std::move(buffer))) != nullptr ? 'x' : '.';
+  }
+  EXPECT_EQ(pattern, "....x....x..");
+}
+
+TEST(EllipseTrack, ResetTellsOfTheLoss) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  push(harness, gray_buffer_of(ring_picture()));
+  BusTap bus(element);
+  int losses = 0;
+  g_signal_connect(
+      element, "target-lost", G_CALLBACK(+[](GstElement*, int* count) { ++*count; }), &losses);
+  g_signal_emit_by_name(element, "reset");
+  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  EXPECT_EQ(losses, 1);
+  EXPECT_EQ(stat(element, "lost"), 1U);
+  EXPECT_EQ(structure_property(element, "target"), nullptr);
+  const auto lost = bus.pop(GST_MESSAGE_ELEMENT);
+  ASSERT_TRUE(lost);
+  EXPECT_STREQ(gst_structure_get_string(gst_message_get_structure(lost.get()), "state"), "lost");
+  EXPECT_FALSE(bus.pop(GST_MESSAGE_ELEMENT));
+}
+
+TEST(EllipseTrack, SegmentsInBytesPass) {
+  const auto harness = tracker("messages=every-frame");
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_BYTES);
+  gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+}
+
+TEST(EllipseTrack, ReportsNoAxisBeyondItsLimit) {
+  const auto harness = tracker();
+  for (double limit = 99.9; limit < 100.1; limit += 0.005) {  // the ring is 100 px across
+    g_object_set(element_of(harness), "max-axis", limit, nullptr);
+    const auto out = push(harness, gray_buffer_of(ring_picture()));
+    const GstEllipseMeta* meta = target_on(out);
+    EXPECT_LE(meta != nullptr ? 2.0 * meta->semi_major : 0.0, limit);
+  }
+}
+
+TEST(EllipseTrack, LoweringMaxScaleActsAtOnce) {
+  const auto harness = tracker("max-target-size=40 min-target-size=10");
+  for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 4U);
+  g_object_set(element_of(harness), "max-scale", 2, nullptr);
+  EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 2U);
+}
+
 TEST(EllipseTrack, ResetStartsOver) {
   const auto harness = tracker();
   push(harness, gray_buffer_of(ring_picture()));
