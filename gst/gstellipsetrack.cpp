@@ -25,50 +25,30 @@
 #include "core/tracker.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/overlay.hpp"
+#include "gst/target_meta.hpp"
+#include "gst/track_properties.hpp"
 #include "gst/track_stats.hpp"
 #include "gst/video_view.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(gst_ellipse_track_debug);
 #define GST_CAT_DEFAULT gst_ellipse_track_debug
 
-enum { MESSAGES_NONE, MESSAGES_ON_CHANGE, MESSAGES_EVERY_FRAME };
-
 enum { SIGNAL_TARGET_ACQUIRED, SIGNAL_TARGET_LOST, SIGNAL_RESET, N_SIGNALS };
 
 enum {
   PROP_0,
-  PROP_DETECTOR,
-  PROP_TRACKING,
-  PROP_INTERVAL,
-  PROP_MESSAGES,
-  PROP_ATTACH_ROI_META,
   PROP_TARGET,
   PROP_STATS,
-  PROP_OVERLAY,
-  PROP_OVERLAY_COLOR,
-  PROP_LINE_WIDTH,
-  PROP_FIRST_SETTING,  // the numbers of setting_infos() from here on
+  PROP_FIRST_SETTING,  // those of TrackProperties from here on
 };
 
 static guint signals[N_SIGNALS];
 
 namespace {
 
-constexpr guint kDefaultInterval = 1;
-
 // Skipping helps where the analysis is what is late. Where another element is, the target must not
 // be out of sight for good: after so many late frames one is analysed all the same.
 constexpr guint kMostLateFrames = 4;
-constexpr gboolean kDefaultAttachRoiMeta = TRUE;
-
-// All that properties set; the streaming thread takes one copy a frame.
-struct Settings {
-  ellipse::TrackerSettings tracker;
-  OverlayStyle overlay;
-  guint interval = kDefaultInterval;
-  int messages = MESSAGES_ON_CHANGE;
-  bool attach_roi_meta = kDefaultAttachRoiMeta;
-};
 
 // What the streaming thread keeps from frame to frame.
 struct Stream {
@@ -84,7 +64,7 @@ struct _GstEllipseTrack {
   GstVideoFilter parent;
 
   // Under the object lock.
-  Settings* settings;
+  TrackProperties* properties;
   TrackStats* stats;
   GstStructure* target;
   GstClockTime earliest_time;
@@ -117,77 +97,22 @@ static GstStaticPadTemplate src_template =
                             GST_PAD_ALWAYS,
                             GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
 
-static GType gst_ellipse_detector_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::DetectorKind::kContours), "Contours: Keipour et al. 2021", "contours"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseDetector", kValues);
-  return kType;
-}
-
-static GType gst_ellipse_tracking_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::TrackingMode::kNone), "Each frame by itself", "none"},
-      {int(ellipse::TrackingMode::kRedetect),
-       "Detect again around the last place: Keipour et al. 2021",
-       "redetect"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseTracking", kValues);
-  return kType;
-}
-
-static GType gst_ellipse_messages_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {MESSAGES_NONE, "No messages", "none"},
-      {MESSAGES_ON_CHANGE, "When the state or the id of the target changes", "on-change"},
-      {MESSAGES_EVERY_FRAME, "For every analysed frame", "every-frame"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseMessages", kValues);
-  return kType;
-}
-
-static const gchar* state_nick(const std::optional<ellipse::Target>& target) {
-  if (!target) return "lost";
-  switch (target->state) {
-    case ellipse::TargetState::kDetected:
-      return "detected";
-    case ellipse::TargetState::kTracked:
-      return "tracked";
-    case ellipse::TargetState::kPredicted:
-      return "predicted";
-  }
-  return "lost";
-}
-
 /* Properties */
 
-static double number_of(const GValue* value, bool is_integer) {
-  return is_integer ? g_value_get_uint(value) : g_value_get_double(value);
-}
-
-static void change(ellipse::TrackerSettings& settings, guint id, const GValue* value) {
-  if (id == PROP_DETECTOR) {
-    settings.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
-  } else if (id == PROP_TRACKING) {
-    settings.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
-  } else {
-    const ellipse::SettingInfo& info = ellipse::setting_infos()[id - PROP_FIRST_SETTING];
-    info.set(settings, number_of(value, info.is_integer));
-  }
-}
-
 // Refuses what does not fit together, names it, and keeps the old value.
-static void set_tracker_property(GstEllipseTrack* self, guint id, const GValue* value) {
+static void gst_ellipse_track_set_property(GObject* object,
+                                           guint id,
+                                           const GValue* value,
+                                           GParamSpec* pspec) {
+  auto* self = GST_ELLIPSE_TRACK(object);
+  if (id < PROP_FIRST_SETTING) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
   std::string refusal;
   GST_OBJECT_LOCK(self);
-  ellipse::TrackerSettings wanted = self->settings->tracker;
   try {
-    change(wanted, id, value);
-    wanted.validate();
-    self->settings->tracker = wanted;
+    self->properties->set(id - PROP_FIRST_SETTING, value);
   } catch (const std::exception& error) {
     refusal = error.what();
   }
@@ -198,137 +123,45 @@ static void set_tracker_property(GstEllipseTrack* self, guint id, const GValue* 
       self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
 }
 
-static void gst_ellipse_track_set_property(GObject* object,
-                                           guint id,
-                                           const GValue* value,
-                                           GParamSpec* pspec) {
-  auto* self = GST_ELLIPSE_TRACK(object);
-  const bool is_known = id < PROP_FIRST_SETTING + ellipse::setting_infos().size();
-  if (id == PROP_DETECTOR || id == PROP_TRACKING || (id >= PROP_FIRST_SETTING && is_known)) {
-    set_tracker_property(self, id, value);
-    return;
-  }
-  GST_OBJECT_LOCK(self);
-  switch (id) {
-    case PROP_INTERVAL:
-      self->settings->interval = g_value_get_uint(value);
-      break;
-    case PROP_MESSAGES:
-      self->settings->messages = g_value_get_enum(value);
-      break;
-    case PROP_ATTACH_ROI_META:
-      self->settings->attach_roi_meta = g_value_get_boolean(value) != FALSE;
-      break;
-    case PROP_OVERLAY:
-    case PROP_OVERLAY_COLOR:
-    case PROP_LINE_WIDTH:
-      set_overlay_property(self->settings->overlay, id - PROP_OVERLAY, value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-  }
-  GST_OBJECT_UNLOCK(self);
-}
-
-static void get_setting(const ellipse::TrackerSettings& settings, guint index, GValue* value) {
-  const ellipse::SettingInfo& info = ellipse::setting_infos()[index];
-  if (info.is_integer) {
-    g_value_set_uint(value, static_cast<guint>(info.get(settings)));
-  } else {
-    g_value_set_double(value, info.get(settings));
-  }
-}
-
 static void gst_ellipse_track_get_property(GObject* object,
                                            guint id,
                                            GValue* value,
                                            GParamSpec* pspec) {
   auto* self = GST_ELLIPSE_TRACK(object);
   GST_OBJECT_LOCK(self);
-  const Settings& settings = *self->settings;
-  switch (id) {
-    case PROP_DETECTOR:
-      g_value_set_enum(value, static_cast<gint>(settings.tracker.detector));
-      break;
-    case PROP_TRACKING:
-      g_value_set_enum(value, static_cast<gint>(settings.tracker.tracking));
-      break;
-    case PROP_INTERVAL:
-      g_value_set_uint(value, settings.interval);
-      break;
-    case PROP_MESSAGES:
-      g_value_set_enum(value, settings.messages);
-      break;
-    case PROP_ATTACH_ROI_META:
-      g_value_set_boolean(value, settings.attach_roi_meta);
-      break;
-    case PROP_TARGET:
-      g_value_set_boxed(value, self->target);
-      break;
-    case PROP_STATS:
-      g_value_take_boxed(value, self->stats->to_structure());
-      break;
-    case PROP_OVERLAY:
-    case PROP_OVERLAY_COLOR:
-    case PROP_LINE_WIDTH:
-      get_overlay_property(settings.overlay, id - PROP_OVERLAY, value);
-      break;
-    default:
-      if (id - PROP_FIRST_SETTING < ellipse::setting_infos().size()) {
-        get_setting(settings.tracker, id - PROP_FIRST_SETTING, value);
-      } else {
-        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-      }
+  if (id == PROP_TARGET) {
+    g_value_set_boxed(value, self->target);
+  } else if (id == PROP_STATS) {
+    g_value_take_boxed(value, self->stats->to_structure());
+  } else if (id >= PROP_FIRST_SETTING) {
+    self->properties->get(id - PROP_FIRST_SETTING, value);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
   }
   GST_OBJECT_UNLOCK(self);
 }
 
+static void install_properties(GObjectClass* object_class) {
+  const auto readable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  g_object_class_install_property(
+      object_class,
+      PROP_TARGET,
+      g_param_spec_boxed("target",
+                         "Target",
+                         "The target in the last analysed frame, NULL where there was none",
+                         GST_TYPE_STRUCTURE,
+                         readable));
+  g_object_class_install_property(object_class,
+                                  PROP_STATS,
+                                  g_param_spec_boxed("stats",
+                                                     "Statistics",
+                                                     "Counts of frames, and processing times in ns",
+                                                     GST_TYPE_STRUCTURE,
+                                                     readable));
+  TrackProperties::install(object_class, PROP_FIRST_SETTING);
+}
+
 /* What goes out with a frame */
-
-static const GstEllipseMeta* attach_ellipse_meta(GstBuffer* buffer,
-                                                 const ellipse::Target& target,
-                                                 const GstVideoInfo& info,
-                                                 GstClockTime processing_time) {
-  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
-  meta->state = static_cast<GstEllipseState>(target.state);
-  meta->id = target.id;
-  meta->cx = target.ellipse.cx;
-  meta->cy = target.ellipse.cy;
-  meta->semi_major = target.ellipse.semi_major;
-  meta->semi_minor = target.ellipse.semi_minor;
-  meta->angle_rad = target.ellipse.angle_rad;
-  meta->contour_overlap = target.contour_overlap;
-  meta->ellipse_overlap = target.ellipse_overlap;
-  meta->visible_fraction = target.visible_fraction;
-  meta->scale = static_cast<guint>(target.scale);
-  meta->roi_x = target.search_region.x;
-  meta->roi_y = target.search_region.y;
-  meta->roi_width = static_cast<guint>(target.search_region.width);
-  meta->roi_height = static_cast<guint>(target.search_region.height);
-  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
-  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
-  meta->pts = GST_BUFFER_PTS(buffer);
-  meta->processing_time = processing_time;
-  return meta;
-}
-
-// The standard metadata for a region of interest: the target's upright box inside the frame.
-static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta* meta) {
-  const ellipse::Ellipse e{meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
-  const Eigen::Vector2d half = ellipse::half_extent(e);
-  const auto first = [](double at) { return static_cast<guint>(std::max(0.0, std::floor(at))); };
-  const auto last = [](double at, guint size) {
-    return static_cast<guint>(std::clamp(std::ceil(at) + 1.0, 0.0, static_cast<double>(size)));
-  };
-  const guint left = first(e.cx - half.x());
-  const guint top = first(e.cy - half.y());
-  const guint right = last(e.cx + half.x(), meta->frame_width);
-  const guint bottom = last(e.cy + half.y(), meta->frame_height);
-  if (left >= right || top >= bottom) return;
-  GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
-      buffer, "ellipse", left, top, right - left, bottom - top);
-  gst_video_region_of_interest_meta_add_param(roi, gst_ellipse_meta_to_structure(meta));
-}
 
 // NONE where the segment is not in time, as behind a filesrc of raw frames.
 static GstClockTime stream_time_of(GstEllipseTrack* self, GstClockTime pts) {
@@ -376,14 +209,14 @@ static void emit_change(GstEllipseTrack* self,
 // @return The metadata of the target, owned by the buffer; nullptr where there is none.
 static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                      GstBuffer* buffer,
-                                     const Settings& settings,
+                                     const TrackProperties& properties,
                                      const std::optional<ellipse::Target>& target,
                                      GstClockTime processing_time) {
   const GstEllipseMeta* meta = nullptr;
   GstStructure* details = nullptr;
   if (target) {
-    meta = attach_ellipse_meta(buffer, *target, GST_VIDEO_FILTER(self)->in_info, processing_time);
-    if (settings.attach_roi_meta) attach_roi_meta(buffer, meta);
+    meta = attach_target_meta(buffer, *target, GST_VIDEO_FILTER(self)->in_info, processing_time);
+    if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
     details = gst_ellipse_meta_to_structure(meta);
   }
   const std::optional<ellipse::Target> before = self->stream->last_target;
@@ -397,8 +230,8 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
 
   const bool has_changed = before.has_value() != target.has_value() ||
                            (target && (before->id != target->id || before->state != target->state));
-  if (settings.messages == MESSAGES_EVERY_FRAME ||
-      (settings.messages == MESSAGES_ON_CHANGE && has_changed)) {
+  if (properties.messages == MESSAGES_EVERY_FRAME ||
+      (properties.messages == MESSAGES_ON_CHANGE && has_changed)) {
     post_message(self, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer), target, details);
   }
   emit_change(self, before, target, details);
@@ -409,7 +242,7 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
 /* Streaming */
 
 // Starts over, and says so to those who still count on the target.
-static void forget_target(GstEllipseTrack* self, const Settings& settings) {
+static void forget_target(GstEllipseTrack* self, const TrackProperties& properties) {
   self->stream->tracker.reset();
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target.reset();
@@ -418,20 +251,20 @@ static void forget_target(GstEllipseTrack* self, const Settings& settings) {
   gst_clear_structure(&self->target);
   GST_OBJECT_UNLOCK(self);
   if (!before) return;
-  if (settings.messages != MESSAGES_NONE) {
+  if (properties.messages != MESSAGES_NONE) {
     post_message(self, GST_CLOCK_TIME_NONE, GST_CLOCK_TIME_NONE, std::nullopt, nullptr);
   }
   emit_change(self, before, std::nullopt, nullptr);
 }
 
-static Settings take_settings(GstEllipseTrack* self) {
+static TrackProperties take_properties(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
-  const Settings settings = *self->settings;
+  const TrackProperties properties = *self->properties;
   const bool reset_is_due = self->reset_is_due;
   self->reset_is_due = false;
   GST_OBJECT_UNLOCK(self);
-  if (reset_is_due) forget_target(self, settings);
-  return settings;
+  if (reset_is_due) forget_target(self, properties);
+  return properties;
 }
 
 static bool is_too_late(GstEllipseTrack* self, GstBuffer* buffer) {
@@ -461,8 +294,8 @@ static void skip(GstEllipseTrack* self) {
   GST_OBJECT_UNLOCK(self);
 }
 
-static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const Settings& settings) {
-  const bool draws = settings.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
+static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const TrackProperties& properties) {
+  const bool draws = properties.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
   MappedFrame mapped(
       GST_VIDEO_FILTER(self)->in_info, buffer, draws ? GST_MAP_READWRITE : GST_MAP_READ);
   if (!mapped.is_mapped()) {
@@ -472,12 +305,12 @@ static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const Settings& se
   }
   const GstClockTime start = gst_util_get_timestamp();
   ellipse::Tracker& tracker = self->stream->tracker;
-  tracker.configure(settings.tracker);
+  tracker.configure(properties.tracker);
   const auto target =
       tracker.process(pixel_view_of(mapped.frame()), static_cast<gint64>(GST_BUFFER_PTS(buffer)));
   const GstEllipseMeta* meta =
-      publish(self, buffer, settings, target, gst_util_get_timestamp() - start);
-  if (draws && meta != nullptr) draw_overlay(mapped.frame(), *meta, settings.overlay);
+      publish(self, buffer, properties, target, gst_util_get_timestamp() - start);
+  if (draws && meta != nullptr) draw_overlay(mapped.frame(), *meta, properties.overlay);
 }
 
 static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
@@ -485,14 +318,14 @@ static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstB
   const GstClockTime stream_time = stream_time_of(self, GST_BUFFER_PTS(buffer));
   if (GST_CLOCK_TIME_IS_VALID(stream_time)) gst_object_sync_values(GST_OBJECT(self), stream_time);
 
-  const Settings settings = take_settings(self);
-  const bool is_turn = self->stream->frame++ % settings.interval == 0;
+  const TrackProperties properties = take_properties(self);
+  const bool is_turn = self->stream->frame++ % properties.interval == 0;
   if (!is_turn || must_hurry(self, buffer)) {
     skip(self);
     return GST_FLOW_OK;
   }
   try {
-    analyse(self, buffer, settings);
+    analyse(self, buffer, properties);
   } catch (const std::exception& error) {
     GST_ELEMENT_WARNING(
         self, STREAM, FAILED, ("A frame could not be analysed: %s", error.what()), ("it passes"));
@@ -520,10 +353,10 @@ static gboolean gst_ellipse_track_src_event(GstBaseTransform* base, GstEvent* ev
 
 static void forget_stream(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
-  const Settings settings = *self->settings;
+  const TrackProperties properties = *self->properties;
   self->earliest_time = GST_CLOCK_TIME_NONE;
   GST_OBJECT_UNLOCK(self);
-  forget_target(self, settings);
+  forget_target(self, properties);
   self->stream->frame = 0;
   self->stream->late_frames = 0;
 }
@@ -568,96 +401,16 @@ static void gst_ellipse_track_finalize(GObject* object) {
   gst_clear_structure(&self->target);
   delete self->stream;
   delete self->stats;
-  delete self->settings;
+  delete self->properties;
   G_OBJECT_CLASS(gst_ellipse_track_parent_class)->finalize(object);
 }
 
 static void gst_ellipse_track_init(GstEllipseTrack* self) {
-  self->settings = new Settings();
+  self->properties = new TrackProperties();
   self->stats = new TrackStats();
   self->stream = new Stream();
   self->earliest_time = GST_CLOCK_TIME_NONE;
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
-}
-
-static GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
-  const double initial = info.get(ellipse::TrackerSettings{});
-  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                              GST_PARAM_MUTABLE_PLAYING |
-                                              (info.is_controllable ? GST_PARAM_CONTROLLABLE : 0));
-  if (info.is_integer) {
-    return g_param_spec_uint(info.name,
-                             info.name,
-                             info.description,
-                             static_cast<guint>(info.range.min),
-                             static_cast<guint>(info.range.max),
-                             static_cast<guint>(initial),
-                             flags);
-  }
-  return g_param_spec_double(
-      info.name, info.name, info.description, info.range.min, info.range.max, initial, flags);
-}
-
-static void install_properties(GObjectClass* object_class) {
-  const ellipse::TrackerSettings initial;
-  const auto playing = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                GST_PARAM_MUTABLE_PLAYING);
-  const auto readable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  const auto install = [&](guint id, GParamSpec* spec) {
-    g_object_class_install_property(object_class, id, spec);
-  };
-  install(PROP_DETECTOR,
-          g_param_spec_enum("detector",
-                            "Detector",
-                            "How ellipses are found in a picture",
-                            gst_ellipse_detector_get_type(),
-                            static_cast<gint>(initial.detector),
-                            playing));
-  install(PROP_TRACKING,
-          g_param_spec_enum("tracking",
-                            "Tracking",
-                            "How the target is followed from frame to frame",
-                            gst_ellipse_tracking_get_type(),
-                            static_cast<gint>(initial.tracking),
-                            playing));
-  install(PROP_INTERVAL,
-          g_param_spec_uint("interval",
-                            "Interval",
-                            "Analyse every n-th frame; the others pass as they are",
-                            1,
-                            G_MAXUINT,
-                            kDefaultInterval,
-                            playing));
-  install(PROP_MESSAGES,
-          g_param_spec_enum("messages",
-                            "Messages",
-                            "When an element message \"ellipse\" is posted on the bus",
-                            gst_ellipse_messages_get_type(),
-                            MESSAGES_ON_CHANGE,
-                            playing));
-  install(PROP_ATTACH_ROI_META,
-          g_param_spec_boolean("attach-roi-meta",
-                               "Attach ROI meta",
-                               "Also attach the target's box as GstVideoRegionOfInterestMeta",
-                               kDefaultAttachRoiMeta,
-                               playing));
-  install(PROP_TARGET,
-          g_param_spec_boxed("target",
-                             "Target",
-                             "The target in the last analysed frame, NULL where there was none",
-                             GST_TYPE_STRUCTURE,
-                             readable));
-  install(PROP_STATS,
-          g_param_spec_boxed("stats",
-                             "Statistics",
-                             "Counts of frames, and processing times in ns",
-                             GST_TYPE_STRUCTURE,
-                             readable));
-  install_overlay_properties(object_class, PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
-  guint id = PROP_FIRST_SETTING;
-  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
-    install(id++, param_spec_of(info));
-  }
 }
 
 static void install_signals(GstEllipseTrackClass* klass) {
@@ -710,9 +463,4 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
   base_class->start = gst_ellipse_track_start;
   base_class->stop = gst_ellipse_track_stop;
   base_class->propose_allocation = gst_ellipse_track_propose_allocation;
-
-  gst_type_mark_as_plugin_api(gst_ellipse_detector_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(gst_ellipse_tracking_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(gst_ellipse_messages_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(GST_TYPE_ELLIPSE_OVERLAY_FLAGS, static_cast<GstPluginAPIFlags>(0));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -217,7 +218,7 @@ void draw_region(Painter& painter, const GstEllipseMeta& meta, double width_px) 
 
 std::string label_of(const GstEllipseMeta& meta) {
   static constexpr std::array kStates = {"detected", "tracked", "predicted"};
-  const auto state = static_cast<std::size_t>(meta.state);
+  const auto state = std::bit_cast<guint32>(meta.state);  // whatever number somebody has put there
   std::ostringstream label;
   if (meta.role == GST_ELLIPSE_ROLE_TRUTH) {
     label << "truth ";

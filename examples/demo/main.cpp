@@ -152,9 +152,8 @@ class Demo {
     }
     const fs::path folder = options.output;
     const std::string description =
-        source_for(options) + " ! videoconvert ! identity eos-after=" +
-        std::to_string(options.frames > 0 ? options.frames + 1 : -1) +
-        " ! ellipsetrack name=track ! tee name=analysed "
+        source_for(options) +
+        " ! videoconvert ! ellipsetrack name=track ! tee name=analysed "
         "analysed. ! queue ! ellipseoverlay overlay=ellipse+centre+label ! videoconvert "
         "! tee name=drawn "
         "drawn. ! queue ! videoconvert ! jpegenc ! matroskamux ! filesink location=" +
@@ -180,6 +179,7 @@ class Demo {
   Demo& operator=(const Demo&) = delete;
 
   void run() {
+    if (options_.frames > 0) limit_frames();
     gst_element_set_state(pipeline_, GST_STATE_PLAYING);
     GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline_), "frames");
     const bool is_terminal = isatty(STDERR_FILENO) != 0;
@@ -224,6 +224,25 @@ class Demo {
   }
 
  private:
+  // Lets so many frames into the tracker as were asked for, and ends the stream behind them.
+  void limit_frames() {
+    GstElement* track = gst_bin_get_by_name(GST_BIN(pipeline_), "track");
+    GstPad* pad = gst_element_get_static_pad(track, "sink");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, on_frame, this, nullptr);
+    gst_object_unref(pad);
+    gst_object_unref(track);
+  }
+
+  static GstPadProbeReturn on_frame(GstPad* pad, GstPadProbeInfo*, gpointer data) {
+    auto* demo = static_cast<Demo*>(data);
+    if (demo->entered_ < demo->options_.frames) {
+      ++demo->entered_;
+      return GST_PAD_PROBE_OK;
+    }
+    if (demo->entered_++ == demo->options_.frames) gst_pad_send_event(pad, gst_event_new_eos());
+    return GST_PAD_PROBE_DROP;
+  }
+
   // Waits for a frame, but no longer than the pipeline lives. NULL at its end.
   GstSample* next_sample(GstAppSink* sink) {
     constexpr GstClockTime kGlance = 100 * GST_MSECOND;
@@ -280,6 +299,7 @@ class Demo {
   GstElement* pipeline_ = nullptr;
   ContactSheet sheet_;
   bool has_ended_ = false;
+  int entered_ = 0;  // frames that went into the tracker; the streaming thread's
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -186,8 +187,8 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
   // clang-format off
   return gst_structure_new("ellipse",
-                           "role", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_ROLE, meta->role),
-                           "state", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_STATE, meta->state),
+                           "role", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_ROLE, std::bit_cast<gint>(meta->role)),
+                           "state", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_STATE, std::bit_cast<gint>(meta->state)),
                            "id", G_TYPE_UINT64, meta->id,
                            "cx", G_TYPE_DOUBLE, meta->cx,
                            "cy", G_TYPE_DOUBLE, meta->cy,
@@ -235,11 +236,13 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   GString* json = g_string_new(nullptr);
   g_string_append_printf(json,
                          "{\"role\":\"%s\",\"id\":%" G_GUINT64_FORMAT,
-                         nick_of(GST_TYPE_ELLIPSE_ROLE, meta->role),
+                         nick_of(GST_TYPE_ELLIPSE_ROLE, std::bit_cast<gint>(meta->role)),
                          meta->id);
   const bool was_found = meta->role != GST_ELLIPSE_ROLE_TRUTH;
   if (was_found) {
-    g_string_append_printf(json, ",\"state\":\"%s\"", nick_of(GST_TYPE_ELLIPSE_STATE, meta->state));
+    g_string_append_printf(json,
+                           ",\"state\":\"%s\"",
+                           nick_of(GST_TYPE_ELLIPSE_STATE, std::bit_cast<gint>(meta->state)));
   }
   append_number(json, "cx", "%.4f", meta->cx);
   append_number(json, "cy", "%.4f", meta->cy);
