@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
+#include <thread>
 
 #include "tests/gst/support.hpp"
 
@@ -293,6 +295,26 @@ TEST(EllipseTrack, ExtremeSettingsPass) {
       "max-axis=32768 min-target-size=1 max-target-size=1 track-contour-overlap=0.0001");
   for (int i = 0; i < 20; ++i) push(harness, gray_buffer_of(ring_picture()));
   EXPECT_EQ(stat(element_of(harness), "frames"), 20U);
+}
+
+TEST(EllipseTrack, TakesPropertiesFromOtherThreads) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  std::atomic<bool> is_done = false;
+  std::thread writer([&] {
+    for (int i = 0; !is_done; ++i) {
+      g_object_set(element, "max-axis", 100.0 + i % 500, "interval", 1 + i % 2, nullptr);
+      g_object_set(element, "tracking", i % 2, "overlay", i % 32, "messages", i % 3, nullptr);
+      for (const char* name : {"stats", "target"}) {
+        const Owned<GstStructure> read(structure_property(element, name));
+      }
+      g_signal_emit_by_name(element, "reset");
+    }
+  });
+  for (int i = 0; i < 60; ++i) push(harness, gray_buffer_of(ring_picture()));
+  is_done = true;
+  writer.join();
+  EXPECT_EQ(stat(element, "frames"), 60U);
 }
 
 TEST(EllipseTrack, FollowsAController) {
