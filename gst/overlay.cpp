@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -217,13 +216,11 @@ void draw_region(Painter& painter, const GstEllipseMeta& meta, double width_px) 
 }
 
 std::string label_of(const GstEllipseMeta& meta) {
-  static constexpr std::array kStates = {"detected", "tracked", "predicted"};
-  const auto state = std::bit_cast<guint32>(meta.state);  // whatever number somebody has put there
   std::ostringstream label;
   if (meta.role == GST_ELLIPSE_ROLE_TRUTH) {
     label << "truth ";
   } else {
-    label << '#' << meta.id << ' ' << (state < kStates.size() ? kStates[state] : "unknown") << ' ';
+    label << '#' << meta.id << ' ' << gst_ellipse_meta_get_state_name(&meta) << ' ';
   }
   label << std::lround(2.0 * meta.semi_major) << " x " << std::lround(2.0 * meta.semi_minor)
         << " px";

@@ -5,8 +5,8 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "core/ellipse.hpp"
@@ -42,12 +42,17 @@ GType gst_ellipse_meta_api_get_type(void) {
   return kType;
 }
 
-static const gchar* nick_of(GType type, gint value) {
+// The field is read as the number that it is: it may come from anybody, and be no value of its
+// type.
+template <class Enum>
+static const gchar* nick_of(GType type, const Enum* field) {
+  gint number = 0;
+  static_assert(sizeof(Enum) == sizeof(gint));
+  std::memcpy(&number, field, sizeof number);
   auto* enum_class = static_cast<GEnumClass*>(g_type_class_ref(type));
-  const GEnumValue* entry = g_enum_get_value(enum_class, value);
-  const gchar* nick = entry != nullptr ? entry->value_nick : "unknown";
+  const GEnumValue* entry = g_enum_get_value(enum_class, number);
   g_type_class_unref(enum_class);  // static types keep their strings
-  return nick;
+  return entry != nullptr ? entry->value_nick : "unknown";
 }
 
 // All fields but the parent.
@@ -176,6 +181,28 @@ GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 }
 
 /**
+ * gst_ellipse_meta_get_role_name:
+ * @meta: a #GstEllipseMeta
+ *
+ * Returns: (transfer none): "target", "candidate" or "truth"; "unknown" for any other number
+ */
+const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  return nick_of(GST_TYPE_ELLIPSE_ROLE, &meta->role);
+}
+
+/**
+ * gst_ellipse_meta_get_state_name:
+ * @meta: a #GstEllipseMeta
+ *
+ * Returns: (transfer none): "detected", "tracked" or "predicted"; "unknown" for any other number
+ */
+const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  return nick_of(GST_TYPE_ELLIPSE_STATE, &meta->state);
+}
+
+/**
  * gst_ellipse_meta_to_structure:
  * @meta: a #GstEllipseMeta
  *
@@ -187,8 +214,8 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
   // clang-format off
   return gst_structure_new("ellipse",
-                           "role", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_ROLE, std::bit_cast<gint>(meta->role)),
-                           "state", G_TYPE_STRING, nick_of(GST_TYPE_ELLIPSE_STATE, std::bit_cast<gint>(meta->state)),
+                           "role", G_TYPE_STRING, gst_ellipse_meta_get_role_name(meta),
+                           "state", G_TYPE_STRING, gst_ellipse_meta_get_state_name(meta),
                            "id", G_TYPE_UINT64, meta->id,
                            "cx", G_TYPE_DOUBLE, meta->cx,
                            "cy", G_TYPE_DOUBLE, meta->cy,
@@ -236,13 +263,11 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   GString* json = g_string_new(nullptr);
   g_string_append_printf(json,
                          "{\"role\":\"%s\",\"id\":%" G_GUINT64_FORMAT,
-                         nick_of(GST_TYPE_ELLIPSE_ROLE, std::bit_cast<gint>(meta->role)),
+                         gst_ellipse_meta_get_role_name(meta),
                          meta->id);
   const bool was_found = meta->role != GST_ELLIPSE_ROLE_TRUTH;
   if (was_found) {
-    g_string_append_printf(json,
-                           ",\"state\":\"%s\"",
-                           nick_of(GST_TYPE_ELLIPSE_STATE, std::bit_cast<gint>(meta->state)));
+    g_string_append_printf(json, ",\"state\":\"%s\"", gst_ellipse_meta_get_state_name(meta));
   }
   append_number(json, "cx", "%.4f", meta->cx);
   append_number(json, "cy", "%.4f", meta->cy);

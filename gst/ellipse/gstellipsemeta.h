@@ -103,6 +103,10 @@ GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 
 GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* state);
 
+const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta);
+
+const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta);
+
 GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta);
 
 gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta);

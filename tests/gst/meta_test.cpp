@@ -148,6 +148,16 @@ TEST(EllipseMeta, JsonIsOneValidObjectWithoutNaN) {
   g_free(text);
 }
 
+TEST(EllipseMeta, NamesRoleAndState) {
+  const auto buffer = empty_buffer();
+  GstEllipseMeta* meta = add_example(buffer.get());
+  EXPECT_STREQ(gst_ellipse_meta_get_role_name(meta), "target");
+  EXPECT_STREQ(gst_ellipse_meta_get_state_name(meta), "tracked");
+  const gint foreign = 7;
+  std::memcpy(&meta->state, &foreign, sizeof foreign);
+  EXPECT_STREQ(gst_ellipse_meta_get_state_name(meta), "unknown");
+}
+
 TEST(EllipseMeta, TypesAreNamed) {
   EXPECT_STREQ(g_type_name(GST_TYPE_ELLIPSE_ROLE), "GstEllipseRole");
   EXPECT_STREQ(g_type_name(GST_TYPE_ELLIPSE_STATE), "GstEllipseState");

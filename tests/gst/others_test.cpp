@@ -92,8 +92,10 @@ TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
   const auto harness = harness_of("ellipseoverlay overlay=label", caps, caps);
   auto buffer = buffer_of(Picture(64, 64, 50), info_of("GRAY8", 64, 64));
   add_circle(buffer.get(), 32.0, 32.0, 10.0);
-  gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->state =
-      static_cast<GstEllipseState>(7);
+  const gint foreign = 7;
+  std::memcpy(&gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->state,
+              &foreign,
+              sizeof foreign);
   const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
   EXPECT_TRUE(out);
 }
