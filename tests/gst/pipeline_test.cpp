@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/ellipse.hpp"
 #include "tests/gst/support.hpp"
@@ -77,6 +78,35 @@ TEST(Pipeline, MetadataFollowsConversionAndScaling) {
     EXPECT_GT(truth->aspect_ratio(), 1.3);  // squeezed to half the width
     EXPECT_GT(ellipse::iou_inside(*truth, *target, 320, 360), 0.97);
   }
+}
+
+// Notes the memory of each buffer that passes a pad.
+GstPadProbeReturn note_memory(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  static_cast<std::vector<GstMemory*>*>(data)->push_back(
+      gst_buffer_peek_memory(GST_PAD_PROBE_INFO_BUFFER(info), 0));
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(Pipeline, MemoryBehindATeeIsTheInputs) {
+  std::vector<GstMemory*> before;
+  std::vector<GstMemory*> behind;
+  const auto watch = [&](GstElement* pipeline) {
+    GstElement* track = gst_bin_get_by_name(GST_BIN(pipeline), "track");
+    const auto probe = [&](const char* name, std::vector<GstMemory*>* memories) {
+      GstPad* pad = gst_element_get_static_pad(track, name);
+      gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, note_memory, memories, nullptr);
+      gst_object_unref(pad);
+    };
+    probe("sink", &before);
+    probe("src", &behind);
+    gst_object_unref(track);
+  };
+  ASSERT_EQ(run_pipeline("ellipsetestsrc num-buffers=20 ! tee name=t t. ! queue ! fakesink "
+                         "t. ! queue ! ellipsetrack name=track ! fakesink",
+                         watch),
+            "");
+  EXPECT_EQ(before.size(), 20U);
+  EXPECT_EQ(before, behind);
 }
 
 TEST(Pipeline, TwoTrackersShareAFrameAfterATee) {
