@@ -88,15 +88,13 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
   }
   if (seed == nullptr) return std::nullopt;
 
-  const Detection* target = seed;
+  const Detection* target = nullptr;
   for (const Detection& member : detections) {
     const bool counts = is_possible(member) && are_concentric(seed->ellipse, member.ellipse) &&
                         member.score >= kLeastShareOfBestScore * best.best_score;
-    if (!counts) continue;
-    const bool seed_counts = target->score >= kLeastShareOfBestScore * best.best_score;
-    if (!seed_counts || is_better(member, *target)) target = &member;
+    if (counts && (target == nullptr || is_better(member, *target))) target = &member;
   }
-  return *target;
+  return target != nullptr ? *target : *seed;
 }
 
 }  // namespace ellipse

@@ -42,18 +42,6 @@ GST_ELEMENT_REGISTER_DEFINE(ellipseoverlay,
                             GST_RANK_NONE,
                             GST_TYPE_ELLIPSE_OVERLAY)
 
-static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink",
-                            GST_PAD_SINK,
-                            GST_PAD_ALWAYS,
-                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
-
-static GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src",
-                            GST_PAD_SRC,
-                            GST_PAD_ALWAYS,
-                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
-
 static void gst_ellipse_overlay_set_property(GObject* object,
                                              guint id,
                                              const GValue* value,
@@ -162,8 +150,7 @@ static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
                                         "Filter/Effect/Video",
                                         "Draws the ellipses that buffers carry as metadata",
                                         "The gst-ellipse authors");
-  gst_element_class_add_static_pad_template(element_class, &sink_template);
-  gst_element_class_add_static_pad_template(element_class, &src_template);
+  add_video_pad_templates(element_class);
 
   auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
   base_class->transform_ip = gst_ellipse_overlay_transform_ip;

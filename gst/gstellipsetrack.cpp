@@ -85,18 +85,6 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
     GST_TYPE_ELLIPSE_TRACK,
     GST_DEBUG_CATEGORY_INIT(gst_ellipse_track_debug, "ellipsetrack", 0, "ellipse tracker"))
 
-static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink",
-                            GST_PAD_SINK,
-                            GST_PAD_ALWAYS,
-                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
-
-static GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src",
-                            GST_PAD_SRC,
-                            GST_PAD_ALWAYS,
-                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)));
-
 /* Properties */
 
 // Refuses what does not fit together, names it, and keeps the old value.
@@ -453,8 +441,7 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
                                         "Filter/Analyzer/Video",
                                         "Detects and tracks an elliptical target on every buffer",
                                         "The gst-ellipse authors");
-  gst_element_class_add_static_pad_template(element_class, &sink_template);
-  gst_element_class_add_static_pad_template(element_class, &src_template);
+  add_video_pad_templates(element_class);
 
   auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
   base_class->transform_ip = gst_ellipse_track_transform_ip;

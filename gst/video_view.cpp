@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "gst/video_view.hpp"
 
+#define VIDEO_CAPS GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
+
+static GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
+
+void add_video_pad_templates(GstElementClass* element_class) {
+  gst_element_class_add_static_pad_template(element_class, &sink_template);
+  gst_element_class_add_static_pad_template(element_class, &src_template);
+}
+
 MappedFrame::MappedFrame(const GstVideoInfo& info, GstBuffer* buffer, GstMapFlags access)
     : is_mapped_(gst_video_frame_map(
           &frame_,

@@ -9,6 +9,9 @@
   "{ GRAY8, I420, YV12, NV12, NV21, NV16, Y41B, Y42B, Y444, YUY2, UYVY, YVYU, RGB, BGR, RGBx, " \
   "BGRx, xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }"
 
+/// Gives an element class a sink and a source pad for these formats.
+void add_video_pad_templates(GstElementClass* element_class);
+
 /// A video buffer mapped while this lives. Takes no reference, so that metadata can be attached to
 /// the buffer meanwhile.
 class MappedFrame {
