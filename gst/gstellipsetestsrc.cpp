@@ -19,27 +19,34 @@
 #include <gst/video/video.h>
 
 #include <cstring>
+#include <exception>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
-#include "core/scene.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/video_view.hpp"
 
-enum { PROP_0, PROP_SCENE, PROP_PATTERN, PROP_NOISE, PROP_SEED, PROP_IS_LIVE };
+enum { PROP_0, PROP_SCENE, PROP_PATTERN, PROP_GROUND, PROP_NOISE, PROP_SEED, PROP_IS_LIVE };
 
-enum { SCENE_APPROACH };
-
-static constexpr double kHorizontalFieldOfViewRad = 1.012;  // 58 degrees
-static constexpr double kApproachSeconds = 10.0;
+static constexpr gint kAsTheScene = -1;  // of the enum properties, and of "noise"
 static constexpr guint8 kNeutralChroma = 128;
 
 struct _GstEllipseTestSrc {
   GstPushSrc parent;
 
   // Under the object lock.
-  ellipse::Scene* scene;
-  gint path;
+  gint scene;
+  gint pattern;
+  gint ground;
+  gdouble noise;
+  guint seed;
+  gboolean is_changed;  // since the renderer was made
 
+  ellipse::SceneRenderer* renderer;
   GstVideoInfo info;
   guint64 frame;
   guint64 first_frame;      // since the frame rate was last set
@@ -60,22 +67,37 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ GRAY8, I420, YV12, NV12, NV21, Y42B, Y444 }")));
 
 static GType gst_ellipse_scene_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {SCENE_APPROACH, "Down from 20 radii to 2.6 and up again, 10 s each", "approach"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseScene", kValues);
+  static const GType kType = [] {
+    static std::vector<GEnumValue> values;
+    gint number = 0;
+    for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
+      values.push_back({number++, scene.description, scene.name});
+    }
+    values.push_back({0, nullptr, nullptr});
+    return g_enum_register_static("GstEllipseScene", values.data());
+  }();
   return kType;
 }
 
+static GType register_nicks(const char* name,
+                            std::span<const char* const> nicks,
+                            std::vector<GEnumValue>& values) {
+  values.push_back({kAsTheScene, "As the scene has it", "scene"});
+  gint number = 0;
+  for (const char* nick : nicks) values.push_back({number++, nick, nick});
+  values.push_back({0, nullptr, nullptr});
+  return g_enum_register_static(name, values.data());
+}
+
 static GType gst_ellipse_pattern_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::Pattern::kRingX), "A ring with an X inside", "ring-x"},
-      {int(ellipse::Pattern::kRing), "A ring", "ring"},
-      {int(ellipse::Pattern::kDisc), "A disc", "disc"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipsePattern", kValues);
+  static std::vector<GEnumValue> values;
+  static const GType kType = register_nicks("GstEllipsePattern", ellipse::pattern_nicks(), values);
+  return kType;
+}
+
+static GType gst_ellipse_ground_get_type(void) {
+  static std::vector<GEnumValue> values;
+  static const GType kType = register_nicks("GstEllipseGround", ellipse::ground_nicks(), values);
   return kType;
 }
 
@@ -91,20 +113,24 @@ static void gst_ellipse_test_src_set_property(GObject* object,
   GST_OBJECT_LOCK(self);
   switch (id) {
     case PROP_SCENE:
-      self->path = g_value_get_enum(value);
+      self->scene = g_value_get_enum(value);
       break;
     case PROP_PATTERN:
-      self->scene->pattern = static_cast<ellipse::Pattern>(g_value_get_enum(value));
+      self->pattern = g_value_get_enum(value);
+      break;
+    case PROP_GROUND:
+      self->ground = g_value_get_enum(value);
       break;
     case PROP_NOISE:
-      self->scene->noise = g_value_get_double(value);
+      self->noise = g_value_get_double(value);
       break;
     case PROP_SEED:
-      self->scene->seed = g_value_get_uint(value);
+      self->seed = g_value_get_uint(value);
       break;
     default:
       G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
   }
+  self->is_changed = TRUE;
   GST_OBJECT_UNLOCK(self);
 }
 
@@ -120,16 +146,19 @@ static void gst_ellipse_test_src_get_property(GObject* object,
   GST_OBJECT_LOCK(self);
   switch (id) {
     case PROP_SCENE:
-      g_value_set_enum(value, self->path);
+      g_value_set_enum(value, self->scene);
       break;
     case PROP_PATTERN:
-      g_value_set_enum(value, static_cast<gint>(self->scene->pattern));
+      g_value_set_enum(value, self->pattern);
+      break;
+    case PROP_GROUND:
+      g_value_set_enum(value, self->ground);
       break;
     case PROP_NOISE:
-      g_value_set_double(value, self->scene->noise);
+      g_value_set_double(value, self->noise);
       break;
     case PROP_SEED:
-      g_value_set_uint(value, static_cast<guint>(self->scene->seed));
+      g_value_set_uint(value, self->seed);
       break;
     default:
       G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
@@ -198,31 +227,55 @@ static void fill_chroma(GstVideoFrame& frame) {
   }
 }
 
-static void attach_truth(GstEllipseTestSrc* self,
-                         GstBuffer* buffer,
-                         const Eigen::Matrix3d& image_from_pad) {
-  const auto outer_edge = ellipse::project_circle(image_from_pad, 1.0);
-  if (!outer_edge) return;
-  const gint width = GST_VIDEO_INFO_WIDTH(&self->info);
-  const gint height = GST_VIDEO_INFO_HEIGHT(&self->info);
+static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellipse::Truth& truth) {
+  if (!truth.outer_edge) return;
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
-  meta->cx = outer_edge->cx;
-  meta->cy = outer_edge->cy;
-  meta->semi_major = outer_edge->semi_major;
-  meta->semi_minor = outer_edge->semi_minor;
-  meta->angle_rad = outer_edge->angle_rad;
-  meta->visible_fraction = ellipse::visible_fraction(*outer_edge, width, height);
-  meta->frame_width = static_cast<guint>(width);
-  meta->frame_height = static_cast<guint>(height);
+  meta->cx = truth.outer_edge->cx;
+  meta->cy = truth.outer_edge->cy;
+  meta->semi_major = truth.outer_edge->semi_major;
+  meta->semi_minor = truth.outer_edge->semi_minor;
+  meta->angle_rad = truth.outer_edge->angle_rad;
+  meta->visible_fraction = truth.visible_fraction;
+  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
+  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
   meta->pts = GST_BUFFER_PTS(buffer);
+}
+
+// The scene as the properties have it; nullopt where they have not changed.
+static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
+  GST_OBJECT_LOCK(self);
+  const gint number = self->scene;
+  const gint pattern = self->pattern;
+  const gint ground = self->ground;
+  const gdouble noise = self->noise;
+  const guint seed = self->seed;
+  const bool is_changed = self->is_changed != FALSE;
+  self->is_changed = FALSE;
+  GST_OBJECT_UNLOCK(self);
+  if (!is_changed) return std::nullopt;
+
+  ellipse::Scene scene = ellipse::scene_catalog()[static_cast<std::size_t>(number)].make(seed);
+  if (pattern != kAsTheScene) scene.pad.pattern = static_cast<ellipse::Pattern>(pattern);
+  if (ground != kAsTheScene) scene.ground.kind = static_cast<ellipse::GroundKind>(ground);
+  if (noise >= 0.0) scene.sensor.read_noise = noise;
+  return scene;
+}
+
+static ellipse::Truth render(GstEllipseTestSrc* self, GstVideoFrame& frame, GstClockTime pts) {
+  if (const auto scene = changed_scene(self)) {
+    delete std::exchange(self->renderer, nullptr);
+    self->renderer = new ellipse::SceneRenderer(*scene);
+  }
+  return self->renderer->render(static_cast<double>(pts) / GST_SECOND,
+                                self->frame,
+                                {static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&frame, 0)),
+                                 GST_VIDEO_FRAME_WIDTH(&frame),
+                                 GST_VIDEO_FRAME_HEIGHT(&frame),
+                                 GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)});
 }
 
 static GstFlowReturn gst_ellipse_test_src_fill(GstPushSrc* push, GstBuffer* buffer) {
   auto* self = GST_ELLIPSE_TEST_SRC(push);
-  GST_OBJECT_LOCK(self);
-  const ellipse::Scene scene = *self->scene;
-  GST_OBJECT_UNLOCK(self);
-
   GST_BUFFER_PTS(buffer) = time_of(self, self->frame);
   GST_BUFFER_DURATION(buffer) = time_of(self, self->frame + 1) - GST_BUFFER_PTS(buffer);
   GST_BUFFER_OFFSET(buffer) = self->frame;
@@ -233,39 +286,34 @@ static GstFlowReturn gst_ellipse_test_src_fill(GstPushSrc* push, GstBuffer* buff
     GST_ELEMENT_ERROR(self, RESOURCE, WRITE, ("A buffer cannot be written."), (nullptr));
     return GST_FLOW_ERROR;
   }
-  GstVideoFrame& frame = mapped.frame();
-  const double seconds = static_cast<double>(GST_BUFFER_PTS(buffer)) / GST_SECOND;
-  const Eigen::Matrix3d view =
-      ellipse::image_from_pad(ellipse::approach_pose(seconds, kApproachSeconds),
-                              kHorizontalFieldOfViewRad,
-                              GST_VIDEO_FRAME_WIDTH(&frame),
-                              GST_VIDEO_FRAME_HEIGHT(&frame));
-  ellipse::render(scene,
-                  view,
-                  self->frame,
-                  {static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&frame, 0)),
-                   GST_VIDEO_FRAME_WIDTH(&frame),
-                   GST_VIDEO_FRAME_HEIGHT(&frame),
-                   GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)});
-  fill_chroma(frame);
-  attach_truth(self, buffer, view);
+  try {
+    const ellipse::Truth truth = render(self, mapped.frame(), GST_BUFFER_PTS(buffer));
+    fill_chroma(mapped.frame());
+    attach_truth(self, buffer, truth);
+  } catch (const std::exception& error) {
+    GST_ELEMENT_ERROR(self, LIBRARY, FAILED, ("The scene cannot be drawn."), ("%s", error.what()));
+    return GST_FLOW_ERROR;
+  }
   ++self->frame;
   return GST_FLOW_OK;
 }
 
 static void gst_ellipse_test_src_finalize(GObject* object) {
-  delete GST_ELLIPSE_TEST_SRC(object)->scene;
+  delete GST_ELLIPSE_TEST_SRC(object)->renderer;
   G_OBJECT_CLASS(gst_ellipse_test_src_parent_class)->finalize(object);
 }
 
 static void gst_ellipse_test_src_init(GstEllipseTestSrc* self) {
-  self->scene = new ellipse::Scene();
+  self->pattern = kAsTheScene;
+  self->ground = kAsTheScene;
+  self->noise = kAsTheScene;
+  self->seed = 1;
+  self->is_changed = TRUE;
   gst_video_info_init(&self->info);
   gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
 }
 
 static void install_properties(GObjectClass* object_class) {
-  const ellipse::Scene initial;
   const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS);
   const auto install = [&](guint id, GParamSpec* spec) {
     g_object_class_install_property(object_class, id, spec);
@@ -273,33 +321,36 @@ static void install_properties(GObjectClass* object_class) {
   install(PROP_SCENE,
           g_param_spec_enum("scene",
                             "Scene",
-                            "What the camera does",
+                            "What the camera sees and does",
                             gst_ellipse_scene_get_type(),
-                            SCENE_APPROACH,
+                            0,
                             flags));
   install(PROP_PATTERN,
           g_param_spec_enum("pattern",
                             "Pattern",
                             "What is painted on the pad",
                             gst_ellipse_pattern_get_type(),
-                            static_cast<gint>(initial.pattern),
+                            kAsTheScene,
+                            flags));
+  install(PROP_GROUND,
+          g_param_spec_enum("ground",
+                            "Ground",
+                            "What lies around the pad",
+                            gst_ellipse_ground_get_type(),
+                            kAsTheScene,
                             flags));
   install(PROP_NOISE,
           g_param_spec_double("noise",
                               "Noise",
-                              "Standard deviation of the sensor's noise, in grey levels",
-                              0.0,
+                              "Standard deviation of the sensor's noise, in grey levels; "
+                              "-1 = as the scene has it",
+                              -1.0,
                               100.0,
-                              initial.noise,
+                              -1.0,
                               flags));
   install(PROP_SEED,
-          g_param_spec_uint("seed",
-                            "Seed",
-                            "Of all that is random: ground and noise",
-                            0,
-                            G_MAXUINT32,
-                            static_cast<guint>(initial.seed),
-                            flags));
+          g_param_spec_uint(
+              "seed", "Seed", "Of all that is random: ground and noise", 0, G_MAXUINT32, 1, flags));
   install(PROP_IS_LIVE,
           g_param_spec_boolean(
               "is-live", "Is live", "Give each frame at its time, as a camera does", FALSE, flags));
@@ -328,4 +379,5 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
   GST_PUSH_SRC_CLASS(klass)->fill = gst_ellipse_test_src_fill;
   gst_type_mark_as_plugin_api(gst_ellipse_scene_get_type(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(gst_ellipse_pattern_get_type(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(gst_ellipse_ground_get_type(), static_cast<GstPluginAPIFlags>(0));
 }

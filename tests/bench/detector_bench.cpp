@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "core/contour_detector.hpp"
-#include "core/scene.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
 #include "core/tracker.hpp"
 
 namespace {
@@ -18,13 +19,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::vector<cv::Mat> approach(int width, int height) {
-  const ellipse::Scene scene;
+  ellipse::SceneRenderer renderer(ellipse::scene_by_name("approach"));
   std::vector<cv::Mat> frames;
   for (int i = 0; i < 20; ++i) {
     cv::Mat frame(height, width, CV_8UC1);
-    const auto pose = ellipse::approach_pose(2.0 + i / 30.0, 10.0);
-    ellipse::render(scene,
-                    ellipse::image_from_pad(pose, 1.012, width, height),
+    renderer.render(2.0 + i / 30.0,
                     static_cast<std::uint64_t>(i),
                     {frame.data, width, height, static_cast<std::ptrdiff_t>(frame.step)});
     frames.push_back(frame);

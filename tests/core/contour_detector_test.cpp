@@ -53,6 +53,12 @@ class ContourTypes : public testing::TestWithParam<double> {
     e.cx = 0.35 * radius();
     return e;
   }
+  [[nodiscard]] Bar bar(const Eigen::Vector2d& from,
+                        const Eigen::Vector2d& to,
+                        double wide,
+                        double level) const {
+    return support::bar_px(from, to, wide, level, width(), width());
+  }
   [[nodiscard]] Picture seen(const Scene& scene, const Ellipse& e) const {
     return rendered(scene, e, width(), width());
   }
@@ -64,33 +70,34 @@ TEST_P(ContourTypes, AWhole) {
 
 TEST_P(ContourTypes, BWithAttachedBranches) {
   Scene scene = plain_ring();
-  scene.pattern = Pattern::kRingX;
-  scene.cross_length = 1.0;  // the X joins the ring
+  scene.pad.pattern = Pattern::kRingX;
+  scene.pad.mark_length = 1.0;  // the X joins the ring
   EXPECT_GT(best_iou(seen(scene, centred()), centred(), detecting()), kFound);
 }
 
 TEST_P(ContourTypes, BWithABranchOutside) {
   Scene scene = plain_ring();
-  scene.pattern = Pattern::kDisc;
+  scene.pad.pattern = Pattern::kDisc;
   const Ellipse e = centred();
   const Eigen::Vector2d root = e.point_at(0.2);
   const Eigen::Vector2d tip = root + 0.25 * (root - e.center());
-  scene.bars = {{e.center() + 0.9 * (root - e.center()), tip, 0.15 * radius(), scene.paint_level}};
+  scene.bars = {
+      bar(e.center() + 0.9 * (root - e.center()), tip, 0.15 * radius(), scene.pad.paint_level)};
   EXPECT_GT(best_iou(seen(scene, e), e, tracking()), kFound);
 }
 
 TEST_P(ContourTypes, CInSeveralContours) {
   Scene scene = plain_ring();
-  scene.gaps_rad = {0.3, 2.5};
-  scene.gap_width_rad = 0.15;
+  scene.pad.gaps_rad = {0.3, 2.5};
+  scene.pad.gap_width_rad = 0.15;
   EXPECT_GT(best_iou(seen(scene, centred()), centred(), tracking()), kFound);
 }
 
 TEST_P(ContourTypes, DOccluded) {
   Scene scene = plain_ring();
-  scene.pattern = Pattern::kDisc;
+  scene.pad.pattern = Pattern::kDisc;
   const Ellipse e = centred();
-  scene.bars = {{{e.cx, e.cy}, {2.0 * width(), e.cy + 0.4 * radius()}, 0.5 * radius(), 120.0}};
+  scene.bars = {bar(e.center(), {2.0 * width(), e.cy + 0.4 * radius()}, 0.5 * radius(), 120.0)};
   EXPECT_GT(best_iou(seen(scene, e), e, tracking()), kFound);
 }
 
@@ -100,8 +107,8 @@ TEST_P(ContourTypes, ECutByTheFrame) {
 
 TEST_P(ContourTypes, FCutWithBranches) {
   Scene scene = plain_ring();
-  scene.pattern = Pattern::kRingX;
-  scene.cross_length = 1.0;
+  scene.pad.pattern = Pattern::kRingX;
+  scene.pad.mark_length = 1.0;
   EXPECT_GT(best_iou(seen(scene, cut()), cut(), detecting()), kFound);
 }
 
@@ -126,12 +133,12 @@ TEST(ContourDetector, AdaptsToTheLight) {
   const Ellipse truth{160.0, 120.0, 50.0, 40.0, 0.2};
   for (const double gain : {1.0, 0.5, 0.14, 0.08}) {
     Scene scene = plain_ring();
-    scene.gain = gain;
-    scene.noise = 1.0;
+    scene.sensor.gain = gain;
+    scene.sensor.read_noise = 1.0;
     EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.95) << gain;
   }
   Scene noisy = plain_ring();
-  noisy.noise = 10.0;
+  noisy.sensor.read_noise = 10.0;
   EXPECT_GT(best_iou(rendered(noisy, truth), truth, tracking()), 0.95);
 }
 
@@ -139,7 +146,7 @@ TEST(ContourDetector, TellsTheEdgeThresholdsThatItChose) {
   ContourDetector detector;
   const auto of_noise = [&](double noise) {
     Scene scene = plain_ring();
-    scene.noise = noise;
+    scene.sensor.read_noise = noise;
     const Picture picture = rendered(scene, {160.0, 120.0, 50.0, 40.0, 0.2});
     (void)detector.detect(picture.view(), detecting());
     return detector.edge_thresholds();

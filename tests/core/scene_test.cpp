@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "core/scene.hpp"
+#include "core/scene/scene.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
 
+#include "core/scene/catalog.hpp"
+#include "core/scene/random.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -14,21 +22,23 @@ using support::Picture;
 
 Scene clean_disc() {
   Scene scene = support::plain_ring();
-  scene.pattern = Pattern::kDisc;
-  scene.noise = 0.0;
+  scene.pad.pattern = Pattern::kDisc;
+  scene.sensor.read_noise = 0.0;
   return scene;
 }
 
+// Paint's share of each pixel.
+double share(const Scene& scene, std::uint8_t level) {
+  return (scene.ground.level - level) / (scene.ground.level - scene.pad.paint_level);
+}
+
 TEST(Scene, DarkAreaIsTheEllipsesArea) {
-  // Each pixel's share of paint adds up to the area of the disc.
   const Scene scene = clean_disc();
   const Ellipse truth{80.3, 70.6, 50.0, 25.0, 0.7};
   const Picture picture = support::rendered(scene, truth, 160, 140);
   double area = 0.0;
-  for (const std::uint8_t level : picture.pixels) {
-    area += (scene.ground_level - level) / (scene.ground_level - scene.paint_level);
-  }
-  EXPECT_NEAR(area / (std::acos(-1.0) * 50.0 * 25.0), 1.0, 2e-3);
+  for (const std::uint8_t level : picture.pixels) area += share(scene, level);
+  EXPECT_NEAR(area / (std::numbers::pi * 50.0 * 25.0), 1.0, 2e-3);
 }
 
 TEST(Scene, DarkAreasCentroidIsTheTruthsCentre) {
@@ -39,9 +49,9 @@ TEST(Scene, DarkAreasCentroidIsTheTruthsCentre) {
   double weight = 0.0;
   for (int y = 0; y < 140; ++y) {
     for (int x = 0; x < 160; ++x) {
-      const double share = scene.ground_level - picture.view().row(y)[x];
-      sum += share * Eigen::Vector2d(x, y);
-      weight += share;
+      const double paint = share(scene, picture.view().row(y)[x]);
+      sum += paint * Eigen::Vector2d(x, y);
+      weight += paint;
     }
   }
   EXPECT_NEAR(sum.x() / weight, truth.cx, 0.01);
@@ -49,7 +59,7 @@ TEST(Scene, DarkAreasCentroidIsTheTruthsCentre) {
 }
 
 TEST(Scene, ProjectedCircleLiesOnProjectedPoints) {
-  const Eigen::Matrix3d view = image_from_pad(approach_pose(3.0, 10.0), 1.0, 640, 360);
+  const Eigen::Matrix3d view = image_from_pad(scene_by_name("approach"), 3.0, 640, 360);
   const auto e = project_circle(view, 1.0);
   ASSERT_TRUE(e);
   for (int i = 0; i < 12; ++i) {
@@ -62,7 +72,21 @@ TEST(Scene, CircleThatReachesBehindTheCameraIsNoEllipse) {
   CameraPose pose;
   pose.position = {0.0, -0.5, 0.1};
   pose.looks_at = {0.0, 1.0, 0.1};
-  EXPECT_FALSE(project_circle(image_from_pad(pose, 1.0, 640, 360), 1.0));
+  const Eigen::Matrix3d view = image_from_pad(pose, 1.0, 640, 360);
+  EXPECT_FALSE(project_circle(view, 1.0));
+  EXPECT_FALSE(truth_of(Pad(), view, 640, 360).outer_edge);
+}
+
+TEST(Scene, TruthHasTheEdgesOfThePattern) {
+  const Eigen::Matrix3d view = image_from_pad(Ellipse{60.0, 50.0, 40.0, 30.0, 0.0});
+  Pad pad;
+  EXPECT_NEAR(truth_of(pad, view, 200, 100).inner_edge->semi_major, 40.0 * (1.0 - 0.205), 1e-9);
+  pad.pattern = Pattern::kDisc;
+  EXPECT_FALSE(truth_of(pad, view, 200, 100).inner_edge);
+  EXPECT_EQ(truth_of(pad, view, 200, 100).visible_fraction, 1.0);
+  EXPECT_NEAR(truth_of(pad, view, 61, 100).visible_fraction, 0.5, 0.02);
+  pad.pattern = Pattern::kNone;
+  EXPECT_FALSE(truth_of(pad, view, 200, 100).outer_edge);
 }
 
 TEST(Scene, SeedAndFrameDecideTheNoise) {
@@ -75,14 +99,212 @@ TEST(Scene, SeedAndFrameDecideTheNoise) {
   EXPECT_NE(a.pixels, support::rendered(scene, e, 80, 80, 3).pixels);
 }
 
-TEST(Scene, NoiseHasItsStandardDeviation) {
+// The standard deviation of an even grey that the sensor sees.
+double measured_noise(const Sensor& sensor, double light) {
   Scene scene = support::plain_ring();
-  scene.ground_level = 128.0;
-  scene.noise = 5.0;
+  scene.ground.level = light;
+  scene.sensor = sensor;
   const Picture picture = support::rendered(scene, {-500.0, 0.0, 10.0, 10.0, 0.0}, 200, 200);
   double sum = 0.0;
-  for (const std::uint8_t level : picture.pixels) sum += (level - 128.0) * (level - 128.0);
-  EXPECT_NEAR(std::sqrt(sum / 40000.0), 5.0, 0.1);
+  double squares = 0.0;
+  for (const std::uint8_t level : picture.pixels) {
+    sum += level;
+    squares += level * level;
+  }
+  const double mean = sum / 40000.0;
+  return std::sqrt(squares / 40000.0 - mean * mean);
+}
+
+TEST(Sensor, NoiseHasItsStandardDeviation) {
+  Sensor sensor;
+  sensor.read_noise = 5.0;
+  EXPECT_NEAR(measured_noise(sensor, 128.0), 5.0, 0.1);
+}
+
+TEST(Sensor, ShotNoiseGrowsWithTheLight) {
+  Sensor sensor;
+  sensor.read_noise = 0.0;
+  sensor.shot_noise = 0.25;
+  EXPECT_NEAR(measured_noise(sensor, 64.0), 4.0, 0.1);
+  EXPECT_NEAR(measured_noise(sensor, 196.0), 7.0, 0.15);
+}
+
+TEST(Sensor, GainAndBiasScaleAndShift) {
+  Scene scene = clean_disc();
+  scene.sensor.gain = 0.5;
+  scene.sensor.bias = 10.0;
+  Picture picture = support::rendered(scene, {50.0, 50.0, 20.0, 20.0, 0.0}, 100, 100);
+  EXPECT_EQ(picture.at(2, 2), 110);   // 200 / 2 + 10
+  EXPECT_EQ(picture.at(50, 50), 38);  // 55 / 2 + 10, rounded
+}
+
+TEST(Sensor, JpegIsWhatLibjpegLeaves) {
+  Scene scene;
+  scene.sensor.read_noise = 10.0;
+  Picture picture = support::rendered(scene, {60.0, 50.0, 40.0, 30.0, 0.3}, 123, 101);
+  for (const int quality : {20, 45, 95}) {
+    const cv::Mat original(101, 123, CV_8U, picture.pixels.data());
+    std::vector<std::uint8_t> file;
+    cv::imencode(".jpg", original, file, {cv::IMWRITE_JPEG_QUALITY, quality});
+    const cv::Mat expected = cv::imdecode(file, cv::IMREAD_GRAYSCALE);
+    Picture compressed = picture;
+    compress_jpeg(compressed.writable(), quality);
+    const cv::Mat ours(101, 123, CV_8U, compressed.pixels.data());
+    EXPECT_GT(cv::norm(ours, original, cv::NORM_INF), 3.0) << quality;
+    EXPECT_LE(cv::norm(ours, expected, cv::NORM_L1) / (101.0 * 123.0), 0.5) << quality;
+    EXPECT_LE(cv::norm(ours, expected, cv::NORM_INF), 20.0) << quality;
+  }
+}
+
+// The grey levels across the middle of a disc that moves along the picture's rows.
+std::vector<double> moving_profile(double exposure_s) {
+  Scene scene = clean_disc();
+  scene.flight = {Path::kDash, 1.0, 8.0, 8.0};
+  scene.sensor.exposure_s = exposure_s;
+  scene.sensor.read_noise = 0.0;
+  Picture picture(640, 360);
+  const Truth truth = SceneRenderer(scene).render(0.0, 0, picture.writable());
+  const auto* row = picture.view().row(static_cast<int>(std::lround(truth.outer_edge->cy)));
+  return {row + static_cast<int>(truth.outer_edge->cx), row + 640};
+}
+
+TEST(Renderer, MotionBlurIsAnEvenRampWithoutGhosts) {
+  // 1200 px/s in 1/60 s: the edge becomes a ramp of 20 px.
+  const std::vector<double> profile = moving_profile(1.0 / 60.0);
+  int ramp = 0;
+  for (std::size_t i = 1; i < profile.size(); ++i) {
+    const double step = profile[i] - profile[i - 1];
+    EXPECT_GE(step, 0.0) << i;
+    EXPECT_LE(step, 145.0 / 20.0 + 1.5) << i;
+    ramp += step > 4.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(ramp, 20, 2);
+}
+
+TEST(Renderer, AnInstantIsSharp) {
+  const std::vector<double> profile = moving_profile(0.0);
+  int ramp = 0;
+  for (std::size_t i = 1; i < profile.size(); ++i) ramp += profile[i] - profile[i - 1] > 4.0;
+  EXPECT_LE(ramp, 4);
+}
+
+TEST(Renderer, ShadowTakesItsShareOfTheLight) {
+  Scene scene = clean_disc();
+  scene.light.shadows = {{0.0, 10.0, 5.0, 0.4, 0.0}};  // x from 5 to 15 radii
+  Picture picture = support::rendered(scene, {20.0, 20.0, 4.0, 4.0, 0.0}, 100, 40);
+  EXPECT_EQ(picture.at(30, 20), 200);
+  EXPECT_EQ(picture.at(50, 20), 120);
+  EXPECT_EQ(picture.at(90, 20), 200);
+}
+
+TEST(Renderer, GlareSaturatesAndFadesAway) {
+  Scene scene = clean_disc();
+  scene.flight = {Path::kHover, 10.0, 8.0, 8.0};
+  scene.light.glare = {{0.0, 0.0}, 0.05, 300.0};
+  Picture picture(640, 360);
+  SceneRenderer(scene).render(0.0, 0, picture.writable());
+  EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), 255), 500);
+  EXPECT_EQ(picture.at(2, 2), 200);
+}
+
+TEST(Renderer, GradientBrightensOneSide) {
+  Scene scene = clean_disc();
+  scene.light.gradient = {0.4, 0.0};
+  Picture picture = support::rendered(scene, {50.0, 50.0, 10.0, 10.0, 0.0}, 101, 101);
+  EXPECT_NEAR(picture.at(0, 5), 200.0 * 0.8, 1.0);
+  EXPECT_NEAR(picture.at(100, 95), 200.0 * 1.2, 1.0);
+}
+
+TEST(Renderer, CrumpledEdgeLeavesTheCircleByItsAmplitude) {
+  Scene scene = clean_disc();
+  scene.pad.crumple = 0.03;
+  const double radius = 200.0;
+  Picture picture = support::rendered(scene, {256.0, 256.0, radius, radius, 0.0}, 513, 513);
+  double largest = 0.0;
+  double sum = 0.0;
+  for (int i = 0; i < 360; ++i) {
+    const double angle = i * std::numbers::pi / 180.0;
+    double r = radius * 0.9;
+    const auto level = [&] {
+      return picture.at(static_cast<int>(std::lround(256.0 + r * std::cos(angle))),
+                        static_cast<int>(std::lround(256.0 + r * std::sin(angle))));
+    };
+    while (level() < 127) r += 0.25;
+    largest = std::max(largest, std::abs(r / radius - 1.0));
+    sum += r / radius - 1.0;
+  }
+  EXPECT_NEAR(largest, 0.03, 0.004);
+  EXPECT_NEAR(sum / 360.0, 0.0, 0.002);
+}
+
+TEST(Renderer, HonoursStridesAndAnySize) {
+  SceneRenderer renderer(scene_by_name("glare"));
+  for (const int width : {1, 7, 33}) {
+    for (const int height : {1, 9}) {
+      const int stride = width + 5;
+      std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * height), 99);
+      renderer.render(4.0, 0, {pixels.data(), width, height, stride});
+      for (int y = 0; y < height; ++y) {
+        for (int x = width; x < stride; ++x) {
+          EXPECT_EQ(pixels[static_cast<std::size_t>(y * stride + x)], 99);
+        }
+      }
+    }
+  }
+}
+
+TEST(Renderer, AHorizonIsNoTrouble) {
+  Scene scene = scene_by_name("oblique");
+  CameraPose pose;
+  pose.position = {0.0, -6.0, 0.5};
+  pose.looks_at = {0.0, 0.0, 0.4};
+  Picture picture(320, 240);
+  const Truth truth =
+      SceneRenderer(scene).render(image_from_pad(pose, 1.0, 320, 240), 0, picture.writable());
+  EXPECT_TRUE(truth.outer_edge);
+  EXPECT_NEAR(picture.at(160, 10), 200, 10);  // sky
+}
+
+TEST(GroundTexture, LooksAtAPicture) {
+  Ground ground;
+  ground.kind = GroundKind::kPicture;
+  EXPECT_THROW(GroundTexture(ground, 1), std::invalid_argument);
+  ground.picture = cv::Mat(64, 64, CV_8U, cv::Scalar(128));
+  ground.picture.colRange(0, 32) = 28;
+  const GroundTexture texture(ground, 1);
+  EXPECT_NEAR(texture.at(2.0F, 3.0F, 0.5F), 20.0, 3.0);  // 100 below the mean of 120
+  EXPECT_NEAR(texture.at(9.0F, 3.0F, 0.5F), 120.0, 3.0);
+  EXPECT_NEAR(texture.at(21.0F, 3.0F, 0.5F), 120.0, 3.0);  // repeats
+  EXPECT_NEAR(texture.at(21.0F, 3.0F, 99.0F), 70.0, 3.0);  // from far away
+}
+
+TEST(GroundTexture, KindsDiffer) {
+  std::set<std::vector<float>> seen;
+  for (std::size_t kind = 0; kind < ground_nicks().size(); ++kind) {
+    Ground ground;
+    ground.kind = static_cast<GroundKind>(kind);
+    const GroundTexture texture(ground, 1);
+    std::vector<float> lights;
+    for (int i = 0; i < 400 && !texture.is_plain(); ++i) {
+      lights.push_back(texture.at(0.03F * static_cast<float>(i), 5.0F, -1.0F));
+    }
+    EXPECT_TRUE(seen.insert(lights).second) << ground_nicks()[kind];
+  }
+}
+
+TEST(Catalog, NamesAreUniqueAndFound) {
+  std::set<std::string> names;
+  for (const NamedScene& scene : scene_catalog()) {
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+    EXPECT_EQ(scene_by_name(scene.name, 7).seed, 7U);
+  }
+  try {
+    (void)scene_by_name("moon");
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("\"moon\""), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("touchdown"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/contour_detector.hpp"
+#include "core/scene/catalog.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -192,8 +193,8 @@ TEST(Tracker, OffsetsAreCompensatedExactlyBetweenScales) {
   // Still pictures, so that only scale and region change from frame to frame; several places, so
   // that the grain of the pixels averages away and what is left is the compensation.
   Scene scene = plain_ring();
-  scene.noise = 0.0;
-  scene.blur_px = 2.0;
+  scene.sensor.read_noise = 0.0;
+  scene.sensor.blur_px = 2.0;
   constexpr int kPlaces = 60;
   std::array<Eigen::Vector2d, 3> mean_error;
   mean_error.fill({0.0, 0.0});
@@ -215,16 +216,14 @@ TEST(Tracker, OffsetsAreCompensatedExactlyBetweenScales) {
 }
 
 TEST(Tracker, FollowsALandingFromFarToNear) {
-  const Scene scene;
+  SceneRenderer renderer(scene_by_name("approach"));
   Tracker tracker;
   Picture picture(640, 360);
   int right = 0;
   for (int frame = 0; frame < 100; ++frame) {
-    const Eigen::Matrix3d view = image_from_pad(approach_pose(0.1 * frame, 10.0), 1.01, 640, 360);
-    render(scene, view, static_cast<std::uint64_t>(frame), {picture.pixels.data(), 640, 360, 640});
+    const Truth truth = renderer.render(0.1 * frame, frame, picture.writable());
     const auto target = tracker.process(picture.view(), frame);
-    const auto truth = project_circle(view, 1.0);
-    right += target && iou_inside(target->ellipse, *truth, 640, 360) >= 0.9 ? 1 : 0;
+    right += target && iou_inside(target->ellipse, *truth.outer_edge, 640, 360) >= 0.9 ? 1 : 0;
   }
   EXPECT_GE(right, 95);
 }

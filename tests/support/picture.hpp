@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/image_view.hpp"
-#include "core/scene.hpp"
+#include "core/scene/renderer.hpp"
 
 namespace support {
 
@@ -23,6 +23,7 @@ struct Picture {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];
   }
+  [[nodiscard]] ellipse::MutableImage writable() { return {pixels.data(), width, height, width}; }
   [[nodiscard]] ellipse::ImageView view() const { return {pixels.data(), width, height, width}; }
 };
 
@@ -33,20 +34,29 @@ inline Picture rendered(const ellipse::Scene& scene,
                         int height = 240,
                         std::uint64_t frame = 0) {
   Picture picture(width, height);
-  ellipse::render(scene,
-                  ellipse::image_from_pad(outer_edge),
-                  frame,
-                  {picture.pixels.data(), width, height, width});
+  ellipse::SceneRenderer(scene).render(
+      ellipse::image_from_pad(outer_edge), frame, picture.writable());
   return picture;
+}
+
+/// A bar between places given in pixels of a picture of this size.
+inline ellipse::Bar bar_px(const Eigen::Vector2d& from_px,
+                           const Eigen::Vector2d& to_px,
+                           double width_px,
+                           double level,
+                           int width = 320,
+                           int height = 240) {
+  const Eigen::Vector2d middle(0.5 * (width - 1), 0.5 * (height - 1));
+  return {(from_px - middle) / width, (to_px - middle) / width, width_px / width, level};
 }
 
 /// A ring alone on an even, bright plate that fills the picture.
 inline ellipse::Scene plain_ring() {
   ellipse::Scene scene;
-  scene.pattern = ellipse::Pattern::kRing;
-  scene.plate_half_width = 0.0;
-  scene.ground_level = 200.0;
-  scene.ground_contrast = 0.0;
+  scene.pad.pattern = ellipse::Pattern::kRing;
+  scene.pad.plate_half_width = 0.0;
+  scene.ground.level = 200.0;
+  scene.ground.contrast = 0.0;
   return scene;
 }
 

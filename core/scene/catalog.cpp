@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "core/scene/catalog.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace ellipse {
+namespace {
+
+Scene seeded(std::uint64_t seed) {
+  Scene scene;
+  scene.seed = seed;
+  return scene;
+}
+
+Scene approach(std::uint64_t seed) {
+  return seeded(seed);
+}
+
+Scene oblique(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.ground.kind = GroundKind::kRoad;
+  scene.flight = {Path::kOblique, 16.0, 14.0, 4.0};
+  return scene;
+}
+
+Scene dusk(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.sensor.gain = 0.14;
+  scene.sensor.bias = 2.0;
+  scene.sensor.read_noise = 1.5;
+  scene.sensor.shot_noise = 0.05;
+  return scene;
+}
+
+Scene glare(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.ground.kind = GroundKind::kTiles;
+  scene.flight = {Path::kApproach, 16.0, 12.0, 3.5};
+  scene.light.gradient = {0.5, -0.2};
+  scene.light.shadows = {{0.5, 0.4, 0.35, 0.45, 0.02}, {1.9, -1.3, 0.9, 0.5, 0.05}};
+  scene.light.glare = {{0.03, -0.02}, 0.06, 260.0};
+  return scene;
+}
+
+Scene occluded(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.ground.kind = GroundKind::kGrass;
+  scene.flight = {Path::kHover, 12.0, 5.0, 5.0};
+  scene.bars = {
+      {{-0.1, -0.4}, {0.02, 0.4}, 0.012, 40.0, {0.12, 0.0}},
+      {{0.5, 0.28}, {0.06, -0.02}, 0.05, 90.0, {0.0, 0.04}},  // a leg
+      {{-0.5, 0.1}, {0.5, 0.02}, 0.02, scene.pad.paint_level, {0.0, 0.08}},
+  };
+  return scene;
+}
+
+Scene dash(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.flight = {Path::kDash, 1.0, 8.0, 8.0};
+  scene.sensor.exposure_s = 1.0 / 90.0;
+  return scene;
+}
+
+Scene touchdown(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.flight = {Path::kApproach, 16.0, 8.0, 0.35};
+  return scene;
+}
+
+Scene reenter(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.ground.kind = GroundKind::kTiles;
+  scene.flight = {Path::kReenter, 8.0, 6.0, 6.0};
+  return scene;
+}
+
+Scene thin(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.ring_width = 0.055;
+  scene.pad.mark_width = 0.09;
+  scene.flight.highest = 14.0;
+  return scene;
+}
+
+Scene disc(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.pattern = Pattern::kDisc;
+  scene.pad.plate_half_width = 0.0;
+  scene.pad.paint_level = 215.0;
+  return scene;
+}
+
+Scene bullseye(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.pattern = Pattern::kBullseye;
+  scene.pad.paint_level = 225.0;
+  scene.pad.plate_level = 50.0;
+  scene.pad.rim_level = 200.0;
+  scene.ground.kind = GroundKind::kGrass;
+  return scene;
+}
+
+Scene crumpled(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.crumple = 0.02;
+  return scene;
+}
+
+Scene noise(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.flight.highest = 14.0;
+  scene.sensor.read_noise = 14.0;
+  scene.sensor.jpeg_quality = 45;
+  return scene;
+}
+
+Scene negative(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.pattern = Pattern::kNone;
+  scene.ground.kind = GroundKind::kClutter;
+  return scene;
+}
+
+Scene orbit(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.pattern = Pattern::kRingH;
+  scene.ground.kind = GroundKind::kRoad;
+  scene.flight = {Path::kOrbit, 12.0, 8.0, 8.0};
+  return scene;
+}
+
+Scene shake(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.flight = {Path::kShake, 12.0, 7.0, 7.0};
+  scene.sensor.exposure_s = 1.0 / 120.0;
+  return scene;
+}
+
+Scene hover(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.pad.pattern = Pattern::kRing;
+  scene.ground.kind = GroundKind::kClutter;
+  scene.flight = {Path::kHover, 12.0, 6.0, 6.0};
+  return scene;
+}
+
+constexpr std::array kCatalog = {
+    NamedScene{"approach", "Down from 20 radii to 2.6 and up again, 10 s each", approach},
+    NamedScene{"oblique", "60 degrees from the vertical, over a road", oblique},
+    NamedScene{"dusk", "The approach with a seventh of the light", dusk},
+    NamedScene{"glare", "Sun on the pad, shadows across it, light from one side", glare},
+    NamedScene{"occluded", "Swinging bars and a leg before the pad", occluded},
+    NamedScene{"dash", "To and fro at 40 px a frame, with the blur of the motion", dash},
+    NamedScene{"touchdown", "Down until the pad is larger than the picture", touchdown},
+    NamedScene{"reenter", "The pad leaves the picture and comes back", reenter},
+    NamedScene{"thin", "A ring as thin as 0.055 radii", thin},
+    NamedScene{"disc", "A bright disc without a plate", disc},
+    NamedScene{"bullseye", "Bright rings in each other on a dark plate", bullseye},
+    NamedScene{"crumpled", "A pad whose edge leaves the ellipse by 2 % of the radius", crumpled},
+    NamedScene{"noise", "Noise of 14 grey levels, then JPEG of quality 45", noise},
+    NamedScene{"negative", "No pad: squares, flowers, rounded rectangles, arcs", negative},
+    NamedScene{"orbit", "Around a ring with an H, at 45 degrees", orbit},
+    NamedScene{"shake", "Hovering, trembling at 7 to 11 Hz", shake},
+    NamedScene{"hover", "Hovering over a ring among clutter", hover},
+};
+
+constexpr std::array kPatternNicks = {"ring-x", "ring", "disc", "ring-h", "bullseye", "none"};
+constexpr std::array kGroundNicks = {
+    "plain", "asphalt", "grass", "road", "tiles", "squares", "flowers", "rounded", "clutter"};
+
+}  // namespace
+
+std::span<const NamedScene> scene_catalog() {
+  return kCatalog;
+}
+
+Scene scene_by_name(const char* name, std::uint64_t seed) {
+  std::string names;
+  for (const NamedScene& entry : kCatalog) {
+    if (std::string_view(entry.name) == name) return entry.make(seed);
+    names += names.empty() ? entry.name : std::string(", ") + entry.name;
+  }
+  throw std::invalid_argument("scene \"" + std::string(name) + "\" is none of: " + names);
+}
+
+std::span<const char* const> pattern_nicks() {
+  return kPatternNicks;
+}
+
+std::span<const char* const> ground_nicks() {
+  return kGroundNicks;
+}
+
+}  // namespace ellipse

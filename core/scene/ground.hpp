@@ -1,0 +1,54 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace ellipse {
+
+/// What lies around the pad. None of them holds an ellipse; most hold what resembles one.
+enum class GroundKind {
+  kPlain,
+  kAsphalt,  ///< Speckled, with cracks.
+  kGrass,    ///< Blades in all directions.
+  kRoad,     ///< Asphalt with painted lines and arcs.
+  kTiles,    ///< Square tiles with dark joints.
+  kSquares,  ///< A clutter of squares.
+  kFlowers,  ///< A clutter of flowers.
+  kRounded,  ///< A clutter of rounded rectangles.
+  kClutter,  ///< All of these clutters together, and arcs.
+  kPicture,  ///< A picture of one's own.
+};
+
+struct Ground {
+  GroundKind kind = GroundKind::kAsphalt;
+  double level = 120.0;   ///< Mean grey level of its light at gain 1.
+  double contrast = 1.0;  ///< Of its texture; 0 is plain.
+  cv::Mat picture;        ///< For kPicture: 8-bit grey, shared; covers 12 x 12 radii, repeated.
+};
+
+/// The ground's light, ready to be looked at from any distance: a tile with its smaller copies
+/// [Williams1983].
+class GroundTexture {
+ public:
+  /// Throws std::invalid_argument where the picture is not 8-bit grey, or missing.
+  GroundTexture(const Ground& ground, std::uint64_t seed);
+
+  [[nodiscard]] bool is_plain() const { return levels_.empty(); }
+  [[nodiscard]] double mean() const { return mean_; }
+
+  /// How coarse the ground must be looked at, where a pixel covers `extent` radii of it.
+  [[nodiscard]] static float coarseness(double extent);
+
+  /// The light of a place on the plane [radii]. Where it is not plain.
+  [[nodiscard]] float at(float x, float y, float coarseness) const;
+
+ private:
+  std::vector<cv::Mat> levels_;  // each half the size of the one before
+  cv::Mat grain_;                // lies on what is seen from near
+  double mean_;
+  float contrast_;
+  float offset_;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "core/scene/renderer.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/scene/random.hpp"
+
+namespace ellipse {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kBlock = 8;            // pixels
+constexpr float kSkyLevel = 200.0F;  // where no ground is
+constexpr int kMostInstants = 96;
+constexpr double kAllOfIt = 0.999;  // a layer that hides all beneath
+// Instants so near each other in the picture that blurred edges add up to an even ramp: within
+// .1 % at 1.6 standard deviations (the second term of the Gaussian's Fourier series).
+constexpr double kInstantSpacing = 1.6;
+// Mirror-like in both directions at once, a pixel of a tilted plane is seen a little coarser.
+constexpr double kCoarser = 1.2;
+
+}  // namespace
+
+struct SceneRenderer::Block {
+  int left = 0;
+  int top = 0;
+  int width = 0;
+  int height = 0;
+  Vector2d middle_px{0.0, 0.0};
+  double half_px = 0.0;  // from its middle to its corners
+  bool is_in_front = true;
+  Vector2d middle{0.0, 0.0};  // on the plane
+  double half = 0.0;          // from there to its farthest corner
+  std::array<float, kBlock * kBlock> light{};
+
+  [[nodiscard]] float& at(int x, int y) { return light[static_cast<std::size_t>(y * kBlock + x)]; }
+
+  template <class Use>
+  void for_each_pixel(const Use& use) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) use(Vector2d(left + x, top + y), at(x, y));
+    }
+  }
+};
+
+SceneRenderer::SceneRenderer(const Scene& scene)
+    : scene_(scene),
+      ground_(scene.ground, scene.seed),
+      pad_(scene.pad, scene.sensor.blur_px, scene.seed),
+      sensor_(scene.sensor) {}
+
+Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableImage& picture) {
+  start_frame(picture);
+  const int instants = instants_at(time_s);
+  const float weight = 1.0F / static_cast<float>(instants);
+  for (int i = 0; i < instants; ++i) {
+    const double part = (i + 0.5) / instants - 0.5;
+    const double instant_s = time_s + part * scene_.sensor.exposure_s;
+    add_instant(image_from_pad(scene_, instant_s, width_, height_), weight);
+  }
+  if (scene_.light.glare.level > 0.0) add_glare(time_s);
+  add_gradient();
+  if (!scene_.bars.empty()) add_bars(time_s);
+  return expose(image_from_pad(scene_, time_s, width_, height_), frame, picture);
+}
+
+Truth SceneRenderer::render(const Matrix3d& image_from_pad,
+                            std::uint64_t frame,
+                            const MutableImage& picture) {
+  start_frame(picture);
+  add_instant(image_from_pad, 1.0F);
+  add_gradient();
+  if (!scene_.bars.empty()) add_bars(0.0);
+  return expose(image_from_pad, frame, picture);
+}
+
+void SceneRenderer::start_frame(const MutableImage& picture) {
+  width_ = picture.width;
+  height_ = picture.height;
+  light_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0.0F);
+}
+
+Truth SceneRenderer::expose(const Matrix3d& image_from_pad,
+                            std::uint64_t frame,
+                            const MutableImage& picture) {
+  sensor_.read(light_, hash(scene_.seed ^ hash(frame)), picture);
+  return truth_of(scene_.pad, image_from_pad, width_, height_);
+}
+
+// As many as the fastest of the picture's corners needs.
+int SceneRenderer::instants_at(double time_s) const {
+  const double exposure_s = scene_.sensor.exposure_s;
+  if (!(exposure_s > 0.0)) return 1;
+  const auto view = [&](double part) {
+    return image_from_pad(scene_, time_s + part * exposure_s, width_, height_);
+  };
+  const Matrix3d end_from_begin = view(0.5) * view(-0.5).inverse();
+  double farthest_px = 0.0;
+  for (const double x : {0.0, width_ - 1.0}) {
+    for (const double y : {0.0, height_ - 1.0}) {
+      const Vector2d end = (end_from_begin * Vector3d(x, y, 1.0)).hnormalized();
+      farthest_px = std::max(farthest_px, (end - Vector2d(x, y)).norm());
+    }
+  }
+  const double spacing_px = kInstantSpacing * std::max(0.5, scene_.sensor.blur_px);
+  return static_cast<int>(
+      std::clamp(std::ceil(farthest_px / spacing_px), 1.0, double{kMostInstants}));
+}
+
+void SceneRenderer::add_instant(const Matrix3d& image_from_pad, float weight) {
+  plane_from_image_ = image_from_pad.inverse();
+  plane_area_ = std::abs(plane_from_image_.determinant());
+  pad_.look(plane_from_image_);
+  shadows_.clear();
+  for (const Shadow& shadow : scene_.light.shadows) {
+    const Vector2d normal(std::cos(shadow.direction_rad), std::sin(shadow.direction_rad));
+    shadows_.push_back(project_band(plane_from_image_, normal, shadow.center, shadow.half_width));
+  }
+  for (int top = 0; top < height_; top += kBlock) {
+    for (int left = 0; left < width_; left += kBlock) {
+      Block block = block_at(left, top);
+      fill(block);
+      for (int y = 0; y < block.height; ++y) {
+        float* row =
+            &light_[static_cast<std::size_t>(block.top + y) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(block.left)];
+        for (int x = 0; x < block.width; ++x) row[x] += weight * block.at(x, y);
+      }
+    }
+  }
+}
+
+SceneRenderer::Block SceneRenderer::block_at(int left, int top) const {
+  Block block;
+  block.left = left;
+  block.top = top;
+  block.width = std::min(kBlock, width_ - left);
+  block.height = std::min(kBlock, height_ - top);
+  const Vector2d first(left, top);
+  const Vector2d half_size(0.5 * (block.width - 1), 0.5 * (block.height - 1));
+  block.middle_px = first + half_size;
+  block.half_px = half_size.norm() + 0.5;
+  const Vector3d middle = plane_from_image_ * block.middle_px.homogeneous();
+  block.is_in_front = middle.z() > 0.0;
+  if (!block.is_in_front) return block;
+  block.middle = middle.hnormalized();
+  for (const double sx : {-0.5, 0.5}) {
+    for (const double sy : {-0.5, 0.5}) {
+      const Vector2d corner = block.middle_px + Vector2d(sx * kBlock, sy * kBlock);
+      const Vector3d q = plane_from_image_ * corner.homogeneous();
+      block.is_in_front = block.is_in_front && q.z() > 0.0;
+      if (block.is_in_front) {
+        block.half = std::max(block.half, (q.hnormalized() - block.middle).norm());
+      }
+    }
+  }
+  return block;
+}
+
+void SceneRenderer::fill(Block& block) {
+  const Pad& pad = scene_.pad;
+  if (block.is_in_front &&
+      pad_.is_uniform(block.middle_px, block.half_px, block.middle, block.half)) {
+    const PadPicture::Layers layers = pad_.at(block.middle_px);
+    if (layers.paint > kAllOfIt) {
+      block.light.fill(static_cast<float>(pad.paint_level));
+    } else if (layers.plate > kAllOfIt) {
+      block.light.fill(static_cast<float>(pad.plate_level));
+    } else if (layers.rim > kAllOfIt) {
+      block.light.fill(static_cast<float>(pad.rim_level));
+    } else {
+      fill_ground(block);
+    }
+  } else {
+    fill_ground(block);
+    add_pad(block);
+  }
+  if (!shadows_.empty()) add_shadows(block);
+}
+
+void SceneRenderer::fill_ground(Block& block) const {
+  if (block.is_in_front && ground_.is_plain()) {
+    block.light.fill(static_cast<float>(ground_.mean()));
+    return;
+  }
+  const double wider = kCoarser * std::max(1.0, kCoarser * scene_.sensor.blur_px);
+  const auto coarseness = [&](double depth) {
+    return GroundTexture::coarseness(wider * std::sqrt(plane_area_ / (depth * depth * depth)));
+  };
+  const Vector3d step = plane_from_image_.col(0);
+  for (int y = 0; y < block.height; ++y) {
+    Vector3d q = plane_from_image_ * Vector3d(block.left, block.top + y, 1.0);
+    const double last_depth = q.z() + kBlock * step.z();
+    const bool is_seen = q.z() > 0.0 && last_depth > 0.0;
+    const float first = is_seen ? coarseness(q.z()) : 0.0F;
+    const float change = is_seen ? (coarseness(last_depth) - first) / kBlock : 0.0F;
+    for (int x = 0; x < block.width; ++x, q += step) {
+      float& light = block.at(x, y);
+      if (!(q.z() > 0.0)) {
+        light = kSkyLevel;
+      } else if (ground_.is_plain() || !is_seen) {
+        light = static_cast<float>(ground_.mean());
+      } else {
+        const auto px = static_cast<float>(q.x() / q.z());
+        const auto py = static_cast<float>(q.y() / q.z());
+        light = ground_.at(px, py, first + change * static_cast<float>(x));
+      }
+    }
+  }
+}
+
+void SceneRenderer::add_pad(Block& block) const {
+  const Pad& pad = scene_.pad;
+  block.for_each_pixel([&](const Vector2d& pixel, float& light) {
+    const bool is_seen =
+        block.is_in_front || plane_from_image_.row(2).dot(pixel.homogeneous()) > 0.0;
+    if (!is_seen) return;
+    const PadPicture::Layers layers = pad_.at(pixel);
+    double mixed = light;
+    mixed += layers.rim * (pad.rim_level - mixed);
+    mixed += layers.plate * (pad.plate_level - pad.rim_level);
+    mixed += layers.paint * (pad.paint_level - mixed);
+    light = static_cast<float>(mixed);
+  });
+}
+
+void SceneRenderer::add_shadows(Block& block) const {
+  for (std::size_t i = 0; i < shadows_.size(); ++i) {
+    const Shadow& shadow = scene_.light.shadows[i];
+    // The penumbra in pixels, by the block's own scale.
+    const double px_per_radius = block.half > 0.0 ? block.half_px / block.half : 0.0;
+    const double blur_px = std::hypot(scene_.sensor.blur_px, shadow.penumbra * px_per_radius);
+    const auto lit = [&](const Vector2d& pixel) {
+      return static_cast<float>(1.0 - shadow.depth * shadows_[i].coverage(pixel, blur_px));
+    };
+    if (shadows_[i].is_clear_of(block.middle_px, block.half_px + kStepReach * blur_px)) {
+      const float share = lit(block.middle_px);
+      for (float& light : block.light) light *= share;
+    } else {
+      block.for_each_pixel([&](const Vector2d& pixel, float& light) { light *= lit(pixel); });
+    }
+  }
+}
+
+void SceneRenderer::add_glare(double time_s) {
+  const Glare& glare = scene_.light.glare;
+  const Vector3d camera = pose_at(scene_.flight, time_s).position;
+  plane_from_image_ = image_from_pad(scene_, time_s, width_, height_).inverse();
+  const Vector2d middle = camera.head<2>() + camera.z() * glare.tilt;
+  const double spread = camera.z() * glare.spread;
+  float* light = light_.data();
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x, ++light) {
+      const Vector3d q = plane_from_image_ * Vector3d(x, y, 1.0);
+      if (!(q.z() > 0.0)) continue;
+      const double off = ((q.hnormalized() - middle) / spread).squaredNorm();
+      if (off < 24.0) *light += static_cast<float>(glare.level * std::exp(-0.5 * off));
+    }
+  }
+}
+
+void SceneRenderer::add_gradient() {
+  const Vector2d per_px = scene_.light.gradient / std::max(width_, 1);
+  if (per_px.isZero()) return;
+  float* light = light_.data();
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x, ++light) {
+      const Vector2d from_middle(x - 0.5 * (width_ - 1), y - 0.5 * (height_ - 1));
+      *light *= static_cast<float>(std::max(0.0, 1.0 + per_px.dot(from_middle)));
+    }
+  }
+}
+
+void SceneRenderer::add_bars(double time_s) {
+  const double blur_px = scene_.sensor.blur_px;
+  Matrix3d bars_from_image;
+  bars_from_image << 1.0, 0.0, -0.5 * (width_ - 1), 0.0, 1.0, -0.5 * (height_ - 1), 0.0, 0.0,
+      width_;
+  for (const Bar& bar : scene_.bars) {
+    const double swing = std::sin(0.5 * std::numbers::pi * time_s);
+    const Vector2d middle = 0.5 * (bar.from + bar.to) + swing * bar.swing;
+    const Vector2d length = bar.to - bar.from;
+    const Box box = project_box(
+        bars_from_image, middle, length.normalized(), 0.5 * length.norm(), 0.5 * bar.width);
+    float* light = light_.data();
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x, ++light) {
+        const auto share = static_cast<float>(box.coverage(Vector2d(x, y), blur_px));
+        *light += share * (static_cast<float>(bar.level) - *light);
+      }
+    }
+  }
+}
+
+}  // namespace ellipse

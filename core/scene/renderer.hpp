@@ -1,0 +1,61 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/edge.hpp"
+#include "core/scene/ground.hpp"
+#include "core/scene/pad.hpp"
+#include "core/scene/scene.hpp"
+#include "core/scene/sensor.hpp"
+
+namespace ellipse {
+
+/// Renders the frames of one scene. One object serves one thread at a time.
+class SceneRenderer {
+ public:
+  /// Throws std::invalid_argument where the ground's picture is no good.
+  explicit SceneRenderer(const Scene& scene);
+
+  /// The frame whose exposure has its middle at a time, with its truth at that middle.
+  /// @param frame  Its number: the noise differs from frame to frame.
+  /// Allocates only when frames grow. O(pixels), times the length of the motion's blur.
+  Truth render(double time_s, std::uint64_t frame, const MutableImage& picture);
+
+  /// One instant through any view, without the glare, which depends on where the camera is.
+  Truth render(const Eigen::Matrix3d& image_from_pad,
+               std::uint64_t frame,
+               const MutableImage& picture);
+
+ private:
+  struct Block;  // some pixels, and the piece of the plane that they see
+
+  void start_frame(const MutableImage& picture);
+  void add_instant(const Eigen::Matrix3d& image_from_pad, float weight);
+  [[nodiscard]] Block block_at(int left, int top) const;
+  void fill(Block& block);
+  void fill_ground(Block& block) const;
+  void add_pad(Block& block) const;
+  void add_shadows(Block& block) const;
+  void add_glare(double time_s);
+  void add_gradient();
+  void add_bars(double time_s);
+  Truth expose(const Eigen::Matrix3d& image_from_pad,
+               std::uint64_t frame,
+               const MutableImage& picture);
+  [[nodiscard]] int instants_at(double time_s) const;
+
+  Scene scene_;
+  GroundTexture ground_;
+  PadPicture pad_;
+  SensorReader sensor_;
+  std::vector<Band> shadows_;  // in the present view
+  Eigen::Matrix3d plane_from_image_;
+  double plane_area_ = 0.0;  // determinant of plane_from_image_
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<float> light_;
+};
+
+}  // namespace ellipse

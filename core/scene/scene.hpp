@@ -1,0 +1,80 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/ellipse.hpp"
+#include "core/scene/flight.hpp"
+#include "core/scene/ground.hpp"
+#include "core/scene/pad.hpp"
+#include "core/scene/sensor.hpp"
+
+namespace ellipse {
+
+/// A band in front of the camera that hides what is behind it: a leg of the vehicle, a cable.
+/// Lengths are in widths of the picture, from its middle, x right, y down.
+struct Bar {
+  Eigen::Vector2d from{0.0, 0.0};
+  Eigen::Vector2d to{0.0, 0.0};
+  double width = 0.0;
+  double level = 128.0;             ///< Grey level of its light at gain 1.
+  Eigen::Vector2d swing{0.0, 0.0};  ///< It swings this far to both sides, once in four seconds.
+};
+
+/// The shadow of a straight object: a band on the pad's plane. Lengths in radii of the pad.
+struct Shadow {
+  double direction_rad = 0.0;  ///< Of the band's normal.
+  double center = 0.0;         ///< Of the band, along its normal.
+  double half_width = 1.0;
+  double depth = 0.5;     ///< Share of the light that is missing in it.
+  double penumbra = 0.0;  ///< Softness of its edges [radii], beside the lens's.
+};
+
+/// The sun's mirror image on the pad's plane.
+struct Glare {
+  Eigen::Vector2d tilt{0.0, 0.0};  ///< Where it lies below the camera, in units of its height.
+  double spread = 0.1;             ///< Standard deviation, in units of the camera's height.
+  double level = 0.0;              ///< Light added at its middle [grey levels].
+};
+
+/// The light on the scene.
+struct Light {
+  Eigen::Vector2d gradient{0.0, 0.0};  ///< Relative change over the picture's width, by x and y.
+  std::vector<Shadow> shadows;
+  Glare glare;
+};
+
+/// A landing pad on the ground under a flying camera. A value: the same one gives the same
+/// pictures on any machine.
+struct Scene {
+  Pad pad;
+  Ground ground;
+  Light light;
+  Sensor sensor;
+  Flight flight;
+  std::vector<Bar> bars;
+  double hfov_rad = 1.012;  ///< Horizontal field of view.
+  std::uint64_t seed = 1;   ///< Of all that is random.
+};
+
+/// What a frame shows.
+struct Truth {
+  std::optional<Ellipse> outer_edge;  ///< The exact picture of the painted circle [px].
+  std::optional<Ellipse> inner_edge;  ///< Of the edge next inside it [px].
+  double visible_fraction = 0.0;      ///< Share of the outer edge inside the frame.
+};
+
+[[nodiscard]] Truth truth_of(const Pad& pad,
+                             const Eigen::Matrix3d& image_from_pad,
+                             int width,
+                             int height);
+
+/// Where the camera of a scene sees the pad's plane at a time.
+[[nodiscard]] Eigen::Matrix3d image_from_pad(const Scene& scene,
+                                             double time_s,
+                                             int width,
+                                             int height);
+
+}  // namespace ellipse
