@@ -11,9 +11,9 @@ packages=(
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libopencv-dev libeigen3-dev
   # examples
-  libcli11-dev
+  libcli11-dev libopencv-contrib-dev libjson-glib-dev
   # tests
-  libgtest-dev libbenchmark-dev libjson-glib-dev
+  libgtest-dev libbenchmark-dev
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
