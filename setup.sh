@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Installs what gst-ellipse is built, tested and run with. Debian 12 and its relatives; elsewhere it
 # prints the list and stops. Touches no network when everything is there.
+#   ./setup.sh                   all of it
+#   ./setup.sh --without-tests   only what building and running takes
 set -euo pipefail
 
 packages=(
@@ -11,13 +13,16 @@ packages=(
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libopencv-dev libeigen3-dev
   # examples
-  libcli11-dev
-  # tests
-  libgtest-dev libbenchmark-dev libjson-glib-dev
-  opencv-doc  # pictures: 96 MB to download, 281 MB on disk
+  libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
+if [ "${1:-}" != "--without-tests" ]; then
+  packages+=(
+    libgtest-dev libbenchmark-dev
+    opencv-doc  # pictures: 96 MB to download, 281 MB on disk
+  )
+fi
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   echo "setup.sh: this is no Debian system. Install what corresponds to:" >&2

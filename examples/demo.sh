@@ -10,7 +10,7 @@
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 
-"$project/setup.sh"
+"$project/setup.sh" --without-tests
 build="$project/build"
 [ -e "$build/build.ninja" ] || meson setup "$build" "$project" > /dev/null
 ninja -C "$build" examples/ellipse-demo gst/libgstellipse.so > "$build/demo-build.log" 2>&1 ||
