@@ -4,9 +4,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <span>
 
 #include "core/scene/random.hpp"
 
@@ -22,22 +24,30 @@ constexpr double kRimWidth = 0.12;  // of the plate [radii]
 constexpr double kHBarAt = 0.36;    // the H's upright bars, from the middle [radii]
 constexpr int kFirstHarmonic = 3;   // lower ones would move the ellipse itself
 
+// As many as the bullseye has. Made for every view: hence no vector.
+struct Radii {
+  std::array<double, 5> values{};
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<const double> all() const { return {values.data(), count}; }
+};
+
 // The edges of the painted circles, from the outermost.
-std::vector<double> radii_of(const Pad& pad) {
+Radii radii_of(const Pad& pad) {
   const double inner = 1.0 - pad.ring_width;
   switch (pad.pattern) {
     case Pattern::kNone:
       return {};
     case Pattern::kDisc:
-      return {1.0};
+      return {{1.0}, 1};
     case Pattern::kBullseye:
-      return {1.0, inner, 0.75 * inner, 0.5 * inner, 0.25 * inner};
+      return {{1.0, inner, 0.75 * inner, 0.5 * inner, 0.25 * inner}, 5};
     case Pattern::kRingX:
     case Pattern::kRing:
     case Pattern::kRingH:
       break;
   }
-  return {1.0, inner};
+  return {{1.0, inner}, 2};
 }
 
 }  // namespace
@@ -62,8 +72,8 @@ std::optional<Ellipse> project_circle(const Matrix3d& image_from_pad, double rad
 }
 
 std::optional<double> inner_radius(const Pad& pad) {
-  const std::vector<double> radii = radii_of(pad);
-  return radii.size() > 1 ? std::optional(radii[1]) : std::nullopt;
+  const Radii radii = radii_of(pad);
+  return radii.count > 1 ? std::optional(radii.values[1]) : std::nullopt;
 }
 
 PadPicture::PadPicture(const Pad& pad, double blur_px, std::uint64_t seed)
@@ -99,7 +109,8 @@ void PadPicture::look(const Matrix3d& plane_from_image) {
   circles_.clear();
   bars_.clear();
   gaps_.clear();
-  for (const double radius : radii_of(pad_)) circles_.emplace_back(plane_from_image, radius);
+  const Radii radii = radii_of(pad_);
+  for (const double radius : radii.all()) circles_.emplace_back(plane_from_image, radius);
   if (circles_.empty()) return;
 
   const auto box = [&](const Vector2d& center, const Vector2d& along, double length, double width) {

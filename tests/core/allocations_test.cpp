@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+//
+// What a frame asks of the heap once everything has its size: nothing, outside of OpenCV.
+#include "tests/bench/allocations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/contour_detector.hpp"
+#include "core/ellipse_fit.hpp"
+#include "core/luma.hpp"
+#include "core/overlap.hpp"
+#include "core/scale.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
+#include "core/target_selection.hpp"
+#include "core/tracker.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+
+const Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
+
+template <class Call>
+std::int64_t allocations_of(const Call& call) {
+  const bench::HeapMeter meter;
+  call();
+  return meter.allocations();
+}
+
+// What the last of some calls allocates: the others let everything grow to its size.
+template <class Call>
+std::int64_t steady_allocations_of(const Call& call) {
+  for (int i = 0; i < 3; ++i) call();
+  return allocations_of(call);
+}
+
+Picture ring_picture() {
+  return support::rendered(support::plain_ring(), kRing);
+}
+
+Picture noisy_picture() {
+  Picture picture(320, 240);
+  SceneRenderer(scene_by_name("noise")).render(5.0, 0, picture.writable());
+  return picture;
+}
+
+PixelView bgr_view(const std::vector<std::uint8_t>& bytes, int width, int height) {
+  return {bytes.data(), width, height, 3L * width, {PixelLayout::Kind::kRgb, 3, 0, 2, 1, 0}};
+}
+
+class Allocations : public testing::Test {
+ protected:
+  Allocations() { cv::setNumThreads(1); }  // Jobs for threads are allocated.
+};
+
+TEST_F(Allocations, AreCounted) {
+  EXPECT_TRUE(bench::counts_allocations());
+}
+
+TEST_F(Allocations, PeakIsTheMostAtATime) {
+  const bench::HeapMeter meter;
+  for (int i = 0; i < 3; ++i) {
+    void* volatile block = std::malloc(100'000);  // Volatile: the compiler may not leave it out.
+    std::free(block);
+  }
+  const std::int64_t peak_bytes = meter.peak_bytes();
+  EXPECT_GE(peak_bytes, 100'000);
+  EXPECT_LT(peak_bytes, 200'000);
+}
+
+TEST_F(Allocations, NoneInFits) {
+  std::vector<Eigen::Vector2d> points;
+  walk_perimeter(kRing, [&](const PerimeterStep& step) { points.push_back(step.point); });
+  const auto fit = [&] {
+    const std::optional<Ellipse> direct = fit_ellipse(points);
+    GeometricFit geometric(*direct);
+    for (const Eigen::Vector2d& point : points) geometric.add(point);
+    return geometric.solve();
+  };
+  EXPECT_TRUE(fit().has_value());
+  EXPECT_EQ(allocations_of(fit), 0);
+}
+
+TEST_F(Allocations, NoneInOverlaps) {
+  std::vector<cv::Point> contour;
+  walk_perimeter(kRing, [&](const PerimeterStep& step) {
+    contour.emplace_back(cvRound(step.point.x()), cvRound(step.point.y()));
+  });
+  const Picture edges(320, 240, 255);
+  double overlaps = 0.0;
+  const auto overlap = [&] {
+    overlaps =
+        contour_overlap(contour, kRing) + perimeter_support(kRing, edges.view()).ellipse_overlap();
+  };
+  EXPECT_EQ(allocations_of(overlap), 0);
+  EXPECT_GT(overlaps, 1.9);
+}
+
+TEST_F(Allocations, NoneInSelection) {
+  const std::vector<Detection> detections(256, {kRing, 1.0, 1.0, 100.0});
+  std::optional<Detection> selected;
+  EXPECT_EQ(allocations_of([&] { selected = select_target(detections, kRing); }), 0);
+  EXPECT_TRUE(selected.has_value());
+}
+
+TEST_F(Allocations, NoneInLumaOfARegionThatMoves) {
+  const std::vector<std::uint8_t> bytes(3UL * 320 * 240, 90);
+  LumaReader reader;
+  int x = 0;
+  const auto read = [&] {
+    return reader.read(bgr_view(bytes, 320, 240), {x += 10, 20, 100 - x, 80}).width;
+  };
+  EXPECT_EQ(steady_allocations_of(read), 0);
+}
+
+// cv::resize has a table of scale^2 + columns numbers, on the stack while they are at most 264.
+TEST_F(Allocations, NoneInScalerOfSmallPictures) {
+  Scaler scaler;
+  for (const int scale : {2, 4, 8}) {
+    const Picture picture(200 * scale, 16 * scale);
+    EXPECT_EQ(steady_allocations_of([&] { return scaler.reduce(picture.view(), scale).width; }), 0);
+  }
+}
+
+TEST_F(Allocations, AtMostThatTableInScalerOfAnyPicture) {
+  Scaler scaler;
+  for (int scale = 1; scale <= 128; scale *= 2) {
+    const Picture picture(3840, 2 * scale);
+    EXPECT_LE(steady_allocations_of([&] { return scaler.reduce(picture.view(), scale).width; }), 1);
+  }
+}
+
+TEST_F(Allocations, NoneInRendererOfAnyScene) {
+  Picture picture(160, 120);
+  for (const NamedScene& named : scene_catalog()) {
+    SceneRenderer renderer(named.make(1));
+    double time_s = 2.0;
+    const auto render = [&] { return renderer.render(time_s += 0.1, 0, picture.writable()); };
+    EXPECT_EQ(steady_allocations_of(render), 0) << named.name;
+  }
+}
+
+// The calls of OpenCV in [Keipour2021] Algorithm 1 as the detector makes them, and nothing else.
+class OpenCvCalls {
+ public:
+  void run(const Picture& picture, const EdgeThresholds& edges) {
+    const cv::Mat mat(
+        picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data()));
+    cv::GaussianBlur(mat, smooth_, {5, 5}, 1.0, 1.0, cv::BORDER_REPLICATE);
+    cv::spatialGradient(smooth_, gx_, gy_, 3, cv::BORDER_REPLICATE);
+    cv::Canny(gx_, gy_, edges_, 8.0 * edges.low, 8.0 * edges.high, true);
+    cv::dilate(edges_, thick_, cv::Mat());
+    cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+    std::erase_if(contours_, [](const auto& contour) { return contour.size() < 50; });
+  }
+
+ private:
+  cv::Mat smooth_;
+  cv::Mat gx_;
+  cv::Mat gy_;
+  cv::Mat edges_;
+  cv::Mat thick_;
+  std::vector<std::vector<cv::Point>> contours_;
+};
+
+TEST_F(Allocations, OfContourDetectorAreThoseOfOpenCv) {
+  for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
+    ContourDetector detector;
+    const auto of_detector =
+        steady_allocations_of([&] { return detector.detect(picture.view(), {}).size(); });
+    OpenCvCalls calls;
+    const auto of_opencv =
+        steady_allocations_of([&] { calls.run(picture, detector.edge_thresholds()); });
+    EXPECT_GT(of_opencv, 0);
+    EXPECT_EQ(of_detector, of_opencv);
+  }
+}
+
+// A detector that costs nothing, so that what is left is the tracker's.
+class OneEllipse final : public Detector {
+ public:
+  std::span<const Detection> detect(const ImageView&, const Thresholds&) override {
+    return {&detection_, 1};
+  }
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.9, 0.9}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.9, 0.9}; }
+
+ private:
+  Detection detection_{{60.0, 60.0, 30.0, 25.0}, 1.0, 1.0, 100.0};
+};
+
+TEST_F(Allocations, NoneInTrackerAroundItsDetector) {
+  const std::vector<std::uint8_t> bytes(3UL * 320 * 240, 90);
+  for (const char* tracking : tracking_nicks()) {
+    TrackerSettings settings;
+    set_by_name(settings, "tracking", tracking);
+    Tracker tracker(settings, std::make_unique<OneEllipse>());
+    const auto process = [&] { return tracker.process(bgr_view(bytes, 320, 240), 0).has_value(); };
+    EXPECT_TRUE(process());
+    EXPECT_EQ(steady_allocations_of(process), 0) << tracking;
+  }
+}
+
+TEST_F(Allocations, OfTrackerDoNotPileUp) {
+  const Picture picture = ring_picture();
+  Tracker tracker;
+  const bench::HeapMeter meter;
+  const auto peak_after = [&](int frames) {
+    for (int i = 0; i < frames; ++i) static_cast<void>(tracker.process(picture.view(), i));
+    return meter.peak_bytes();
+  };
+  const std::int64_t at_first = peak_after(5);
+  EXPECT_EQ(peak_after(100), at_first);
+}
+
+}  // namespace
+}  // namespace ellipse
