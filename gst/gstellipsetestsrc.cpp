@@ -4,7 +4,8 @@
  * SECTION:element-ellipsetestsrc
  * @title: ellipsetestsrc
  *
- * Renders what a drone's camera sees while it comes down to a landing pad and climbs again. Each
+ * Renders what a drone's camera sees above a landing pad: seventeen scenes, from a plain approach
+ * to dusk, glare, occlusion, motion blur and clutter without any pad. Each
  * buffer carries the exact ellipse of the pad's outer edge as a #GstEllipseMeta with the role
  * "truth". The same properties give the same frames on any machine.
  *
@@ -314,7 +315,8 @@ static void gst_ellipse_test_src_init(GstEllipseTestSrc* self) {
 }
 
 static void install_properties(GObjectClass* object_class) {
-  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS);
+  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                              GST_PARAM_MUTABLE_PLAYING);
   const auto install = [&](guint id, GParamSpec* spec) {
     g_object_class_install_property(object_class, id, spec);
   };
@@ -351,9 +353,13 @@ static void install_properties(GObjectClass* object_class) {
   install(PROP_SEED,
           g_param_spec_uint(
               "seed", "Seed", "Of all that is random: ground and noise", 0, G_MAXUINT32, 1, flags));
-  install(PROP_IS_LIVE,
-          g_param_spec_boolean(
-              "is-live", "Is live", "Give each frame at its time, as a camera does", FALSE, flags));
+  install(
+      PROP_IS_LIVE,
+      g_param_spec_boolean("is-live",
+                           "Is live",
+                           "Give each frame at its time, as a camera does",
+                           FALSE,
+                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS)));
 }
 
 static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {

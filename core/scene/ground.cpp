@@ -180,7 +180,7 @@ void squares(Painter& painter, int count) {
   for (int i = 0; i < count; ++i) {
     const cv::Point2d center = painter.somewhere();
     const double turn = random.between(0.0, kPi);
-    const double size = random.between(20.0, 90.0);
+    const double size = random.between(30.0, 90.0);
     std::vector<cv::Point2d> outline;
     for (int corner = 0; corner < 4; ++corner) {
       outline.push_back(towards(center, turn + corner * kPi / 2.0, size));
@@ -193,13 +193,16 @@ void flowers(Painter& painter, int count) {
   Random& random = painter.random();
   for (int i = 0; i < count; ++i) {
     const cv::Point2d center = painter.somewhere();
-    const double size = random.between(30.0, 100.0);
+    const double size = random.between(45.0, 110.0);
     const int petals = 4 + random.below(4);
     const double turn = random.between(0.0, kPi);
     std::vector<cv::Point2d> outline;
     for (int k = 0; k < 180; ++k) {
       const double angle = 2.0 * kPi * k / 180.0;
-      const double petal = std::abs(std::cos(petals * angle / 2.0));
+      // A notch at each petal's tip, without which it would be half an ellipse.
+      const double across = std::sin(petals * angle / 2.0);
+      const double notch = 0.35 * std::exp(-across * across / 0.05);
+      const double petal = std::sqrt(1.0 - across * across) * (1.0 - notch);
       outline.push_back(towards(center, turn + angle, size * (0.3 + 0.7 * petal)));
     }
     painter.polygon(outline, strong_level(random));
@@ -210,9 +213,9 @@ void rounded(Painter& painter, int count) {
   Random& random = painter.random();
   for (int i = 0; i < count; ++i) {
     const cv::Point2d center = painter.somewhere();
-    const double half_width = random.between(20.0, 80.0);
+    const double half_width = random.between(30.0, 80.0);
     const double half_length = half_width * random.between(1.0, 2.5);
-    const double radius = half_width * random.between(0.2, 0.4);
+    const double radius = half_width * random.between(0.15, 0.3);
     const double turn = random.between(0.0, kPi);
     std::vector<cv::Point2d> outline;
     for (int corner = 0; corner < 4; ++corner) {

@@ -2,92 +2,22 @@
 #include "examples/evaluate/dataset.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <stdexcept>
+
+#include "examples/evaluate/picture_reader.hpp"
+#include "examples/evaluate/rows.hpp"
 
 namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> fields(1);
-  for (const char c : text) {
-    if (c == separator) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-// One line of a table with a header, and where it stands.
-class Row {
- public:
-  Row(const fs::path& file,
-      int line,
-      const std::vector<std::string>& header,
-      std::vector<std::string> fields)
-      : file_(file), line_(line), header_(header), fields_(std::move(fields)) {
-    if (fields_.size() == header_.size()) return;
-    fail(std::to_string(fields_.size()) + " fields where the header has " +
-         std::to_string(header_.size()));
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw std::runtime_error(file_.string() + ":" + std::to_string(line_) + ": " + what);
-  }
-
-  [[nodiscard]] bool has(const std::string& column) const {
-    return std::find(header_.begin(), header_.end(), column) != header_.end();
-  }
-
-  [[nodiscard]] const std::string& text(const std::string& column) const {
-    const auto found = std::find(header_.begin(), header_.end(), column);
-    if (found == header_.end()) fail("no column \"" + column + "\"");
-    return fields_[static_cast<std::size_t>(found - header_.begin())];
-  }
-
-  [[nodiscard]] double number(const std::string& column) const {
-    const std::string& field = text(column);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) {
-      fail(column + " is \"" + field + "\", not a number");
-    }
-    return value;
-  }
-
- private:
-  const fs::path& file_;
-  int line_;
-  const std::vector<std::string>& header_;
-  std::vector<std::string> fields_;
-};
-
-template <class Use>
-void for_each_row(const fs::path& file, char separator, const Use& use) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(file.string() + ": cannot be read");
-  std::vector<std::string> header;
-  std::string text;
-  for (int line = 1; std::getline(in, text); ++line) {
-    if (!text.empty() && text.back() == '\r') text.pop_back();
-    if (text.empty()) continue;
-    if (header.empty()) {
-      header = split(text, separator);
-    } else {
-      use(Row(file, line, header, split(text, separator)));
-    }
-  }
-  if (header.empty()) throw std::runtime_error(file.string() + ": is empty");
-}
 
 void check_axes(const Row& row, const ellipse::Ellipse& e) {
   if (!(e.semi_major >= e.semi_minor && e.semi_minor > 0.0)) {
@@ -104,9 +34,7 @@ Truth truth_of_csv(const Row& row) {
                                   row.number("semi_minor"),
                                   row.number("angle_rad")};
   check_axes(row, *truth.target);
-  if (row.has("visible_fraction") && !row.text("visible_fraction").empty()) {
-    truth.visible_fraction = row.number("visible_fraction");
-  }
+  truth.visible_fraction = row.optional_number("visible_fraction");
   return truth;
 }
 
@@ -147,64 +75,166 @@ bool natural_less(const std::string& a, const std::string& b) {
 
 using FramesBySequence = std::map<std::string, std::vector<Frame>>;
 
-// A sequence is a folder of pictures, named by its path inside the data set.
-std::string sequence_of(const fs::path& image, const fs::path& dataset) {
-  const fs::path folder = image.parent_path().lexically_normal();
-  const std::string inside = folder.lexically_relative(dataset).generic_string();
-  if (inside == ".") return dataset.filename().string();
-  return inside.starts_with("images/") ? inside.substr(7) : inside;
-}
+class FilePictures : public PictureSource {
+ public:
+  cv::Mat picture(const Frame& frame) override { return reader_.read(frame.image); }
 
-void add_frame(FramesBySequence& frames,
-               const fs::path& dataset,
-               const fs::path& image,
-               const Truth& truth) {
-  const std::string sequence = sequence_of(image, dataset);
-  frames[sequence].push_back({image, sequence + "/" + image.filename().string(), truth});
-}
+ private:
+  PictureReader reader_;
+};
 
-void read_csv(const fs::path& file, const fs::path& dataset, FramesBySequence& frames) {
-  for_each_row(file, ',', [&](const Row& row) {
-    add_frame(frames, dataset, file.parent_path() / row.text("image"), truth_of_csv(row));
-  });
-}
+// Reads one folder with its tables.
+class Reader {
+ public:
+  explicit Reader(const fs::path& folder) : folder_(fs::canonical(folder)) {}
 
-void read_published(const fs::path& file, const fs::path& dataset, FramesBySequence& frames) {
-  for_each_row(file, '\t', [&](const Row& row) {
-    add_frame(frames, dataset, file.parent_path() / row.text("Filename"), truth_of_published(row));
-  });
+  Dataset read() {
+    bool has_table = fs::exists(folder_ / "gt.csv");
+    if (has_table) {
+      read_csv(folder_ / "gt.csv");
+    } else {
+      for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_)) {
+        if (entry.path().filename() != "ground_truth.txt") continue;
+        has_table = true;
+        read_published(entry.path());
+      }
+    }
+    if (!has_table) {
+      throw std::runtime_error(folder_.string() + ": holds neither gt.csv nor ground_truth.txt");
+    }
+    if (frames_.empty() && dataset_.problems.empty()) {
+      throw std::runtime_error(folder_.string() + ": its table names no picture");
+    }
+    note_images_without_rows();
+    collect();
+    return std::move(dataset_);
+  }
+
+ private:
+  void read_csv(const fs::path& file) {
+    const auto use = [&](const Row& row) {
+      const fs::path image = named(folder_ / row.text("image"));
+      const Conditions conditions{row.optional_number("noise"), row.optional_number("crumple")};
+      add(row, image, truth_of_csv(row), conditions);
+    };
+    for_each_row(file, ',', use, [&](const std::string& problem) { lose(problem); });
+  }
+
+  void read_published(const fs::path& file) {
+    const auto use = [&](const Row& row) {
+      const fs::path image = named(file.parent_path() / row.text("Filename"));
+      add(row, image, truth_of_published(row), {});
+    };
+    for_each_row(file, '\t', use, [&](const std::string& problem) { lose(problem); });
+  }
+
+  void lose(const std::string& problem) {
+    dataset_.problems.push_back(problem);
+    ++dataset_.missing_frames;
+  }
+
+  // Also an image whose line is broken has a line.
+  fs::path named(const fs::path& image) {
+    named_.insert(image.lexically_normal());
+    return image;
+  }
+
+  void add(const Row& row, const fs::path& image, const Truth& truth, const Conditions& with) {
+    if (!fs::exists(image)) row.fail("image " + image.string() + " is not there");
+    const std::string sequence = sequence_of(image);
+    Frame frame{sequence + "/" + image.filename().string(), image, 0, truth, with};
+    frames_[sequence].push_back(std::move(frame));
+  }
+
+  // A sequence is a folder of pictures, named by its path inside the data set.
+  [[nodiscard]] std::string sequence_of(const fs::path& image) const {
+    const fs::path folder = image.parent_path().lexically_normal();
+    const std::string inside = folder.lexically_relative(folder_).generic_string();
+    if (inside == ".") return folder_.filename().string();
+    return inside.starts_with("images/") ? inside.substr(7) : inside;
+  }
+
+  void note_images_without_rows() {
+    std::set<fs::path> folders;
+    for (const fs::path& image : named_) folders.insert(image.parent_path());
+    for (const fs::path& folder : folders) {
+      if (!fs::is_directory(folder)) continue;
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string extension = entry.path().extension().string();
+        const bool is_picture = extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+        if (!is_picture || named_.contains(entry.path().lexically_normal())) continue;
+        dataset_.problems.push_back(entry.path().string() + ": has no line in the table");
+      }
+    }
+  }
+
+  void collect() {
+    const auto pictures = std::make_shared<FilePictures>();
+    for (auto& [name, list] : frames_) {
+      std::stable_sort(list.begin(), list.end(), [](const Frame& a, const Frame& b) {
+        return natural_less(a.name, b.name);
+      });
+      for (std::size_t i = 0; i < list.size(); ++i) list[i].number = i;
+      dataset_.sequences.push_back({folder_.filename().string(), name, std::move(list), pictures});
+    }
+  }
+
+  fs::path folder_;
+  FramesBySequence frames_;
+  std::set<fs::path> named_;
+  Dataset dataset_;
+};
+
+void write_row(std::ostream& out, const fs::path& image, const Frame& frame) {
+  const auto number = [&](const std::optional<double>& value) {
+    out << ',';
+    if (value) out << *value;
+  };
+  const auto& target = frame.truth.target;
+  out << image.generic_string();
+  if (target) {
+    for (const double value :
+         {target->cx, target->cy, target->semi_major, target->semi_minor, target->angle_rad}) {
+      number(value);
+    }
+  } else {
+    out << ",,,,,";
+  }
+  number(frame.truth.visible_fraction);
+  number(frame.conditions.noise);
+  number(frame.conditions.crumple);
+  out << '\n';
 }
 
 }  // namespace
 
-std::vector<Sequence> read_dataset(const fs::path& folder) {
+Dataset read_dataset(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": is no folder that can be read");
   }
-  const fs::path dataset = fs::canonical(folder);
-  FramesBySequence frames;
-  bool has_table = fs::exists(dataset / "gt.csv");
-  if (has_table) {
-    read_csv(dataset / "gt.csv", dataset, frames);
-  } else {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dataset)) {
-      if (entry.path().filename() != "ground_truth.txt") continue;
-      has_table = true;
-      read_published(entry.path(), dataset, frames);
+  return Reader(folder).read();
+}
+
+void write_dataset(const std::vector<Sequence>& sequences,
+                   const fs::path& folder,
+                   const std::function<bool(const Frame&)>& advance) {
+  fs::create_directories(folder);
+  const fs::path table = folder / "gt.csv";
+  std::ofstream out(table);
+  out.precision(17);
+  out << "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction,noise,crumple\n";
+  for (const Sequence& sequence : sequences) {
+    fs::create_directories(folder / "images" / sequence.name);
+    for (const Frame& frame : sequence.frames) {
+      const fs::path image = fs::path("images") / frame.name;
+      if (!cv::imwrite((folder / image).string(), sequence.pictures->picture(frame))) {
+        throw std::runtime_error((folder / image).string() + ": cannot be written");
+      }
+      write_row(out, image, frame);
+      if (!advance(frame)) break;
     }
   }
-  if (!has_table) {
-    throw std::runtime_error(folder.string() + ": holds neither gt.csv nor ground_truth.txt");
-  }
-  if (frames.empty()) throw std::runtime_error(folder.string() + ": its table names no picture");
-  std::vector<Sequence> sequences;
-  for (auto& [name, list] : frames) {
-    std::stable_sort(list.begin(), list.end(), [](const Frame& a, const Frame& b) {
-      return natural_less(a.name, b.name);
-    });
-    sequences.push_back({name, std::move(list)});
-  }
-  return sequences;
+  if (!out.flush()) throw std::runtime_error(table.string() + ": cannot be written");
 }
 
 }  // namespace evaluate

@@ -1,6 +1,10 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,23 +23,60 @@ struct Truth {
   bool is_labelled = true;
 };
 
+/// What made a frame hard, where its data set says so.
+struct Conditions {
+  std::optional<double> noise;    ///< Standard deviation [grey levels].
+  std::optional<double> crumple;  ///< Departure of the edge from its ellipse, of the radius.
+};
+
 struct Frame {
-  std::filesystem::path image;  ///< To be read.
   std::string name;             ///< As "sequence/file", for people and for other programs.
+  std::filesystem::path image;  ///< To be read; empty where the frame is rendered.
+  std::size_t number = 0;       ///< In its sequence.
   Truth truth;
+  Conditions conditions;
+};
+
+/// Where the pictures of a sequence come from.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+
+  /// 8-bit grey levels. Throws std::runtime_error that names the frame, where there is no picture.
+  [[nodiscard]] virtual cv::Mat picture(const Frame& frame) = 0;
 };
 
 /// Frames that follow each other in time.
 struct Sequence {
+  std::string dataset;  ///< Figures are given for each data set.
   std::string name;
   std::vector<Frame> frames;  ///< In the natural order of their file names.
+  std::shared_ptr<PictureSource> pictures;
+};
+
+struct Dataset {
+  std::vector<Sequence> sequences;
+  /// What could not be used, each naming file and line.
+  std::vector<std::string> problems;
+  /// Rows of the truth that are lost to these problems.
+  std::size_t missing_frames = 0;
 };
 
 /// Reads a data set from a folder with `gt.csv` (columns image, cx, cy, semi_major, semi_minor,
-/// angle_rad and, if there, visible_fraction; images named relative to the folder), or with the
-/// `ground_truth.txt` of the published AirLab data set, in the folder itself or in folders below.
+/// angle_rad and, if there, visible_fraction, noise, crumple; images named relative to the folder),
+/// or with the `ground_truth.txt` of the published AirLab data set, in the folder itself or in
+/// folders below.
 ///
-/// Throws std::runtime_error that names the file and the line, where something cannot be read.
-[[nodiscard]] std::vector<Sequence> read_dataset(const std::filesystem::path& folder);
+/// A broken line, a line whose image is not there, and an image without a line are problems; the
+/// other frames are there. Throws std::runtime_error that names the file, where there is no table,
+/// or none that can be read. gst_init() must have been called.
+[[nodiscard]] Dataset read_dataset(const std::filesystem::path& folder);
+
+/// Writes pictures and `gt.csv`, from which read_dataset() gives the same frames.
+/// @param advance  Called after each frame; false ends it early.
+/// Throws std::runtime_error that names the file, where it cannot be written.
+void write_dataset(const std::vector<Sequence>& sequences,
+                   const std::filesystem::path& folder,
+                   const std::function<bool(const Frame&)>& advance);
 
 }  // namespace evaluate

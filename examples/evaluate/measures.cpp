@@ -103,8 +103,12 @@ double Measures::recall() const {
   return ratio(right, right + count(Outcome::kFalseNegative) + count(Outcome::kWrong));
 }
 
+// Twice the product of precision and recall over their sum, without their divisions by nothing.
 double Measures::f1() const {
-  return 2.0 * recall() * precision() / (recall() + precision());
+  const int right = count(Outcome::kTruePositive);
+  return ratio(2 * right,
+               2 * (right + count(Outcome::kWrong)) + count(Outcome::kFalsePositive) +
+                   count(Outcome::kFalseNegative));
 }
 
 const std::vector<double>& Measures::times_ms(Outcome outcome) const {

@@ -52,7 +52,8 @@ struct Result {
   double processing_ms = 0.0;
   double reference_ms = 0.0;     ///< Edges and contours alone, on the same frame.
   double centre_error_px = 0.0;  ///< Where the outcome is kTruePositive.
-  int scale = 1;                 ///< Frame scale, where the outcome is kTruePositive.
+  int scale = 1;                 ///< Frame scale at which the answer was found.
+  std::optional<ellipse::Ellipse> answer;
 };
 
 /// The results of many frames.

@@ -4,28 +4,38 @@
 #include <string>
 #include <vector>
 
-#include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/evaluation.hpp"
 
 namespace evaluate {
 
-struct NamedMeasures {
-  std::string name;
-  Measures measures;
+/// Text in rows and columns, for the terminal and for the report.
+struct Table {
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;  ///< The first column holds names.
+  std::string note;
 };
 
-/// All sequences taken together, named "total".
-[[nodiscard]] NamedMeasures total(const std::vector<NamedMeasures>& sequences);
+/// [Keipour2021] Table II: the measures of each method on one data set.
+[[nodiscard]] Table measures_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// The measures of [Keipour2021] Table II, a row a sequence.
-void print_measures(std::ostream& out, const std::vector<NamedMeasures>& rows);
+/// [Keipour2021] Table III: the times of each method by outcome, beside the reference's.
+[[nodiscard]] Table times_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// The times of [Keipour2021] Table III by outcome, beside those of edges and contours alone.
-void print_times(std::ostream& out, const Measures& measures);
+/// F1 of each method on each sequence; where a sequence has no target, the share of its frames
+/// in which rightly none was found.
+[[nodiscard]] Table sequences_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// The error of the centre by the frame scale that the target was found at.
-void print_centre_errors(std::ostream& out, const Measures& measures);
+/// The error of the centre of each method, by the frame scale at which the target was found.
+[[nodiscard]] Table centre_table(const Evaluation& evaluation, const std::string& dataset);
+
+/// All of them, of one data set.
+[[nodiscard]] std::vector<Table> all_tables(const Evaluation& evaluation,
+                                            const std::string& dataset);
+
+void print(std::ostream& out, const Table& table);
 
 /// The same figures for programs.
-void write_json(std::ostream& out, const std::vector<NamedMeasures>& rows);
+void write_json(std::ostream& out, const Evaluation& evaluation);
 
 }  // namespace evaluate

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -289,6 +290,48 @@ TEST(GroundTexture, KindsDiffer) {
       lights.push_back(texture.at(0.03F * static_cast<float>(i), 5.0F, -1.0F));
     }
     EXPECT_TRUE(seen.insert(lights).second) << ground_nicks()[kind];
+  }
+}
+
+// FNV-1a.
+std::uint64_t fingerprint(const Picture& picture) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const std::uint8_t level : picture.pixels) hash = (hash ^ level) * 0x100000001b3U;
+  return hash;
+}
+
+struct Fingerprint {
+  const char* scene;
+  std::uint64_t value;
+};
+
+// Whoever changes a scene changes every figure that was measured with it: say so in CHANGELOG.md.
+constexpr Fingerprint kFingerprints[] = {
+    {"approach", 0xf2d325fb58e82ca3U},
+    {"oblique", 0xae3bf7adc26f972aU},
+    {"dusk", 0xfdcaba2f65bc1b07U},
+    {"glare", 0xfc3966c6b014873fU},
+    {"occluded", 0x160751ec4464e983U},
+    {"dash", 0x22705a707d88d3d8U},
+    {"touchdown", 0xb5de65e1b769413cU},
+    {"reenter", 0xfbb0c0ee85b0b22cU},
+    {"thin", 0x0a219675ae916b8bU},
+    {"disc", 0x39306c0ad3981fa7U},
+    {"bullseye", 0x74000117ecb3b4dcU},
+    {"crumpled", 0x1bf6e0758422445dU},
+    {"noise", 0x6a91361e1c5037fbU},
+    {"negative", 0xf5a43594cb69ea17U},
+    {"orbit", 0x55e218e98d015aecU},
+    {"shake", 0xe8e0eabec5c6925dU},
+    {"hover", 0xe61ef2fc8b84c0d6U},
+};
+
+TEST(Catalog, PicturesAreTheSameOnEveryMachine) {
+  ASSERT_EQ(std::size(kFingerprints), scene_catalog().size());
+  for (const Fingerprint& expected : kFingerprints) {
+    Picture picture(160, 90);
+    SceneRenderer(scene_by_name(expected.scene)).render(3.0, 5, picture.writable());
+    EXPECT_EQ(fingerprint(picture), expected.value) << expected.scene;
   }
 }
 

@@ -7,20 +7,27 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string>
 
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/method.hpp"
 #include "examples/evaluate/picture_reader.hpp"
+#include "examples/evaluate/report.hpp"
+#include "examples/evaluate/sweep.hpp"
+#include "examples/evaluate/tables.hpp"
+#include "examples/evaluate/twin.hpp"
 
 namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Dataset : public testing::Test {
+class DatasetFiles : public testing::Test {
  protected:
   void SetUp() override {
     folder_ =
@@ -35,6 +42,10 @@ class Dataset : public testing::Test {
     fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name) << text;
   }
+  // Pictures that are there, but are not read.
+  void touch(const std::vector<std::string>& names) const {
+    for (const std::string& name : names) write(name, "");
+  }
   [[nodiscard]] std::string error() const {
     try {
       (void)read_dataset(folder_);
@@ -47,13 +58,16 @@ class Dataset : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Dataset, ReadsCsvInNaturalOrderBySequence) {
+TEST_F(DatasetFiles, ReadsCsvInNaturalOrderBySequence) {
   write("gt.csv",
         "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction\n"
         "images/b/frame10.jpg,1,2,30,20,0.5,0.75\n"
         "images/b/frame9.jpg,,,,,,\n"
         "images/a/frame1.jpg,1,2,30,20,-0.5,\r\n");
-  const auto sequences = read_dataset(folder_);
+  touch({"images/b/frame10.jpg", "images/b/frame9.jpg", "images/a/frame1.jpg"});
+  const Dataset dataset = read_dataset(folder_);
+  EXPECT_TRUE(dataset.problems.empty());
+  const auto& sequences = dataset.sequences;
   ASSERT_EQ(sequences.size(), 2U);
   EXPECT_EQ(sequences[0].name, "a");
   ASSERT_EQ(sequences[1].frames.size(), 2U);
@@ -64,14 +78,15 @@ TEST_F(Dataset, ReadsCsvInNaturalOrderBySequence) {
   EXPECT_FALSE(sequences[0].frames[0].truth.visible_fraction);
 }
 
-TEST_F(Dataset, ReadsThePublishedForm) {
+TEST_F(DatasetFiles, ReadsThePublishedForm) {
   write("one/ground_truth.txt",
         "Filename\tHasTarget\tTargetCenterX\tTargetCenterY\tTargetWidth\tTargetHeight\t"
         "TargetAngle\n"
         "f1.jpg\t1\t100.0\t50.0\t40.0\t60.0\t90.0\n"
         "f2.jpg\t0\t0.000\t0.000\t0.000\t0.000\t0.000\n"
         "f3.jpg\t1\t-1.000\t-1.000\t-1.000\t-1.000\t-1.000\n");
-  const auto sequences = read_dataset(folder_);
+  touch({"one/f1.jpg", "one/f2.jpg", "one/f3.jpg"});
+  const auto sequences = read_dataset(folder_).sequences;
   ASSERT_EQ(sequences.size(), 1U);
   const auto& frames = sequences[0].frames;
   ASSERT_EQ(frames.size(), 3U);
@@ -84,28 +99,103 @@ TEST_F(Dataset, ReadsThePublishedForm) {
   EXPECT_FALSE(frames[2].truth.is_labelled);
 }
 
-TEST_F(Dataset, KeepsFoldersOfTheSameNameApart) {
+TEST_F(DatasetFiles, KeepsFoldersOfTheSameNameApart) {
   write("gt.csv",
         "image,cx,cy,semi_major,semi_minor,angle_rad\n"
         "one/img/1.png,,,,,\ntwo/img/1.png,,,,,\n3.png,,,,,\n");
-  const auto sequences = read_dataset(folder_);
+  touch({"one/img/1.png", "two/img/1.png", "3.png"});
+  const auto sequences = read_dataset(folder_).sequences;
   ASSERT_EQ(sequences.size(), 3U);
   EXPECT_EQ(sequences[0].name, folder_.filename().string());
   EXPECT_EQ(sequences[1].name, "one/img");
   EXPECT_EQ(sequences[2].name, "two/img");
 }
 
-TEST_F(Dataset, NamesFileAndLineOfWhatIsBroken) {
+TEST_F(DatasetFiles, NamesFileAndLineOfWhatIsBroken) {
+  touch({"a.jpg", "b.jpg", "c.jpg", "d.jpg"});
+  write("gt.csv",
+        "image,cx,cy,semi_major,semi_minor,angle_rad\n"
+        "a.jpg,1,2,x,20,0\n"
+        "b.jpg,1,2,10,20,0\n"
+        "c.jpg,1,2\n"
+        "d.jpg,1,2,20,10,0\n");
+  const Dataset dataset = read_dataset(folder_);
+  ASSERT_EQ(dataset.problems.size(), 4U);  // and c.jpg has no line that could be read
+  EXPECT_NE(dataset.problems[0].find("gt.csv:2: semi_major"), std::string::npos);
+  EXPECT_NE(dataset.problems[1].find("gt.csv:3: the axes"), std::string::npos);
+  EXPECT_NE(dataset.problems[2].find("gt.csv:4: 3 fields"), std::string::npos);
+  EXPECT_EQ(dataset.missing_frames, 3U);
+  ASSERT_EQ(dataset.sequences.size(), 1U);
+  EXPECT_EQ(dataset.sequences[0].frames.size(), 1U);
+}
+
+TEST_F(DatasetFiles, NamesImagesAndLinesThatMissEachOther) {
+  touch({"a.jpg", "c.jpg"});
+  write("gt.csv", "image,cx,cy,semi_major,semi_minor,angle_rad\na.jpg,,,,,\nb.jpg,,,,,\n");
+  const Dataset dataset = read_dataset(folder_);
+  ASSERT_EQ(dataset.problems.size(), 2U);
+  EXPECT_NE(dataset.problems[0].find("gt.csv:3: image"), std::string::npos);
+  EXPECT_NE(dataset.problems[1].find("c.jpg: has no line"), std::string::npos);
+  EXPECT_EQ(dataset.missing_frames, 1U);
+}
+
+TEST_F(DatasetFiles, RefusesWhatIsNoTable) {
   EXPECT_NE(error().find("neither gt.csv nor ground_truth.txt"), std::string::npos);
-  const std::string header = "image,cx,cy,semi_major,semi_minor,angle_rad\n";
-  write("gt.csv", header + "a.jpg,1,2,x,20,0\n");
-  EXPECT_NE(error().find("gt.csv:2: semi_major"), std::string::npos) << error();
-  write("gt.csv", header + "a.jpg,1,2,10,20,0\n");
-  EXPECT_NE(error().find("gt.csv:2: the axes"), std::string::npos) << error();
-  write("gt.csv", header + "a.jpg,1,2\n");
-  EXPECT_NE(error().find("gt.csv:2: 3 fields"), std::string::npos) << error();
   write("gt.csv", "");
   EXPECT_NE(error().find("is empty"), std::string::npos);
+  write("gt.csv", "image,cx\na.jpg,1\n");
+  touch({"a.jpg"});
+  EXPECT_NE(error().find("no column \"cy\""), std::string::npos) << error();
+}
+
+TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
+  std::vector<Sequence> twin = make_twin();
+  twin.resize(2);
+  for (Sequence& sequence : twin) sequence.frames.resize(3);
+  write_dataset(twin, folder_, [](const Frame& /*frame*/) { return true; });
+  const std::vector<Sequence> again = read_dataset(folder_).sequences;
+  ASSERT_EQ(again.size(), 2U);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    ASSERT_EQ(again[i].frames.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Frame& written = twin[i].frames[k];
+      const Frame& read = again[i].frames[k];
+      EXPECT_EQ(read.name, written.name);
+      EXPECT_EQ(read.truth.target, written.truth.target);
+      EXPECT_EQ(read.conditions.noise, written.conditions.noise);
+      EXPECT_EQ(cv::norm(again[i].pictures->picture(read), twin[i].pictures->picture(written)), 0);
+    }
+  }
+}
+
+TEST(Twin, HasTheSizeOfThePapersDataSet) {
+  std::map<std::string, std::pair<int, int>> counts;  // frames, with the target
+  for (const Sequence& sequence : make_twin()) {
+    for (const Frame& frame : sequence.frames) {
+      ++counts[sequence.dataset].first;
+      counts[sequence.dataset].second += frame.truth.target ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(counts["twin"], std::pair(1511, 1378));
+  EXPECT_EQ(counts["thin"], std::pair(456, 456));
+}
+
+TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
+  // The target's outline is where the picture changes.
+  const Sequence sequence = make_twin()[0];
+  const Frame& frame = sequence.frames[70];
+  const cv::Mat picture = sequence.pictures->picture(frame);
+  double contrast = 0.0;
+  for (int i = 0; i < 36; ++i) {
+    const ellipse::Ellipse& e = *frame.truth.target;
+    const Eigen::Vector2d out = e.center() + 1.08 * (e.point_at(0.174 * i) - e.center());
+    const Eigen::Vector2d in = e.center() + 0.92 * (e.point_at(0.174 * i) - e.center());
+    const auto level = [&](const Eigen::Vector2d& p) {
+      return static_cast<double>(picture.at<std::uint8_t>(cvRound(p.y()), cvRound(p.x())));
+    };
+    contrast += (level(out) - level(in)) / 36.0;
+  }
+  EXPECT_GT(contrast, 100.0);
 }
 
 TEST(PictureReader, NamesWhatItCannotRead) {
@@ -168,7 +258,7 @@ TEST(Measures, RulesDifferAtTheirLimits) {
 TEST(Measures, AreThePapers) {
   Measures m;
   const auto add = [&](Outcome outcome, int times) {
-    for (int i = 0; i < times; ++i) m.add({outcome, 1.0, 1.0, 0.5, 2});
+    for (int i = 0; i < times; ++i) m.add({outcome, 1.0, 1.0, 0.5, 2, {}});
   };
   add(Outcome::kTruePositive, 6);
   add(Outcome::kTrueNegative, 2);
@@ -183,6 +273,169 @@ TEST(Measures, AreThePapers) {
   EXPECT_DOUBLE_EQ(m.f1(), 2.0 * 0.75 * (2.0 / 3.0) / (0.75 + 2.0 / 3.0));
   EXPECT_EQ(m.centre_errors_px(1).size(), 6U);
   EXPECT_TRUE(std::isnan(Measures().accuracy()));
+}
+
+// Frames of one grey level each, so that a method can know which one it sees.
+class GreyPictures : public PictureSource {
+ public:
+  cv::Mat picture(const Frame& frame) override {
+    if (frame.name == "bad") throw std::runtime_error("bad: is no picture");
+    return {kFrame.height, kFrame.width, CV_8U, cv::Scalar(double(frame.number))};
+  }
+};
+
+// Gives the answers that it is told to give.
+class Scripted : public Method {
+ public:
+  explicit Scripted(std::vector<std::optional<ellipse::Ellipse>> answers)
+      : Method("scripted"), answers_(std::move(answers)) {}
+  void start() override { ++starts; }
+  Answer find(const Frame& frame, const cv::Mat& picture, std::int64_t /*pts_ns*/) override {
+    EXPECT_EQ(picture.at<std::uint8_t>(0, 0), frame.number);
+    return {answers_[frame.number], 1, 2.0 + double(frame.number)};
+  }
+  int starts = 0;
+
+ private:
+  std::vector<std::optional<ellipse::Ellipse>> answers_;
+};
+
+class HandMade : public testing::Test {
+ protected:
+  static constexpr std::size_t kFrames = 6;
+
+  HandMade() {
+    ellipse::Ellipse grown = kTarget;  // right by overlap, not by the published rule
+    grown.semi_major *= 1.12;
+    ellipse::Ellipse shifted = kTarget;  // right by the published rule, not by overlap
+    shifted.cx += 7.0;
+    shifted.cy -= 3.5;
+    shifted.semi_major *= 0.92;
+    shifted.semi_minor *= 0.92;
+    const ellipse::Ellipse other{60.0, 60.0, 30.0, 30.0, 0.0};
+    const std::vector<std::optional<ellipse::Ellipse>> answers = {
+        kTarget, grown, shifted, other, std::nullopt, std::nullopt};
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      const Truth truth = i == 5 ? Truth{} : truth_of(kTarget);
+      sequence_.frames.push_back({"f" + std::to_string(i), {}, i, truth, {}});
+    }
+    methods_.push_back(std::make_unique<Scripted>(answers));
+  }
+
+  Evaluation run(Rule rule, int most = 100) {
+    return evaluate(
+        sequences(), methods_, rule, [most](const Frame&) mutable { return --most > 0; });
+  }
+  std::vector<Sequence>& sequences() {
+    all_ = {sequence_};
+    return all_;
+  }
+  static Measures measures(const Evaluation& evaluation) {
+    return measures_of(evaluation, 0, [](const SeenFrame&) { return true; });
+  }
+
+  Sequence sequence_{"hand", "made", {}, std::make_shared<GreyPictures>()};
+  std::vector<Sequence> all_;
+  std::vector<std::unique_ptr<Method>> methods_;
+};
+
+TEST_F(HandMade, CountsAreKnownByTheRuleOfOverlap) {
+  const Measures m = measures(run(Rule::kIou));
+  EXPECT_EQ(m.count(Outcome::kTruePositive), 2);  // the target, the grown one
+  EXPECT_EQ(m.count(Outcome::kWrong), 2);         // the shifted one, another one
+  EXPECT_EQ(m.count(Outcome::kFalseNegative), 1);
+  EXPECT_EQ(m.count(Outcome::kTrueNegative), 1);
+  EXPECT_DOUBLE_EQ(m.f1(), 2.0 * 2.0 / (2.0 * 2.0 + 1.0 + 2.0 * 2.0));
+}
+
+TEST_F(HandMade, CountsAreKnownByThePublishedRule) {
+  const Measures m = measures(run(Rule::kPublished));
+  EXPECT_EQ(m.count(Outcome::kTruePositive), 2);  // the target, the shifted one
+  EXPECT_EQ(m.count(Outcome::kWrong), 2);         // the grown one, another one
+}
+
+TEST_F(HandMade, InterruptedItKeepsWhatItHas) {
+  const Evaluation evaluation = run(Rule::kIou, 3);
+  EXPECT_TRUE(evaluation.is_interrupted);
+  EXPECT_EQ(evaluation.frames.size(), 3U);
+  EXPECT_EQ(evaluation.planned_frames, kFrames);
+  EXPECT_EQ(measures(evaluation).judged(), 3);
+}
+
+TEST_F(HandMade, UnreadableFramesAreCountedAndNamed) {
+  sequence_.frames[2].name = "bad";
+  const Evaluation evaluation = run(Rule::kIou);
+  EXPECT_EQ(evaluation.missing_frames, 1U);
+  EXPECT_EQ(evaluation.frames.size(), kFrames - 1);
+  ASSERT_EQ(evaluation.problems.size(), 1U);
+  EXPECT_NE(evaluation.problems[0].find("bad"), std::string::npos);
+}
+
+TEST_F(HandMade, MethodsStartAfreshWithEachSequence) {
+  std::vector<Sequence> twice = {sequence_, sequence_};
+  (void)evaluate(twice, methods_, Rule::kIou, [](const Frame&) { return true; });
+  EXPECT_EQ(static_cast<const Scripted&>(*methods_[0]).starts, 2);
+}
+
+TEST_F(HandMade, TablesShowTheCountsAndTimes) {
+  const Evaluation evaluation = run(Rule::kIou);
+  const Table measures = measures_table(evaluation, "hand");
+  EXPECT_EQ(measures.rows,
+            (std::vector<std::vector<std::string>>{
+                {"scripted", "0.5000", "0.5000", "0.4000", "0.4444", "2", "1", "0", "1", "2"}}));
+  const Table times = times_table(evaluation, "hand");
+  // TP: frames 0 and 1, of 2 and 3 ms.
+  const std::vector<std::string> right = {
+      "scripted", "TP", "2", "2.500", "3.000", "2.000", "3.000", "3.000"};
+  EXPECT_EQ(times.rows[0], right);
+  EXPECT_EQ(times.rows.back()[0], "cv::Canny + cv::findContours");
+}
+
+TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
+  const fs::path folder = fs::temp_directory_path() / "ellipse-report-test";
+  const Evaluation evaluation = run(Rule::kIou, 5);
+  write_report(evaluation, "the <command>", {"a & b is missing"}, folder);
+  std::ifstream in(folder / "index.html");
+  const std::string page((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  for (const char* part : {"the &lt;command&gt;",
+                           "a &amp; b is missing",
+                           "Interrupted after 5 of 6",
+                           "<td>0.4444</td>",
+                           "<svg",
+                           "WD  f3",
+                           "data:image/jpeg;base64,"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // nothing is fetched
+  fs::remove_all(folder);
+}
+
+TEST(Sweep, IsRangesAndLists) {
+  const Sweep range = parse_sweep("detect-contour-overlap=0.3:0.5:0.05");
+  EXPECT_EQ(range.property, "detect-contour-overlap");
+  EXPECT_EQ(range.values, (std::vector<double>{0.3, 0.35, 0.4, 0.45, 0.5}));
+  EXPECT_EQ(parse_sweep("max-scale=1,2,8").values, (std::vector<double>{1.0, 2.0, 8.0}));
+  for (const char* bad : {"x", "=1", "x=", "x=a", "x=1:2", "x=2:1:1", "x=1:2:0", "x=0:1:1e-9"}) {
+    EXPECT_THROW((void)parse_sweep(bad), std::invalid_argument) << bad;
+  }
+}
+
+TEST(Sweep, NamesWhatIsNoProperty) {
+  for (const char* bad : {"no-such=1:2:1", "detect-contour-overlap=0.5,7"}) {
+    try {
+      (void)methods_of(parse_sweep(bad), {});
+      ADD_FAILURE() << bad;
+    } catch (const std::invalid_argument& error) {
+      const std::string property = std::string(bad).substr(0, std::string(bad).find('='));
+      EXPECT_NE(std::string(error.what()).find(property), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
+  EXPECT_EQ(method_names().front(), "contours+redetect");
+  for (const std::string& name : method_names()) EXPECT_EQ(make_method(name, {})->name(), name);
+  EXPECT_THROW((void)make_method("magic", {}), std::invalid_argument);
 }
 
 TEST(Quantile, IsAnElementOfTheValues) {

@@ -8,7 +8,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <vector>
+
+#include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/twin.hpp"
 
 namespace {
 
@@ -82,6 +87,85 @@ TEST_F(Programs, EvaluateNamesWhatItCannotUse) {
   const Outcome setting = run("ellipse-evaluate", folder_.string() + " --set no-such=1");
   EXPECT_EQ(setting.status, 1);
   EXPECT_NE(setting.text.find("no-such"), std::string::npos) << setting.text;
+}
+
+// A data set of one sequence, cut out of the twin.
+void write_dataset(const fs::path& folder, std::size_t frames) {
+  std::vector<evaluate::Sequence> twin = evaluate::make_twin();
+  twin.resize(1);
+  twin[0].frames.resize(frames);
+  evaluate::write_dataset(twin, folder, [](const evaluate::Frame& /*frame*/) { return true; });
+}
+
+TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
+  write_dataset(folder_, 4);
+  fs::remove(folder_ / "images/approach/frame0001.png");
+  std::ofstream(folder_ / "images/approach/frame0002.png") << "no picture";
+  const Outcome outcome =
+      run("ellipse-evaluate", folder_.string() + " --methods contours+redetect");
+  EXPECT_EQ(outcome.status, 2) << outcome.text;
+  EXPECT_NE(outcome.text.find("\n2 frames"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("Missing frames: 2."), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("gt.csv:3: image"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("frame0002.png: is no picture"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
+  // The control key's signal, to the program alone.
+  const std::string evaluate = std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate";
+  const std::string text = (folder_ / "text").string();
+  const std::string json = (folder_ / "json").string();
+  const std::string command = "timeout --foreground --signal=INT 2 " + evaluate +
+                              " --methods contours+none --json " + json + " > " + text + " 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 124);  // as `timeout` calls it
+  std::ifstream in(text);
+  const std::string shown((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  EXPECT_NE(shown.find("Interrupted: the figures are of"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
+  EXPECT_GT(fs::file_size(json), 200U);
+}
+
+TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
+  write_dataset(folder_ / "set", 3);
+  const Outcome outcome =
+      run("ellipse-evaluate",
+          (folder_ / "set").string() + " --sweep detect-contour-overlap=0.5:0.9:0.2 --sweep-dir " +
+              (folder_ / "sweep").string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  std::ifstream csv(folder_ / "sweep/detect-contour-overlap.csv");
+  std::string line;
+  int lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, 4);
+  EXPECT_GT(fs::file_size(folder_ / "sweep/detect-contour-overlap.svg"), 5000U);
+  EXPECT_GT(fs::file_size(folder_ / "sweep/detect-contour-overlap.png"), 5000U);
+}
+
+TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
+  write_dataset(folder_ / "set", 2);
+  const fs::path peer = folder_ / "peer.sh";
+  std::ofstream(peer) << "#!/bin/sh\nwhile read -r image; do\n"
+                         "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
+                         "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
+  fs::permissions(peer, fs::perms::owner_all);
+  const Outcome outcome =
+      run("ellipse-evaluate",
+          (folder_ / "set").string() + " --methods contours+redetect --peer \"always wrong=" +
+              peer.string() + "\" --json " + (folder_ / "json").string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  std::ifstream in(folder_ / "json");
+  const std::string json((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::size_t place = json.find("\"method\":\"always wrong\"");
+  ASSERT_NE(place, std::string::npos) << json;
+  EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", place), std::string::npos) << json;
+}
+
+TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
+  for (const char* bad : {"--methods magic", "--sweep magic=1:2:1", "--peer magic"}) {
+    const Outcome outcome = run("ellipse-evaluate", bad);
+    EXPECT_EQ(outcome.status, 1) << bad;
+    EXPECT_NE(outcome.text.find("magic"), std::string::npos) << outcome.text;
+  }
 }
 
 TEST_F(Programs, ReadMetadataPrintsTargets) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "core/ellipse.hpp"
@@ -197,6 +198,60 @@ TEST(EllipseTestSrc, HasEachPattern) {
   };
   EXPECT_NE(of("ring-x"), of("ring"));
   EXPECT_NE(of("ring"), of("disc"));
+}
+
+TEST(EllipseTestSrc, HasEachSceneByName) {
+  std::set<std::string> seen;
+  for (const char* scene : {"approach",
+                            "oblique",
+                            "dusk",
+                            "glare",
+                            "occluded",
+                            "dash",
+                            "touchdown",
+                            "reenter",
+                            "thin",
+                            "disc",
+                            "bullseye",
+                            "crumpled",
+                            "noise",
+                            "negative",
+                            "orbit",
+                            "shake",
+                            "hover"}) {
+    const auto buffer = first_frame("scene=" + std::string(scene), caps_of("GRAY8", 160, 90));
+    EXPECT_TRUE(seen.insert(bytes_of(buffer)).second) << scene;
+    const bool has_truth =
+        gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH) != nullptr;
+    EXPECT_EQ(has_truth, std::string(scene) != "negative") << scene;
+  }
+}
+
+TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
+  const auto of = [](const char* settings) {
+    return bytes_of(first_frame(settings, caps_of("GRAY8", 160, 90)));
+  };
+  const std::string plain = of("scene=approach");
+  EXPECT_EQ(plain, of("scene=approach pattern=scene ground=scene noise=-1"));
+  EXPECT_EQ(plain, of("scene=approach pattern=ring-x ground=asphalt noise=2"));
+  for (const char* change : {"pattern=bullseye", "ground=grass", "noise=9", "seed=2"}) {
+    EXPECT_NE(plain, of(change)) << change;
+  }
+}
+
+TEST(EllipseTestSrc, SceneCanChangeWhilePlaying) {
+  Owned<GstHarness> harness(gst_harness_new_parse("ellipsetestsrc name=src"));
+  gst_harness_set_sink_caps_str(harness.get(), caps_of("GRAY8", 160, 90).c_str());
+  gst_harness_play(harness.get());
+  Owned<GstBuffer>(gst_harness_pull(harness.get()));
+  Owned<GstElement> source(gst_harness_find_element(harness.get(), "ellipsetestsrc"));
+  gst_util_set_object_arg(G_OBJECT(source.get()), "scene", "negative");
+  bool has_changed = false;
+  for (int i = 0; i < 20 && !has_changed; ++i) {
+    const Owned<GstBuffer> buffer(gst_harness_pull(harness.get()));
+    has_changed = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH) == nullptr;
+  }
+  EXPECT_TRUE(has_changed);
 }
 
 TEST(EllipseTestSrc, TakesSizeAndRateFromCaps) {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/evaluation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iomanip>
+#include <opencv2/imgproc.hpp>
+#include <ostream>
+#include <stdexcept>
+
+namespace evaluate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kFrameNs = 33'333'333;  // data sets of single pictures carry no time
+
+// cv::Canny and cv::findContours alone, on a picture that was smoothed before: what any method on
+// contours pays before it looks for an ellipse.
+class Reference {
+ public:
+  double run_ms(const cv::Mat& picture) {
+    cv::GaussianBlur(picture, smooth_, {5, 5}, 1.0);
+    const auto start = Clock::now();
+    cv::Canny(smooth_, edges_, 40, 80);
+    cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
+
+ private:
+  cv::Mat smooth_;
+  cv::Mat edges_;
+  std::vector<std::vector<cv::Point>> contours_;
+};
+
+Result judged(const Answer& answer, const SeenFrame& seen, double reference_ms, Rule rule) {
+  Result result;
+  result.answer = answer.target;
+  result.processing_ms = answer.processing_ms;
+  result.reference_ms = reference_ms;
+  result.scale = answer.scale;
+  result.outcome = judge(answer.target, seen.frame->truth, seen.size, rule);
+  if (result.outcome == Outcome::kTruePositive) {
+    result.centre_error_px = (answer.target->center() - seen.frame->truth.target->center()).norm();
+  }
+  return result;
+}
+
+class Run {
+ public:
+  Run(const std::vector<std::unique_ptr<Method>>& methods, Rule rule)
+      : methods_(methods), rule_(rule) {
+    for (const auto& method : methods) evaluation_.methods.push_back({method->name(), {}});
+  }
+
+  void see(const Sequence& sequence, const Frame& frame, std::int64_t pts_ns) {
+    cv::Mat picture;
+    try {
+      picture = sequence.pictures->picture(frame);
+    } catch (const std::runtime_error& error) {
+      evaluation_.problems.emplace_back(error.what());
+      ++evaluation_.missing_frames;
+      return;
+    }
+    const SeenFrame seen{&sequence, &frame, {picture.cols, picture.rows}};
+    const double reference_ms = reference_.run_ms(picture);
+    // Each is first in its turn, as the first one finds the caches cold.
+    for (std::size_t turn = 0; turn < methods_.size(); ++turn) {
+      const std::size_t i = (turn + evaluation_.frames.size()) % methods_.size();
+      const Answer answer = methods_[i]->find(frame, picture, pts_ns);
+      evaluation_.methods[i].results.push_back(judged(answer, seen, reference_ms, rule_));
+    }
+    evaluation_.frames.push_back(seen);
+  }
+
+  [[nodiscard]] Evaluation& evaluation() { return evaluation_; }
+
+ private:
+  const std::vector<std::unique_ptr<Method>>& methods_;
+  Rule rule_;
+  Reference reference_;
+  Evaluation evaluation_;
+};
+
+void add_new(std::vector<std::string>& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+}  // namespace
+
+Evaluation evaluate(const std::vector<Sequence>& sequences,
+                    const std::vector<std::unique_ptr<Method>>& methods,
+                    Rule rule,
+                    const std::function<bool(const Frame&)>& advance) {
+  Run run(methods, rule);
+  Evaluation& evaluation = run.evaluation();
+  for (const Sequence& sequence : sequences) evaluation.planned_frames += sequence.frames.size();
+  for (const Sequence& sequence : sequences) {
+    for (const auto& method : methods) method->start();
+    std::int64_t pts_ns = 0;
+    for (const Frame& frame : sequence.frames) {
+      run.see(sequence, frame, pts_ns);
+      pts_ns += kFrameNs;
+      evaluation.is_interrupted = !advance(frame);
+      if (evaluation.is_interrupted) return std::move(evaluation);
+    }
+  }
+  return std::move(evaluation);
+}
+
+Measures measures_of(const Evaluation& evaluation,
+                     std::size_t method,
+                     const std::function<bool(const SeenFrame&)>& claim) {
+  Measures measures;
+  for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
+    if (claim(evaluation.frames[i])) measures.add(evaluation.methods[method].results[i]);
+  }
+  return measures;
+}
+
+std::vector<std::string> datasets_of(const Evaluation& evaluation) {
+  std::vector<std::string> names;
+  for (const SeenFrame& seen : evaluation.frames) add_new(names, seen.sequence->dataset);
+  return names;
+}
+
+std::vector<std::string> sequences_of(const Evaluation& evaluation, const std::string& dataset) {
+  std::vector<std::string> names;
+  for (const SeenFrame& seen : evaluation.frames) {
+    if (seen.sequence->dataset == dataset) add_new(names, seen.sequence->name);
+  }
+  return names;
+}
+
+void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method) {
+  for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
+    const SeenFrame& seen = evaluation.frames[i];
+    const Result& result = evaluation.methods[method].results[i];
+    out << "{\"image\":" << std::quoted(seen.frame->name) << ",\"size\":[" << seen.size.width << ','
+        << seen.size.height << "],\"target\":";
+    if (result.answer) {
+      const ellipse::Ellipse& e = *result.answer;
+      out << '[' << e.cx << ',' << e.cy << ',' << e.semi_major << ',' << e.semi_minor << ','
+          << e.angle_rad << "],\"scale\":" << result.scale;
+    } else {
+      out << "null";
+    }
+    out << ",\"ms\":[" << result.processing_ms << "],\"outcome\":\""
+        << kOutcomeNames[static_cast<std::size_t>(result.outcome)] << "\"}\n";
+  }
+}
+
+}  // namespace evaluate

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/gallery.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "examples/evaluate/text.hpp"
+
+namespace evaluate {
+namespace {
+
+const cv::Scalar kTruthColor(90, 200, 60);
+const cv::Scalar kAnswerColor(30, 130, 255);
+constexpr int kSubPixelBits = 4;
+
+void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) {
+  if (!(e.semi_major < 16.0 * picture.cols)) return;  // beyond what OpenCV's integers hold
+  const auto fixed = [](double value) {
+    return static_cast<int>(std::lround(value * (1 << kSubPixelBits)));
+  };
+  cv::ellipse(picture,
+              {fixed(e.cx), fixed(e.cy)},
+              {fixed(e.semi_major), fixed(e.semi_minor)},
+              e.angle_rad * 180.0 / std::numbers::pi,
+              0.0,
+              360.0,
+              color,
+              2,
+              cv::LINE_AA,
+              kSubPixelBits);
+}
+
+bool is_bad(Outcome outcome) {
+  return outcome == Outcome::kWrong || outcome == Outcome::kFalsePositive ||
+         outcome == Outcome::kFalseNegative;
+}
+
+// The larger the worse. The n-th bad frame of a sequence counts less than the first of another.
+std::vector<double> badness(const Evaluation& evaluation, std::size_t method) {
+  std::vector<double> result;
+  std::map<std::string, int> seen_in;
+  for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
+    const Result& one = evaluation.methods[method].results[i];
+    if (is_bad(one.outcome)) {
+      const int before = seen_in[evaluation.frames[i].sequence->name]++;
+      result.push_back(1e6 / (1.0 + before));
+    } else {
+      result.push_back(one.outcome == Outcome::kTruePositive ? one.centre_error_px : 0.0);
+    }
+  }
+  return result;
+}
+
+Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
+  Exhibit exhibit;
+  cv::cvtColor(seen.sequence->pictures->picture(*seen.frame), exhibit.picture, cv::COLOR_GRAY2BGR);
+  if (seen.frame->truth.target) draw(exhibit.picture, *seen.frame->truth.target, kTruthColor);
+  if (result.answer) draw(exhibit.picture, *result.answer, kAnswerColor);
+  exhibit.caption = std::string(kOutcomeNames[static_cast<std::size_t>(result.outcome)]) + "  " +
+                    seen.frame->name;
+  if (result.outcome == Outcome::kTruePositive) {
+    exhibit.caption += format(", centre %.2f px off", result.centre_error_px);
+  }
+  return exhibit;
+}
+
+}  // namespace
+
+std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
+                                  std::size_t method,
+                                  std::size_t most) {
+  const std::vector<double> bad = badness(evaluation, method);
+  std::vector<std::size_t> order(bad.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(
+      order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bad[a] > bad[b]; });
+  if (order.size() > most) order.resize(most);
+  std::vector<Exhibit> exhibits;
+  for (const std::size_t i : order) {
+    if (!(bad[i] > 0.0)) break;
+    exhibits.push_back(exhibit_of(evaluation.frames[i], evaluation.methods[method].results[i]));
+  }
+  return exhibits;
+}
+
+}  // namespace evaluate

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/method.hpp"
+
+#include <chrono>
+#include <map>
+#include <stdexcept>
+
+#include "core/target_selection.hpp"
+#include "examples/evaluate/command_peer.hpp"
+#include "examples/evaluate/peers.hpp"
+
+namespace evaluate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class TrackerMethod : public Method {
+ public:
+  TrackerMethod(const std::string& name, const ellipse::TrackerSettings& settings)
+      : Method(name), tracker_(settings) {}
+  TrackerMethod(const std::string& name,
+                const ellipse::TrackerSettings& settings,
+                std::unique_ptr<ellipse::Detector> detector)
+      : Method(name), tracker_(settings, std::move(detector)) {}
+
+  void start() override { tracker_.reset(); }
+
+  Answer find(const Frame& /*frame*/, const cv::Mat& picture, std::int64_t pts_ns) override {
+    const ellipse::ImageView view{
+        picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
+    Answer answer;
+    const auto start = Clock::now();
+    const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns);
+    const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
+    answer.processing_ms = elapsed.count();
+    if (target) {
+      answer.target = target->ellipse;
+      answer.scale = target->scale;
+    }
+    return answer;
+  }
+
+ private:
+  ellipse::Tracker tracker_;
+};
+
+// Answers that were all given before.
+class CommandMethod : public Method {
+ public:
+  CommandMethod(const std::string& name, std::map<std::string, PeerAnswer> answers)
+      : Method(name), answers_(std::move(answers)) {}
+
+  Answer find(const Frame& frame, const cv::Mat& /*picture*/, std::int64_t /*pts_ns*/) override {
+    const auto found = answers_.find(frame.image.string());
+    if (found == answers_.end()) return {};
+    Answer answer;
+    answer.processing_ms = found->second.ms;
+    if (const auto target = ellipse::select_target(found->second.detections)) {
+      answer.target = target->ellipse;
+    }
+    return answer;
+  }
+
+ private:
+  std::map<std::string, PeerAnswer> answers_;
+};
+
+struct OwnMethod {
+  std::string name;
+  const char* detector;
+  const char* tracking;
+};
+
+// Each pair of a detector and a tracking mode; the default pair first.
+std::vector<OwnMethod> own_methods() {
+  const ellipse::TrackerSettings defaults;
+  std::vector<OwnMethod> methods;
+  for (const char* detector : ellipse::detector_nicks()) {
+    for (const char* tracking : ellipse::tracking_nicks()) {
+      ellipse::TrackerSettings settings;
+      ellipse::set_by_name(settings, "detector", detector);
+      ellipse::set_by_name(settings, "tracking", tracking);
+      const OwnMethod method{std::string(detector) + "+" + tracking, detector, tracking};
+      methods.insert(settings == defaults ? methods.begin() : methods.end(), method);
+    }
+  }
+  return methods;
+}
+
+}  // namespace
+
+std::unique_ptr<Method> make_tracker_method(const std::string& name,
+                                            const ellipse::TrackerSettings& settings) {
+  return std::make_unique<TrackerMethod>(name, settings);
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const OwnMethod& own : own_methods()) names.push_back(own.name);
+  for (const char* peer : peer_names()) names.emplace_back(peer);
+  return names;
+}
+
+std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSettings settings) {
+  for (const OwnMethod& own : own_methods()) {
+    if (own.name != name) continue;
+    ellipse::set_by_name(settings, "detector", own.detector);
+    ellipse::set_by_name(settings, "tracking", own.tracking);
+    return make_tracker_method(name, settings);
+  }
+  for (const char* peer : peer_names()) {
+    if (name != peer) continue;
+    ellipse::TrackerSettings single_frames;
+    single_frames.tracking = ellipse::TrackingMode::kNone;
+    return std::make_unique<TrackerMethod>(name, single_frames, make_peer(peer));
+  }
+  std::string names;
+  for (const std::string& known : method_names()) names += (names.empty() ? "" : ", ") + known;
+  throw std::invalid_argument("method \"" + name + "\" is none of: " + names);
+}
+
+PeerCommand parse_peer(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw std::invalid_argument("--peer " + text + ": expected NAME=COMMAND");
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
+                                            std::span<const Sequence> sequences,
+                                            std::vector<std::string>& problems) {
+  std::vector<std::filesystem::path> images;
+  for (const Sequence& sequence : sequences) {
+    for (const Frame& frame : sequence.frames) images.push_back(frame.image);
+  }
+  auto answers = run_command_peer(peer.command, images);
+  if (answers.size() < images.size()) {
+    problems.push_back("peer " + peer.name + ": no answer for " +
+                       std::to_string(images.size() - answers.size()) + " of " +
+                       std::to_string(images.size()) + " images; counted as finding nothing");
+  }
+  return std::make_unique<CommandMethod>(peer.name, std::move(answers));
+}
+
+}  // namespace evaluate

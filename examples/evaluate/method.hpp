@@ -1,0 +1,70 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/tracker.hpp"
+#include "examples/evaluate/dataset.hpp"
+
+namespace evaluate {
+
+/// What a method says of one frame.
+struct Answer {
+  std::optional<ellipse::Ellipse> target;
+  int scale = 1;  ///< Frame scale at which it was found.
+  double processing_ms = 0.0;
+};
+
+/// A way to find the target in a sequence.
+class Method {
+ public:
+  explicit Method(std::string name) : name_(std::move(name)) {}
+  virtual ~Method() = default;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Called before the first frame of each sequence.
+  virtual void start() {}
+  [[nodiscard]] virtual Answer find(const Frame& frame,
+                                    const cv::Mat& picture,
+                                    std::int64_t pts_ns) = 0;
+
+ private:
+  std::string name_;
+};
+
+/// Ours, by the names of detector and tracking mode.
+[[nodiscard]] std::unique_ptr<Method> make_tracker_method(const std::string& name,
+                                                          const ellipse::TrackerSettings& settings);
+
+/// The names of all methods: "contours+redetect" and so on, then the packaged peers.
+[[nodiscard]] std::vector<std::string> method_names();
+
+/// One of them by its name. Peers look at single frames, and choose their target as ours do.
+/// @param settings  All but detector and tracking mode, of those of ours.
+/// Throws std::invalid_argument that lists the names, where it is unknown.
+[[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name,
+                                                  ellipse::TrackerSettings settings);
+
+/// Any other program.
+struct PeerCommand {
+  std::string name;
+  std::string command;
+};
+
+/// From "NAME=COMMAND". Throws std::invalid_argument where it is something else.
+[[nodiscard]] PeerCommand parse_peer(const std::string& text);
+
+/// A method whose answers are all asked for at once.
+/// @param problems  What is missing from them is added here.
+/// Throws std::runtime_error that names the command.
+[[nodiscard]] std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
+                                                          std::span<const Sequence> sequences,
+                                                          std::vector<std::string>& problems);
+
+}  // namespace evaluate

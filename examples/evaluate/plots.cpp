@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/plots.hpp"
+
+#include <gio/gio.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+namespace evaluate {
+namespace {
+
+constexpr int kPanelWidth = 520;
+constexpr int kPanelHeight = 330;
+constexpr int kColumns = 2;
+
+template <class Type>
+using Object = std::unique_ptr<Type, decltype(&g_object_unref)>;
+
+// For gnuplot's double quotes, with its markup off.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+void write_data(std::ostream& script, const Panel& panel, std::size_t number) {
+  script << "$data" << number << " << EOD\n";
+  const std::size_t places = panel.ranges.empty() ? panel.x.size() : panel.ranges.size();
+  for (std::size_t i = 0; i < places; ++i) {
+    if (panel.ranges.empty()) {
+      script << panel.x[i];
+    } else {
+      script << i;
+    }
+    for (const Curve& curve : panel.curves) {
+      if (std::isfinite(curve.y[i])) {
+        script << ' ' << curve.y[i];
+      } else {
+        script << " NaN";
+      }
+    }
+    script << '\n';
+  }
+  script << "EOD\n";
+}
+
+void write_panel(std::ostream& script, const Panel& panel, std::size_t number) {
+  script << "set title " << quoted(panel.title) << "\nset xlabel " << quoted(panel.x_label)
+         << "\nset ylabel " << quoted(panel.y_label) << "\nset yrange "
+         << (panel.is_share ? "[0:1.03]" : "[0:*]") << '\n';
+  if (panel.ranges.empty()) {
+    script << "set xtics auto norotate\nset xrange [*:*]\n";
+  } else {
+    script << "set xrange [-0.5:" << static_cast<double>(panel.ranges.size()) - 0.5
+           << "]\nset xtics rotate by -25 (";
+    for (std::size_t i = 0; i < panel.ranges.size(); ++i) {
+      script << (i > 0 ? ", " : "") << quoted(panel.ranges[i]) << ' ' << i;
+    }
+    script << ")\n";
+  }
+  script << "plot ";
+  for (std::size_t k = 0; k < panel.curves.size(); ++k) {
+    script << (k > 0 ? ", " : "") << "$data" << number << " using 1:" << k + 2
+           << " with linespoints lw 2 pt 7 ps 0.5 title " << quoted(panel.curves[k].title);
+  }
+  script << '\n';
+}
+
+std::string script_of(const std::vector<Panel>& panels, PlotFormat format) {
+  std::ostringstream script;
+  script.precision(10);
+  const std::size_t rows = (panels.size() + kColumns - 1) / kColumns;
+  const int columns = panels.size() > 1 ? kColumns : 1;
+  script
+      << "set terminal " << (format == PlotFormat::kSvg ? "svg" : "pngcairo") << " size "
+      << columns * kPanelWidth << ',' << static_cast<int>(rows) * kPanelHeight
+      << " font \"sans,11\" noenhanced background \"white\"\n"
+      << "set datafile missing \"NaN\"\nset grid lc rgb \"#dddddd\"\nset border 3\n"
+      << "set tics nomirror\nset key below\nset bmargin 6\nset offsets graph 0.02, 0.02, 0.05, 0\n";
+  for (std::size_t i = 0; i < panels.size(); ++i) write_data(script, panels[i], i);
+  script << "set multiplot layout " << rows << ',' << columns << '\n';
+  for (std::size_t i = 0; i < panels.size(); ++i) write_panel(script, panels[i], i);
+  script << "unset multiplot\n";
+  return script.str();
+}
+
+std::string text_of(GBytes* bytes) {
+  gsize size = 0;
+  const auto* data = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+  std::string text(data != nullptr ? data : "", size);
+  g_bytes_unref(bytes);
+  return text;
+}
+
+[[noreturn]] void fail(GError* error) {
+  const std::string what = std::string("gnuplot: ") + error->message;
+  g_error_free(error);
+  throw std::runtime_error(what);
+}
+
+}  // namespace
+
+std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
+  const std::string script = script_of(panels, format);
+  GError* error = nullptr;
+  const auto flags =
+      static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDIN_PIPE | G_SUBPROCESS_FLAGS_STDOUT_PIPE |
+                                    G_SUBPROCESS_FLAGS_STDERR_PIPE);
+  const Object<GSubprocess> gnuplot(g_subprocess_new(flags, &error, "gnuplot", "-", nullptr),
+                                    g_object_unref);
+  if (!gnuplot) fail(error);
+  GBytes* input = g_bytes_new_static(script.data(), script.size());
+  GBytes* output = nullptr;
+  GBytes* complaint = nullptr;
+  const bool has_run =
+      g_subprocess_communicate(gnuplot.get(), input, nullptr, &output, &complaint, &error) != FALSE;
+  g_bytes_unref(input);
+  if (!has_run) fail(error);
+  const std::string said = text_of(complaint);
+  std::string drawn = text_of(output);
+  if (!g_subprocess_get_successful(gnuplot.get()) || drawn.empty()) {
+    throw std::runtime_error("gnuplot: " + said);
+  }
+  return drawn;
+}
+
+void plot_to(const std::filesystem::path& file,
+             const std::vector<Panel>& panels,
+             PlotFormat format) {
+  const std::string drawn = plot(panels, format);
+  std::ofstream out(file, std::ios::binary);
+  out << drawn;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace evaluate

@@ -1,0 +1,36 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace evaluate {
+
+struct Curve {
+  std::string title;
+  std::vector<double> y;  ///< As many as the panel's x; NaN = no point.
+};
+
+/// Curves over one axis.
+struct Panel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::vector<double> x;            ///< Places, or
+  std::vector<std::string> ranges;  ///< names of ranges, side by side.
+  std::vector<Curve> curves;
+  bool is_share = false;  ///< From 0 to 1.
+};
+
+enum class PlotFormat { kSvg, kPng };
+
+/// Panels side by side, two in a row, drawn by gnuplot.
+/// Throws std::runtime_error where gnuplot is not installed or fails, with what it says.
+[[nodiscard]] std::string plot(const std::vector<Panel>& panels, PlotFormat format);
+
+/// Into a file. Throws std::runtime_error that names it, where it cannot be written.
+void plot_to(const std::filesystem::path& file,
+             const std::vector<Panel>& panels,
+             PlotFormat format);
+
+}  // namespace evaluate

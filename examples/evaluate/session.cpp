@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/session.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+
+#include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/evaluation.hpp"
+#include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/method.hpp"
+#include "examples/evaluate/picture_reader.hpp"
+#include "examples/evaluate/progress.hpp"
+#include "examples/evaluate/report.hpp"
+#include "examples/evaluate/sweep.hpp"
+#include "examples/evaluate/tables.hpp"
+#include "examples/evaluate/twin.hpp"
+
+namespace evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostProblemsPrinted = 20;
+constexpr int kExitProblems = 2;
+constexpr int kExitInterrupted = 130;
+
+std::atomic<bool> interrupted = false;
+
+// False when the person at the keyboard has had enough.
+bool advance(ProgressBar& progress, const Frame& frame) {
+  progress.advance(frame.name);
+  return !interrupted;
+}
+
+std::size_t frames_of(const std::vector<Sequence>& sequences) {
+  std::size_t frames = 0;
+  for (const Sequence& sequence : sequences) frames += sequence.frames.size();
+  return frames;
+}
+
+std::ofstream open_for_writing(const std::string& file) {
+  std::ofstream out(file);
+  if (!out) throw std::runtime_error(file + ": cannot be written");
+  out.precision(10);
+  return out;
+}
+
+ellipse::TrackerSettings settings_from(const Options& options) {
+  ellipse::TrackerSettings settings;
+  for (const std::string& assignment : options.settings) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos) {
+      throw std::invalid_argument("--set " + assignment + ": expected property=value");
+    }
+    ellipse::set_by_name(settings, assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  settings.validate();
+  return settings;
+}
+
+// Writes rendered frames to files, where another program needs files.
+void write_files(std::vector<Sequence>& sequences, const fs::path& folder) {
+  ProgressBar progress(frames_of(sequences));
+  write_dataset(sequences, folder, [&](const Frame& frame) { return advance(progress, frame); });
+  for (Sequence& sequence : sequences) {
+    for (Frame& frame : sequence.frames) frame.image = folder / "images" / frame.name;
+  }
+}
+
+// A folder of its own that is gone in the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / "ellipse-evaluate-XXXXXX") {
+    std::string name = path_.string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// One call of the program.
+class Session {
+ public:
+  explicit Session(const Options& options)
+      : options_(options),
+        settings_(settings_from(options)),
+        rule_(options.rule == "iou" ? Rule::kIou : Rule::kPublished) {}
+
+  int run() {
+    std::vector<Sweep> sweeps;
+    for (const std::string& text : options_.sweeps) sweeps.push_back(parse_sweep(text));
+    for (const std::string& text : options_.peers) peers_.push_back(parse_peer(text));
+    gather();
+    if (!options_.dataset_folder.empty()) {
+      write_files(sequences_, options_.dataset_folder);
+    } else if (!sweeps.empty()) {
+      for (const Sweep& sweep : sweeps) run_sweep(sweep);
+    } else {
+      compare();
+    }
+    print_problems();
+    if (interrupted) return kExitInterrupted;
+    return missing_frames_ > 0 ? kExitProblems : 0;
+  }
+
+ private:
+  void gather() {
+    if (options_.datasets.empty()) {
+      cv::Mat ground;
+      if (!options_.ground_file.empty()) ground = PictureReader().read(options_.ground_file);
+      sequences_ = make_twin(ground);
+    }
+    for (const std::string& folder : options_.datasets) {
+      Dataset dataset = read_dataset(folder);
+      missing_frames_ += dataset.missing_frames;
+      problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
+      for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
+    }
+  }
+
+  Evaluation evaluate_all(const std::vector<std::unique_ptr<Method>>& methods) {
+    ProgressBar progress(frames_of(sequences_));
+    Evaluation evaluation = evaluate(
+        sequences_, methods, rule_, [&](const Frame& frame) { return advance(progress, frame); });
+    missing_frames_ += evaluation.missing_frames;
+    problems_.insert(problems_.end(), evaluation.problems.begin(), evaluation.problems.end());
+    return evaluation;
+  }
+
+  std::vector<std::unique_ptr<Method>> make_methods() {
+    std::vector<std::string> names = options_.methods;
+    if (names.empty()) names = method_names();
+    std::vector<std::unique_ptr<Method>> methods;
+    for (const std::string& name : names) methods.push_back(make_method(name, settings_));
+    if (!peers_.empty() && options_.datasets.empty()) {
+      files_.emplace();
+      write_files(sequences_, files_->path());
+    }
+    for (const PeerCommand& peer : peers_) {
+      methods.push_back(make_command_method(peer, sequences_, problems_));
+    }
+    return methods;
+  }
+
+  void compare() {
+    std::ofstream frames_out;
+    if (!options_.frames_file.empty()) frames_out = open_for_writing(options_.frames_file);
+    std::ofstream json_out;
+    if (!options_.json_file.empty()) json_out = open_for_writing(options_.json_file);
+    const std::vector<std::unique_ptr<Method>> methods = make_methods();
+    const Evaluation evaluation = evaluate_all(methods);
+    print_interruption(evaluation);
+    for (const std::string& dataset : datasets_of(evaluation)) {
+      for (const Table& table : all_tables(evaluation, dataset)) print(std::cout, table);
+    }
+    if (frames_out.is_open()) write_frames(frames_out, evaluation, 0);
+    if (json_out.is_open()) write_json(json_out, evaluation);
+    check_written(frames_out, options_.frames_file);
+    check_written(json_out, options_.json_file);
+    if (!options_.report_folder.empty()) {
+      write_report(evaluation, options_.command, problems_, options_.report_folder);
+    }
+  }
+
+  void run_sweep(const Sweep& sweep) {
+    if (interrupted) return;
+    const std::vector<std::unique_ptr<Method>> methods = methods_of(sweep, settings_);
+    const Evaluation evaluation = evaluate_all(methods);
+    print_interruption(evaluation);
+    print(std::cout, sweep_table(sweep, evaluation));
+    write_sweep(sweep, evaluation, options_.sweep_folder);
+  }
+
+  static void print_interruption(const Evaluation& evaluation) {
+    if (!evaluation.is_interrupted) return;
+    std::cout << "Interrupted: the figures are of " << evaluation.frames.size() << " of "
+              << evaluation.planned_frames << " frames.\n";
+  }
+
+  static void check_written(std::ofstream& out, const std::string& file) {
+    if (out.is_open() && !out.flush()) throw std::runtime_error(file + ": could not be written");
+  }
+
+  void print_problems() const {
+    if (missing_frames_ > 0) {
+      std::cout << "\nMissing frames: " << missing_frames_ << ". No figure counts them.\n";
+    }
+    for (std::size_t i = 0; i < std::min(problems_.size(), kMostProblemsPrinted); ++i) {
+      std::cerr << "ellipse-evaluate: " << problems_[i] << '\n';
+    }
+    if (problems_.size() > kMostProblemsPrinted) {
+      std::cerr << "ellipse-evaluate: and " << problems_.size() - kMostProblemsPrinted << " more\n";
+    }
+  }
+
+  const Options& options_;
+  ellipse::TrackerSettings settings_;
+  Rule rule_;
+  std::vector<PeerCommand> peers_;
+  std::vector<Sequence> sequences_;
+  std::vector<std::string> problems_;
+  std::size_t missing_frames_ = 0;
+  std::optional<TemporaryFolder> files_;
+};
+
+}  // namespace
+
+int run(const Options& options) {
+  return Session(options).run();
+}
+
+void interrupt() {
+  interrupted = true;
+}
+
+}  // namespace evaluate

@@ -1,0 +1,33 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <string>
+#include <vector>
+
+namespace evaluate {
+
+/// What was asked for on the command line.
+struct Options {
+  std::vector<std::string> datasets;
+  std::vector<std::string> methods;
+  std::vector<std::string> peers;
+  std::vector<std::string> settings;
+  std::vector<std::string> sweeps;
+  std::string rule = "iou";
+  std::string ground_file;
+  std::string frames_file;
+  std::string json_file;
+  std::string report_folder;
+  std::string sweep_folder = "sweep";
+  std::string dataset_folder;
+  std::string command;
+};
+
+/// Does it: writes a data set, sweeps a property, or compares methods.
+/// @return The program's exit status: 2 where frames are missing, 130 where it was interrupted.
+/// Throws std::exception with a text for people, where it cannot.
+int run(const Options& options);
+
+/// Ends a run early, with what it has so far. To be called from a signal's handler.
+void interrupt();
+
+}  // namespace evaluate

@@ -1,0 +1,38 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/tracker_settings.hpp"
+#include "examples/evaluate/evaluation.hpp"
+#include "examples/evaluate/tables.hpp"
+
+namespace evaluate {
+
+/// One property at several values: the sensitivity studies of [Keipour2021] Figures 3 and 4.
+struct Sweep {
+  std::string property;
+  std::vector<double> values;
+};
+
+/// From "property=from:to:step" (both ends count) or "property=value,value,...".
+/// Throws std::invalid_argument that names what is wrong.
+[[nodiscard]] Sweep parse_sweep(const std::string& text);
+
+/// One method a value.
+/// Throws std::invalid_argument where the property is unknown or refuses a value.
+[[nodiscard]] std::vector<std::unique_ptr<Method>> methods_of(
+    const Sweep& sweep, const ellipse::TrackerSettings& settings);
+
+/// A row a value: measures, counts and times over all data sets.
+[[nodiscard]] Table sweep_table(const Sweep& sweep, const Evaluation& evaluation);
+
+/// Writes PROPERTY.csv, PROPERTY.svg and PROPERTY.png with the paper's four panels.
+void write_sweep(const Sweep& sweep,
+                 const Evaluation& evaluation,
+                 const std::filesystem::path& folder);
+
+}  // namespace evaluate

@@ -1,0 +1,29 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace evaluate {
+
+/// As printf, into a string.
+template <class... Values>
+[[nodiscard]] std::string format(const char* pattern, const Values&... values) {
+  const int length = std::snprintf(nullptr, 0, pattern, values...);
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  text.pop_back();
+  return text;
+}
+
+/// JSON has no NaN: what was not measured is null.
+[[nodiscard]] inline std::string json_number(double value) {
+  return std::isfinite(value) ? format("%.6g", value) : "null";
+}
+
+/// A number for people; a dash where nothing was measured.
+[[nodiscard]] inline std::string number(double value, int digits) {
+  return std::isfinite(value) ? format("%.*f", digits, value) : "-";
+}
+
+}  // namespace evaluate

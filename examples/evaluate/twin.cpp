@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/twin.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
+
+namespace evaluate {
+namespace {
+
+using ellipse::GroundKind;
+using ellipse::Scene;
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+constexpr double kFramesPerSecond = 30.0;
+
+// A piece of a scene: so many frames from a time on, each so many 30ths of a second after the last.
+struct Clip {
+  const char* dataset;
+  const char* name;
+  const char* scene;
+  std::uint64_t seed;
+  double from_s;
+  int frames;
+  int stride;
+  void (*change)(Scene&);
+};
+
+void keep(Scene& /*scene*/) {}
+
+template <GroundKind kKind>
+void on(Scene& scene) {
+  scene.ground.kind = kKind;
+}
+
+template <int kPercent>
+void crumpled(Scene& scene) {
+  scene.pad.crumple = 0.01 * kPercent;
+}
+
+template <int kLevels>
+void noisy(Scene& scene) {
+  scene.sensor.read_noise = kLevels;
+}
+
+void bright(Scene& scene) {
+  scene.pad.paint_level = 220.0;
+  scene.pad.plate_level = 60.0;
+  scene.pad.rim_level = 190.0;
+}
+
+void thin_ring(Scene& scene) {
+  scene.pad.ring_width = 0.055;
+  scene.pad.mark_width = 0.09;
+}
+
+void thin_dusk(Scene& scene) {
+  thin_ring(scene);
+  scene.sensor.gain = 0.25;
+}
+
+// The seeds are used nowhere else.
+constexpr Clip kClips[] = {
+    {"twin", "approach", "approach", 101, 0.0, 140, 2, keep},
+    {"twin", "approach-grass", "approach", 102, 3.0, 80, 2, on<GroundKind::kGrass>},
+    {"twin", "approach-bright", "approach", 103, 3.0, 60, 2, bright},
+    {"twin", "oblique", "oblique", 104, 0.0, 100, 3, keep},
+    {"twin", "orbit", "orbit", 105, 0.0, 77, 3, keep},
+    {"twin", "dusk", "dusk", 106, 1.0, 100, 2, keep},
+    {"twin", "glare", "glare", 107, 1.0, 110, 2, keep},
+    {"twin", "occluded", "occluded", 108, 0.0, 90, 2, keep},
+    {"twin", "dash", "dash", 109, 0.0, 60, 1, keep},
+    {"twin", "shake", "shake", 110, 0.0, 50, 1, keep},
+    {"twin", "touchdown", "touchdown", 111, 2.0, 80, 1, keep},
+    {"twin", "reenter", "reenter", 112, 0.0, 120, 2, keep},
+    {"twin", "disc", "disc", 113, 2.0, 60, 2, keep},
+    {"twin", "bullseye", "bullseye", 114, 2.0, 60, 2, keep},
+    {"twin", "hover-clutter", "hover", 115, 0.0, 60, 2, keep},
+    {"twin", "crumpled-1", "crumpled", 116, 4.0, 40, 2, crumpled<1>},
+    {"twin", "crumpled-3", "crumpled", 117, 4.0, 40, 2, crumpled<3>},
+    {"twin", "noise-7", "approach", 118, 4.0, 40, 2, noisy<7>},
+    {"twin", "noise-14-jpeg", "noise", 119, 2.0, 60, 2, keep},
+    {"twin", "none-clutter", "negative", 120, 0.0, 24, 10, keep},
+    {"twin", "none-flowers", "negative", 121, 1.0, 20, 10, on<GroundKind::kFlowers>},
+    {"twin", "none-rounded", "negative", 122, 2.0, 20, 10, on<GroundKind::kRounded>},
+    {"twin", "none-road", "negative", 123, 0.0, 20, 10, on<GroundKind::kRoad>},
+    {"thin", "thin-approach", "thin", 131, 0.0, 160, 2, keep},
+    {"thin", "thin-oblique", "oblique", 132, 2.0, 100, 3, thin_ring},
+    {"thin", "thin-dusk", "thin", 133, 2.0, 96, 2, thin_dusk},
+    {"thin", "thin-hover", "hover", 134, 0.0, 100, 2, thin_ring},
+};
+
+// Renders the frames of one clip.
+class Rendered : public PictureSource {
+ public:
+  Rendered(const Clip& clip, const Scene& scene) : clip_(clip), scene_(scene) {}
+
+  [[nodiscard]] double time_of(std::size_t frame) const {
+    return clip_.from_s + static_cast<double>(frame) * clip_.stride / kFramesPerSecond;
+  }
+
+  [[nodiscard]] Truth truth_of(std::size_t frame) const {
+    const Eigen::Matrix3d view = image_from_pad(scene_, time_of(frame), kWidth, kHeight);
+    const ellipse::Truth shown = ellipse::truth_of(scene_.pad, view, kWidth, kHeight);
+    if (!(shown.visible_fraction > 0.0)) return {};
+    return {shown.outer_edge, shown.visible_fraction, true};
+  }
+
+  cv::Mat picture(const Frame& frame) override {
+    if (!renderer_) renderer_.emplace(scene_);
+    cv::Mat picture(kHeight, kWidth, CV_8UC1);
+    renderer_->render(time_of(frame.number),
+                      frame.number,
+                      {picture.data, kWidth, kHeight, static_cast<std::ptrdiff_t>(picture.step)});
+    return picture;
+  }
+
+ private:
+  const Clip& clip_;
+  Scene scene_;
+  std::optional<ellipse::SceneRenderer> renderer_;  // its ground takes time and memory
+};
+
+std::string frame_name(const Clip& clip, int number) {
+  char name[96];
+  std::snprintf(name, sizeof name, "%s/frame%04d.png", clip.name, number);
+  return name;
+}
+
+Sequence make_sequence(const Clip& clip, const cv::Mat& ground) {
+  Scene scene = ellipse::scene_by_name(clip.scene, clip.seed);
+  clip.change(scene);
+  if (!ground.empty()) {
+    scene.ground.kind = GroundKind::kPicture;
+    scene.ground.picture = ground;
+  }
+  const auto rendered = std::make_shared<Rendered>(clip, scene);
+  Sequence sequence{clip.dataset, clip.name, {}, rendered};
+  for (int i = 0; i < clip.frames; ++i) {
+    const auto number = static_cast<std::size_t>(i);
+    sequence.frames.push_back({frame_name(clip, i),
+                               {},
+                               number,
+                               rendered->truth_of(number),
+                               {scene.sensor.read_noise, scene.pad.crumple}});
+  }
+  return sequence;
+}
+
+}  // namespace
+
+std::vector<Sequence> make_twin(const cv::Mat& ground) {
+  std::vector<Sequence> sequences;
+  for (const Clip& clip : kClips) sequences.push_back(make_sequence(clip, ground));
+  return sequences;
+}
+
+}  // namespace evaluate
