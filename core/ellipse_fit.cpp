@@ -76,6 +76,22 @@ bool is_collinear(const Moments& standardized) {
   return !(xx * yy - xy * xy > kMinVariance);  // product of the variances; their sum is 1
 }
 
+// The sum of F^2 over the sum of |grad F|^2, both over all points [Taubin1991].
+double taubin_rms(const Moments& m,
+                  const Eigen::Matrix3d& reduced,
+                  const Eigen::Vector3d& a,
+                  const Eigen::Vector3d& b) {
+  const double values = a.dot(reduced * a);
+  const double xx = m.at(2, 0);
+  const double xy = m.at(1, 1);
+  const double yy = m.at(0, 2);
+  // (2 a0 x + a1 y + b0)^2 + (a1 x + 2 a2 y + b1)^2; the means of x and y are 0.
+  const double slopes = 4.0 * a(0) * a(0) * xx + 4.0 * a(1) * (a(0) + a(2)) * xy +
+                        a(1) * a(1) * (xx + yy) + 4.0 * a(2) * a(2) * yy +
+                        m.count() * (b(0) * b(0) + b(1) * b(1));
+  return std::sqrt(std::max(0.0, values) / slopes);
+}
+
 }  // namespace
 
 void Moments::add(const Eigen::Vector2d& point_px) {
@@ -100,6 +116,10 @@ void Moments::add(const Eigen::Vector2d& point_px) {
                             xy * yy,
                             yy * yy};
   for (int i = 0; i < 15; ++i) sums_[i] += terms[i];
+}
+
+void Moments::add(const Moments& other) {
+  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
 }
 
 Eigen::Vector2d Moments::mean() const {
@@ -147,6 +167,11 @@ std::optional<Ellipse> fit_ellipse(std::span<const Eigen::Vector2d> points_px) {
 }
 
 std::optional<Ellipse> fit_ellipse(const Moments& moments) {
+  const auto fit = fit_with_residual(moments);
+  return fit ? std::optional(fit->ellipse) : std::nullopt;
+}
+
+std::optional<MomentFit> fit_with_residual(const Moments& moments) {
   if (moments.count() < kMinPoints) return std::nullopt;
   const double spread = moments.spread_px();
   if (!(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
@@ -161,8 +186,10 @@ std::optional<Ellipse> fit_ellipse(const Moments& moments) {
   const std::optional<Ellipse> fit = from_conic(conic);
   if (!fit) return std::nullopt;
   const Eigen::Vector2d center = moments.mean() + spread * fit->center();
-  return Ellipse{
-      center.x(), center.y(), fit->semi_major * spread, fit->semi_minor * spread, fit->angle_rad};
+  const double residual = taubin_rms(standardized, scatter.quadratic, a, b);
+  return MomentFit{
+      {center.x(), center.y(), fit->semi_major * spread, fit->semi_minor * spread, fit->angle_rad},
+      spread * residual};
 }
 
 GeometricFit::GeometricFit(const Ellipse& start)
@@ -176,7 +203,7 @@ double GeometricFit::distance_px(const Eigen::Vector2d& point_px) const {
   return (r - 1.0) * r / (inverse_stretch_ * w).norm();
 }
 
-void GeometricFit::add(const Eigen::Vector2d& point_px) {
+void GeometricFit::add(const Eigen::Vector2d& point_px, double weight) {
   const Eigen::Vector2d w = inverse_stretch_ * (point_px - center_);
   const double r = w.norm();
   if (!(r > 0.0)) return;
@@ -186,8 +213,8 @@ void GeometricFit::add(const Eigen::Vector2d& point_px) {
   Vector5d row;
   row << u.x(), u.y(), 1.0, u.x() * u.x() - u.y() * u.y(), 2.0 * u.x() * u.y();
   row *= slope;
-  normal_.noalias() += row * row.transpose();
-  right_side_ += row * ((r - 1.0) * slope);
+  normal_.noalias() += weight * row * row.transpose();
+  right_side_ += weight * row * ((r - 1.0) * slope);
   ++points_;
 }
 

@@ -17,6 +17,8 @@ class Moments {
   explicit Moments(const Eigen::Vector2d& origin_px) : origin_(origin_px) {}
 
   void add(const Eigen::Vector2d& point_px);
+  /// The points of both. Both must have the same origin.
+  void add(const Moments& other);
 
   [[nodiscard]] double count() const { return at(0, 0); }
   [[nodiscard]] Eigen::Vector2d mean() const;
@@ -45,6 +47,16 @@ class Moments {
 /// The same from moments: O(1).
 [[nodiscard]] std::optional<Ellipse> fit_ellipse(const Moments& moments);
 
+/// An ellipse and how well it fits its points.
+struct MomentFit {
+  Ellipse ellipse;
+  /// RMS distance of the points [px], in the approximation of [Taubin1991].
+  double rms_px = 0.0;
+};
+
+/// The same with the residual, which the moments tell too: O(1).
+[[nodiscard]] std::optional<MomentFit> fit_with_residual(const Moments& moments);
+
 /// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
 /// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
 /// not.
@@ -55,7 +67,7 @@ class GeometricFit {
  public:
   explicit GeometricFit(const Ellipse& start);
 
-  void add(const Eigen::Vector2d& point_px);
+  void add(const Eigen::Vector2d& point_px, double weight = 1.0);
 
   /// Distance of a point to the starting ellipse [px], as sampson_distance().
   [[nodiscard]] double distance_px(const Eigen::Vector2d& point_px) const;

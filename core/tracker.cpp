@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "core/contour_detector.hpp"
 #include "core/roi.hpp"
 #include "core/target_selection.hpp"
 
@@ -16,11 +15,12 @@ double or_own(double setting, double own) {
 
 }  // namespace
 
-Tracker::Tracker(const TrackerSettings& settings)
-    : Tracker(settings, std::make_unique<ContourDetector>()) {}
+Tracker::Tracker(const TrackerSettings& settings) : detector_(make_detector(settings.detector)) {
+  configure(settings);
+}
 
 Tracker::Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector)
-    : detector_(std::move(detector)) {
+    : detector_(std::move(detector)), is_detector_given_(true) {
   configure(settings);
 }
 
@@ -112,6 +112,9 @@ void Tracker::configure(const TrackerSettings& settings) {
   settings.validate();
   const bool starts_over =
       settings.detector != settings_.detector || settings.tracking != settings_.tracking;
+  if (settings.detector != settings_.detector && !is_detector_given_) {
+    detector_ = make_detector(settings.detector);
+  }
   settings_ = settings;
   if (starts_over) reset();
   while (scale_ > settings_.max_scale) scale_ /= 2;

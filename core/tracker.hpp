@@ -62,6 +62,7 @@ class Tracker {
 
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;
+  bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
   LumaReader luma_reader_;
   Scaler scaler_;
 

@@ -103,7 +103,6 @@ const std::array kSettings = {
         "Upper edge threshold in grey levels per px; 0 = adapts to the picture"),
 };
 
-constexpr const char* kDetectorNicks[] = {"contours"};
 constexpr const char* kTrackingNicks[] = {"none", "redetect"};
 
 template <class Enum>
@@ -139,17 +138,13 @@ std::span<const SettingInfo> setting_infos() {
   return kSettings;
 }
 
-std::span<const char* const> detector_nicks() {
-  return kDetectorNicks;
-}
-
 std::span<const char* const> tracking_nicks() {
   return kTrackingNicks;
 }
 
 void set_by_name(TrackerSettings& settings, std::string_view name, std::string_view value) {
   if (name == "detector") {
-    settings.detector = from_nick<DetectorKind>(name, value, kDetectorNicks);
+    settings.detector = from_nick<DetectorKind>(name, value, detector_nicks());
     return;
   }
   if (name == "tracking") {

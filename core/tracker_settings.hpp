@@ -3,14 +3,10 @@
 #include <span>
 #include <string_view>
 
-#include "core/detector.hpp"
+#include "core/detectors.hpp"
 #include "core/thresholds.hpp"
 
 namespace ellipse {
-
-enum class DetectorKind {
-  kContours,  ///< [Keipour2021] Algorithm 1.
-};
 
 enum class TrackingMode {
   kNone,      ///< Every frame by itself, the whole of it, at scale 1.
@@ -49,8 +45,7 @@ struct SettingInfo {
 /// All of them, in the order in which [Keipour2021] speaks of them.
 [[nodiscard]] std::span<const SettingInfo> setting_infos();
 
-/// The nicks of the enumerations, in their order.
-[[nodiscard]] std::span<const char* const> detector_nicks();
+/// The nicks of the tracking modes, in their order.
 [[nodiscard]] std::span<const char* const> tracking_nicks();
 
 /// Sets one setting by name from text: a number, or a nick for "detector" and "tracking".

@@ -19,6 +19,7 @@ enum {
 GType gst_ellipse_detector_get_type(void) {
   static const GEnumValue kValues[] = {
       {int(ellipse::DetectorKind::kContours), "Contours: Keipour et al. 2021", "contours"},
+      {int(ellipse::DetectorKind::kArcs), "Arcs of edges, fitted together", "arcs"},
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseDetector", kValues);

@@ -4,21 +4,9 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace ellipse {
+#include "core/scene/ground_painting.hpp"
 
-/// What lies around the pad. None of them holds an ellipse; most hold what resembles one.
-enum class GroundKind {
-  kPlain,
-  kAsphalt,  ///< Speckled, with cracks.
-  kGrass,    ///< Blades in all directions.
-  kRoad,     ///< Asphalt with painted lines and arcs.
-  kTiles,    ///< Square tiles with dark joints.
-  kSquares,  ///< A clutter of squares.
-  kFlowers,  ///< A clutter of flowers.
-  kRounded,  ///< A clutter of rounded rectangles.
-  kClutter,  ///< All of these clutters together, and arcs.
-  kPicture,  ///< A picture of one's own.
-};
+namespace ellipse {
 
 struct Ground {
   GroundKind kind = GroundKind::kAsphalt;

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "core/scene/foreground.hpp"
 #include "core/scene/random.hpp"
 
 namespace ellipse {
@@ -19,8 +19,7 @@ using Eigen::Vector3d;
 
 constexpr int kBlock = 8;            // pixels
 constexpr float kSkyLevel = 200.0F;  // where no ground is
-constexpr int kMostInstants = 96;
-constexpr double kAllOfIt = 0.999;  // a layer that hides all beneath
+constexpr double kAllOfIt = 0.999;   // a layer that hides all beneath
 // Instants so near each other in the picture that blurred edges add up to an even ramp: within
 // .1 % at 1.6 standard deviations (the second term of the Gaussian's Fourier series).
 constexpr double kInstantSpacing = 1.6;
@@ -66,9 +65,10 @@ Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableIma
     const double instant_s = time_s + part * scene_.sensor.exposure_s;
     add_instant(image_from_pad(scene_, instant_s, width_, height_), weight);
   }
-  if (scene_.light.glare.level > 0.0) add_glare(time_s);
-  add_gradient();
-  if (!scene_.bars.empty()) add_bars(time_s);
+  const LightImage light{light_, width_, height_};
+  add_glare(scene_, time_s, light);
+  add_gradient(scene_.light.gradient, light);
+  add_bars(scene_, time_s, light);
   return expose(image_from_pad(scene_, time_s, width_, height_), frame, picture);
 }
 
@@ -77,8 +77,9 @@ Truth SceneRenderer::render(const Matrix3d& image_from_pad,
                             const MutableImage& picture) {
   start_frame(picture);
   add_instant(image_from_pad, 1.0F);
-  add_gradient();
-  if (!scene_.bars.empty()) add_bars(0.0);
+  const LightImage light{light_, width_, height_};
+  add_gradient(scene_.light.gradient, light);
+  add_bars(scene_, 0.0, light);
   return expose(image_from_pad, frame, picture);
 }
 
@@ -110,9 +111,8 @@ int SceneRenderer::instants_at(double time_s) const {
       farthest_px = std::max(farthest_px, (end - Vector2d(x, y)).norm());
     }
   }
-  const double spacing_px = kInstantSpacing * std::max(0.5, scene_.sensor.blur_px);
-  return static_cast<int>(
-      std::clamp(std::ceil(farthest_px / spacing_px), 1.0, double{kMostInstants}));
+  const double spacing_px = kInstantSpacing * scene_.sensor.blur_px;
+  return static_cast<int>(std::clamp(std::ceil(farthest_px / spacing_px), 1.0, 1e6));
 }
 
 void SceneRenderer::add_instant(const Matrix3d& image_from_pad, float weight) {
@@ -246,56 +246,6 @@ void SceneRenderer::add_shadows(Block& block) const {
       for (float& light : block.light) light *= share;
     } else {
       block.for_each_pixel([&](const Vector2d& pixel, float& light) { light *= lit(pixel); });
-    }
-  }
-}
-
-void SceneRenderer::add_glare(double time_s) {
-  const Glare& glare = scene_.light.glare;
-  const Vector3d camera = pose_at(scene_.flight, time_s).position;
-  plane_from_image_ = image_from_pad(scene_, time_s, width_, height_).inverse();
-  const Vector2d middle = camera.head<2>() + camera.z() * glare.tilt;
-  const double spread = camera.z() * glare.spread;
-  float* light = light_.data();
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x, ++light) {
-      const Vector3d q = plane_from_image_ * Vector3d(x, y, 1.0);
-      if (!(q.z() > 0.0)) continue;
-      const double off = ((q.hnormalized() - middle) / spread).squaredNorm();
-      if (off < 24.0) *light += static_cast<float>(glare.level * std::exp(-0.5 * off));
-    }
-  }
-}
-
-void SceneRenderer::add_gradient() {
-  const Vector2d per_px = scene_.light.gradient / std::max(width_, 1);
-  if (per_px.isZero()) return;
-  float* light = light_.data();
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x, ++light) {
-      const Vector2d from_middle(x - 0.5 * (width_ - 1), y - 0.5 * (height_ - 1));
-      *light *= static_cast<float>(std::max(0.0, 1.0 + per_px.dot(from_middle)));
-    }
-  }
-}
-
-void SceneRenderer::add_bars(double time_s) {
-  const double blur_px = scene_.sensor.blur_px;
-  Matrix3d bars_from_image;
-  bars_from_image << 1.0, 0.0, -0.5 * (width_ - 1), 0.0, 1.0, -0.5 * (height_ - 1), 0.0, 0.0,
-      width_;
-  for (const Bar& bar : scene_.bars) {
-    const double swing = std::sin(0.5 * std::numbers::pi * time_s);
-    const Vector2d middle = 0.5 * (bar.from + bar.to) + swing * bar.swing;
-    const Vector2d length = bar.to - bar.from;
-    const Box box = project_box(
-        bars_from_image, middle, length.normalized(), 0.5 * length.norm(), 0.5 * bar.width);
-    float* light = light_.data();
-    for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x, ++light) {
-        const auto share = static_cast<float>(box.coverage(Vector2d(x, y), blur_px));
-        *light += share * (static_cast<float>(bar.level) - *light);
-      }
     }
   }
 }

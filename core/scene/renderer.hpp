@@ -38,9 +38,6 @@ class SceneRenderer {
   void fill_ground(Block& block) const;
   void add_pad(Block& block) const;
   void add_shadows(Block& block) const;
-  void add_glare(double time_s);
-  void add_gradient();
-  void add_bars(double time_s);
   Truth expose(const Eigen::Matrix3d& image_from_pad,
                std::uint64_t frame,
                const MutableImage& picture);

@@ -98,7 +98,7 @@ void SensorReader::read(std::span<const float> light,
       for (int i = 0; i < std::min(2, picture.width - x); ++i) {
         float level = gain * *from++ + bias;
         if (has_noise) {
-          const auto index = static_cast<std::size_t>(std::clamp(level, 0.0F, 256.0F));
+          const auto index = static_cast<std::size_t>(std::clamp(level - bias, 0.0F, 256.0F));
           level += noise_at_level_[index] *
                    nearly_normal(static_cast<std::uint32_t>(i == 0 ? bits : bits >> 32U));
         }

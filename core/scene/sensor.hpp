@@ -21,7 +21,7 @@ struct Sensor {
   double gain = 1.0;        ///< Grey levels per unit of light; 0.14 is dusk.
   double bias = 0.0;        ///< Grey levels without light.
   double read_noise = 2.0;  ///< Standard deviation [grey levels].
-  double shot_noise = 0.0;  ///< Variance per grey level [grey levels].
+  double shot_noise = 0.0;  ///< Variance per grey level of light [grey levels].
   double blur_px = 0.6;     ///< Standard deviation of the lens's blur; above 0.
   double exposure_s = 0.0;  ///< Everything that moves in this time is blurred; 0 = an instant.
   int jpeg_quality = 0;     ///< 1 to 100: as JPEG leaves it at this quality; 0 = no compression.

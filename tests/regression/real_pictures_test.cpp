@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "core/contour_detector.hpp"
 #include "core/tracker.hpp"
 
 namespace ellipse {
@@ -26,21 +25,16 @@ namespace fs = std::filesystem;
 const fs::path kPackage = "/usr/share/doc/opencv-doc";
 constexpr double kSameEllipseIou = 0.8;
 
-template <class OneDetector>
-std::unique_ptr<Detector> make_detector() {
-  return std::make_unique<OneDetector>();
-}
-
 /// What was measured when the row was written last. Who makes a detector better moves them.
 struct Limits {
   const char* detector;  ///< Its nick.
-  std::unique_ptr<Detector> (*make)();
-  int least_right;  ///< Labelled ellipses that are found.
-  int most_false;   ///< Pictures without an ellipse that show a target.
+  int least_right;       ///< Labelled ellipses that are found.
+  int most_false;        ///< Pictures without an ellipse that show a target.
 };
 
 constexpr Limits kLimits[] = {
-    {"contours", make_detector<ContourDetector>, 38, 24},
+    {"contours", 38, 24},
+    {"arcs", 43, 1},
 };
 
 void PrintTo(const Limits& limits, std::ostream* out) {
@@ -101,7 +95,7 @@ class RealPictures : public testing::TestWithParam<Limits> {
   /// Whether the labelled ellipse is among all that the detector finds in its picture.
   [[nodiscard]] bool is_found(const Label& label) const {
     const cv::Mat luma = read_picture(label.picture);
-    const std::unique_ptr<Detector> detector = GetParam().make();
+    const std::unique_ptr<Detector> detector = make_detector(settings_.detector);
     Thresholds thresholds = settings_.limits;
     thresholds.contour_overlap = detector->detecting_overlaps().contour;
     thresholds.ellipse_overlap = detector->detecting_overlaps().ellipse;

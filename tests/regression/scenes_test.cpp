@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -44,7 +45,6 @@ constexpr Limits kLimits[] = {
     {"glare", 2.0, 0.1, 40, "contours", "redetect", 28, 12},
     {"glare", 2.0, 0.1, 40, "contours", "none", 37, 3},
     {"occluded", 2.0, 0.1, 40, "contours", "redetect", 0, 23},
-    {"occluded", 2.0, 0.1, 40, "contours", "none", 0, 40},
     {"dash", 2.0, 1.0 / 30.0, 20, "contours", "redetect", 13, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "contours", "none", 8, 0},
     {"touchdown", 2.0, 0.1, 40, "contours", "redetect", 16, 3},
@@ -69,6 +69,40 @@ constexpr Limits kLimits[] = {
     {"shake", 2.0, 1.0 / 30.0, 20, "contours", "none", 20, 0},
     {"hover", 2.0, 0.1, 40, "contours", "redetect", 40, 0},
     {"hover", 2.0, 0.1, 40, "contours", "none", 40, 0},
+    {"approach", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"approach", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"oblique", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"oblique", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"dusk", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"dusk", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"glare", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"glare", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"occluded", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"occluded", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "redetect", 20, 0},
+    {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "none", 19, 1},
+    {"touchdown", 2.0, 0.1, 40, "arcs", "redetect", 21, 2},
+    {"touchdown", 2.0, 0.1, 40, "arcs", "none", 25, 0},
+    {"reenter", 2.0, 0.1, 40, "arcs", "redetect", 19, 0},
+    {"reenter", 2.0, 0.1, 40, "arcs", "none", 19, 0},
+    {"thin", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"thin", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"disc", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"disc", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"bullseye", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"bullseye", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"crumpled", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"crumpled", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"noise", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"noise", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"negative", 2.0, 0.1, 40, "arcs", "redetect", 0, 25},
+    {"negative", 2.0, 0.1, 40, "arcs", "none", 0, 30},
+    {"orbit", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"orbit", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "redetect", 20, 0},
+    {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "none", 20, 0},
+    {"hover", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"hover", 2.0, 0.1, 40, "arcs", "none", 40, 0},
 };
 
 void PrintTo(const Limits& limits, std::ostream* out) {
@@ -86,8 +120,9 @@ class Scenes : public testing::TestWithParam<Limits> {
     SceneRenderer renderer(scene_by_name(limits.scene, kSeed));
     support::Picture picture(kWidth, kHeight);
     for (int i = 0; i < limits.frames; ++i) {
-      const Truth truth = renderer.render(limits.from_s + i * limits.step_s, i, picture.writable());
-      count(tracker.process(picture.view(), i), truth);
+      const double time_s = limits.from_s + i * limits.step_s;
+      const Truth truth = renderer.render(time_s, i, picture.writable());
+      count(tracker.process(picture.view(), std::llround(1e9 * time_s)), truth);
     }
   }
 
@@ -115,6 +150,47 @@ TEST_P(Scenes, ShowTheirTargetAndNoOther) {
 
 INSTANTIATE_TEST_SUITE_P(Catalog, Scenes, testing::ValuesIn(kLimits), [](const auto& info) {
   return std::string(info.param.scene) + '_' + info.param.detector + '_' + info.param.tracking;
+});
+
+// Grounds on which nothing may be found, ever.
+struct Ban {
+  const char* detector;
+  const char* ground;
+};
+
+constexpr Ban kBans[] = {
+    {"contours", "plain"},
+    {"arcs", "asphalt"},
+    {"arcs", "grass"},
+    {"arcs", "tiles"},
+    {"arcs", "rounded"},
+};
+
+void PrintTo(const Ban& ban, std::ostream* out) {
+  *out << ban.detector << " on " << ban.ground;
+}
+
+class BareGround : public testing::TestWithParam<Ban> {};
+
+TEST_P(BareGround, ShowsNothing) {
+  Scene scene = scene_by_name("negative", kSeed);
+  const auto nicks = ground_nicks();
+  const auto nick = std::find(nicks.begin(), nicks.end(), std::string(GetParam().ground));
+  scene.ground.kind = static_cast<GroundKind>(nick - nicks.begin());
+  SceneRenderer renderer(scene);
+  TrackerSettings settings;
+  set_by_name(settings, "detector", GetParam().detector);
+  set_by_name(settings, "tracking", "none");
+  Tracker tracker(settings);
+  support::Picture picture(kWidth, kHeight);
+  for (int i = 0; i < 20; ++i) {
+    renderer.render(0.5 * i, i, picture.writable());
+    EXPECT_FALSE(tracker.process(picture.view(), 0)) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Detectors, BareGround, testing::ValuesIn(kBans), [](const auto& info) {
+  return std::string(info.param.detector) + '_' + info.param.ground;
 });
 
 TEST(SceneLimits, CoverTheCatalog) {

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "core/arc_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/ellipse_fit.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kEdgeFloor = 1.25;        // least threshold [grey levels / px]
+constexpr double kLeastSingleTurn = 0.8;   // of an arc that is tried alone [rad]
+constexpr double kFitRms = 0.8;            // [px], and
+constexpr double kFitRmsRelative = 0.012;  // of the radius, or of a third of the arc
+constexpr int kMostPairs = 400;
+constexpr double kSameExact = 0.05;
+constexpr double kSameCrumpled = 0.08;
+constexpr double kSameRefused = 0.1;
+constexpr double kOnEllipsePx = 2.5;
+
+double radius_of(const Ellipse& e) {
+  return std::sqrt(e.semi_major * e.semi_minor);
+}
+
+// A crumpled edge leaves its ellipse by more, the larger it is; but a short arc knows no crumpling.
+double fit_limit(const Ellipse& e, double length_px) {
+  return kFitRms + kFitRmsRelative * std::min(radius_of(e), length_px / 3.0);
+}
+
+bool are_same(const Ellipse& a, const Ellipse& b, double tolerance) {
+  return std::abs(a.cx - b.cx) + std::abs(a.cy - b.cy) < 2.0 * tolerance * b.semi_minor + 1.0 &&
+         std::abs(a.semi_major - b.semi_major) < tolerance * b.semi_major + 1.0 &&
+         std::abs(a.semi_minor - b.semi_minor) < tolerance * b.semi_minor + 1.0;
+}
+
+// Whether all of b is on the inner side of a's edge: what lies on one convex curve does.
+bool is_inside_of(const Arc& b, const Arc& a) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2d apart = b.points[k] - a.points[i];
+      const double slack = 2.0 + 0.06 * apart.lpNorm<1>();
+      if (apart.dot(a.inwards[i]) < -slack) return false;
+    }
+  }
+  return true;
+}
+
+// Same centre and shape, another radius, as the two edges of a ring.
+bool are_partners(const Ellipse& a, const Ellipse& b) {
+  const double larger = std::max(a.semi_major, b.semi_major);
+  const double ratio = std::min(a.semi_major, b.semi_major) / larger;
+  if (ratio < 0.25 || ratio > 0.97) return false;
+  return (a.center() - b.center()).norm() < 0.06 * larger + 1.5 &&
+         std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
+}
+
+}  // namespace
+
+std::span<const Detection> ArcDetector::detect(const ImageView& luma,
+                                               const Thresholds& thresholds) {
+  detections_.clear();
+  found_.clear();
+  refused_.clear();
+  if (luma.empty()) return detections_;
+  const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
+  map_.compute(luma, thresholds.edge_high, floor);
+  chains_.trace(map_);
+  arcs_ = splitter_.split(map_, chains_);
+  edge_density_ = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
+  is_used_.assign(arcs_.size(), 0);
+  try_single_arcs(thresholds);
+  try_pairs(thresholds);
+  report(thresholds);
+  return detections_;
+}
+
+void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
+  for (std::size_t i = 0; i < arcs_.size(); ++i) {
+    const Arc& arc = arcs_[i];
+    if (is_used_[i] != 0 || !arc.fit || arc.turn_rad < kLeastSingleTurn) continue;
+    if (arc.fit->rms_px > fit_limit(arc.fit->ellipse, arc.length_px())) continue;
+    try_ellipse(arc.fit->ellipse, arc.polarity, thresholds);
+  }
+}
+
+// The best arcs with each other first: by the sum of their ranks.
+void ArcDetector::try_pairs(const Thresholds& thresholds) {
+  const std::size_t n = arcs_.size();
+  int pairs = 0;
+  for (std::size_t sum = 1; sum < 2 * n; ++sum) {
+    for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
+      const std::size_t k = sum - i;
+      const Arc& a = arcs_[i];
+      const Arc& b = arcs_[k];
+      if (is_used_[i] != 0 || is_used_[k] != 0 || a.polarity != b.polarity) continue;
+      if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
+      if (++pairs > kMostPairs) return;
+      Moments both = a.moments;
+      both.add(b.moments);
+      const auto fit = fit_with_residual(both);
+      if (!fit || fit->rms_px > fit_limit(fit->ellipse, a.length_px() + b.length_px())) continue;
+      try_ellipse(fit->ellipse, a.polarity, thresholds);
+    }
+  }
+}
+
+void ArcDetector::try_ellipse(const Ellipse& guess,
+                              Polarity polarity,
+                              const Thresholds& thresholds) {
+  if (!EllipseVerifier::is_reasonable(guess, map_, thresholds)) return;
+  for (const VerifiedEllipse& known : found_) {
+    const double tolerance = known.is_crumpled ? kSameCrumpled : kSameExact;
+    if (known.polarity == polarity && are_same(known.ellipse, guess, tolerance)) return;
+  }
+  for (const Refused& known : refused_) {
+    if (known.polarity == polarity && are_same(known.ellipse, guess, kSameRefused)) return;
+  }
+  if (!verifier_.is_promising(map_, guess, polarity, thresholds)) return;
+  const auto verified = verifier_.verify(map_, edge_density_, guess, polarity, thresholds);
+  if (verified) {
+    add(*verified);
+  } else {
+    refused_.push_back({guess, polarity});
+  }
+}
+
+// Of two that are the same, the better one stays.
+void ArcDetector::add(const VerifiedEllipse& found) {
+  for (VerifiedEllipse& known : found_) {
+    const bool is_crumpled = found.is_crumpled || known.is_crumpled;
+    const double tolerance = is_crumpled ? kSameCrumpled : kSameExact;
+    if (known.polarity != found.polarity || !are_same(known.ellipse, found.ellipse, tolerance)) {
+      continue;
+    }
+    const bool is_better = known.needs_partner != found.needs_partner ? known.needs_partner
+                                                                      : found.score > known.score;
+    if (is_better) known = found;
+    return;
+  }
+  found_.push_back(found);
+  if (!found.needs_partner) use_arcs_on(found);
+}
+
+void ArcDetector::use_arcs_on(const VerifiedEllipse& found) {
+  const double tolerance_px =
+      found.is_crumpled ? std::max(kOnEllipsePx, EllipseVerifier::crumple_px(found.ellipse))
+                        : kOnEllipsePx;
+  for (std::size_t i = 0; i < arcs_.size(); ++i) {
+    if (is_used_[i] != 0 || arcs_[i].polarity != found.polarity) continue;
+    const auto& points = arcs_[i].points;
+    is_used_[i] = std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
+      return std::abs(sampson_distance(found.ellipse, point)) <= tolerance_px;
+    });
+  }
+}
+
+bool ArcDetector::has_partner(std::size_t i) const {
+  const VerifiedEllipse& one = found_[i];
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const VerifiedEllipse& other = found_[k];
+    if (k == i || !are_partners(one.ellipse, other.ellipse)) continue;
+    if (!other.needs_partner) return true;
+    if (one.polarity != other.polarity && std::min(one.covered, other.covered) >= 0.2 &&
+        std::min(one.inside_fraction, other.inside_fraction) >= 0.3) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void ArcDetector::report(const Thresholds& thresholds) {
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const VerifiedEllipse& found = found_[i];
+    if (found.needs_partner && !has_partner(i)) continue;
+    if (found.on_ellipse < thresholds.contour_overlap) continue;
+    detections_.push_back({found.ellipse, found.on_ellipse, found.support, found.score});
+  }
+}
+
+}  // namespace ellipse

@@ -1,0 +1,53 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <span>
+#include <vector>
+
+#include "core/arcs.hpp"
+#include "core/chains.hpp"
+#include "core/detector.hpp"
+#include "core/ellipse_verifier.hpp"
+#include "core/gradient.hpp"
+
+namespace ellipse {
+
+/// Finds ellipses from the arcs of their edges: gradient, crests, chains, arcs, then every arc and
+/// every pair of arcs that could be of one ellipse, fitted from their moments and verified on the
+/// edges around the whole perimeter.
+///
+/// Allocates nothing in the steady state. The work on one picture is bounded: the pixels, the best
+/// arcs, and so many pairs of them.
+class ArcDetector final : public Detector {
+ public:
+  [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
+                                                  const Thresholds& thresholds) override;
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.7, 0.55}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.6, 0.45}; }
+
+ private:
+  struct Refused {
+    Ellipse ellipse;
+    Polarity polarity;
+  };
+
+  void try_single_arcs(const Thresholds& thresholds);
+  void try_pairs(const Thresholds& thresholds);
+  void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);
+  void add(const VerifiedEllipse& found);
+  void use_arcs_on(const VerifiedEllipse& found);
+  [[nodiscard]] bool has_partner(std::size_t i) const;
+  void report(const Thresholds& thresholds);
+
+  GradientMap map_;
+  ChainTracer chains_;
+  ArcSplitter splitter_;
+  EllipseVerifier verifier_;
+  std::span<Arc> arcs_;
+  std::vector<std::uint8_t> is_used_;  // by an ellipse that was found
+  std::vector<VerifiedEllipse> found_;
+  std::vector<Refused> refused_;
+  std::vector<Detection> detections_;
+  double edge_density_ = 0.0;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "core/arcs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// Found by experiment, see docs/provenance.md.
+constexpr std::size_t kLeastLength = 10;
+constexpr double kLeastTurn = 0.25;        // [rad]
+constexpr std::size_t kCornerReach = 3;    // [px] before and after
+constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
+constexpr double kLeastRetreat = 0.2;      // [rad], that ends an arc; or
+constexpr double kRetreatOverNoise = 5.0;  // so many of the noise's
+constexpr double kWholeTurnLeast = 5.2;    // [rad], of a chain that is a whole ellipse
+constexpr double kWholeTurnMost = 7.4;
+constexpr double kWholeRms = 0.8;            // [px], and
+constexpr double kWholeRmsRelative = 0.012;  // of its radius: a crumpled pad
+constexpr double kMostRankedTurn = 3.0;      // [rad]; more is no better
+
+// The arc tangent within 3e-4 rad [Abramowitz1964] 4.4.47, shortened.
+float fast_atan2(float y, float x) {
+  const float ax = std::abs(x);
+  const float ay = std::abs(y);
+  const float z = std::min(ax, ay) / (std::max(ax, ay) + 1e-9F);
+  const float s = z * z;
+  float r = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
+  if (ay > ax) r = 1.57079637F - r;
+  if (x < 0.0F) r = 3.14159274F - r;
+  return y < 0.0F ? -r : r;
+}
+
+Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
+  return {static_cast<double>(pixel % stride), static_cast<double>(pixel / stride)};
+}
+
+}  // namespace
+
+CrestPoint crest_point(const GradientMap& map, std::int32_t pixel) {
+  const Gradient* here = map.gradients() + pixel;
+  const bool is_flat = std::abs(here->x) > std::abs(here->y);
+  const int step = is_flat ? 1 : map.stride();
+  const float gx = here->x;
+  const float gy = here->y;
+  const float before = here[-step].x * gx + here[-step].y * gy;
+  const float height = gx * gx + gy * gy;
+  const float after = here[step].x * gx + here[step].y * gy;
+  const float curvature = before - 2.0F * height + after;
+  float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  offset = std::clamp(offset, -0.7F, 0.7F);
+  Eigen::Vector2d point = place_of(pixel, map.stride());
+  point[is_flat ? 0 : 1] += offset;
+  return {point, height > 0.0F ? -curvature / height : 0.0};
+}
+
+double ArcSplitter::Piece::rank() const {
+  return static_cast<double>(end - begin) * std::min(std::abs(turn_rad), kMostRankedTurn);
+}
+
+std::span<Arc> ArcSplitter::split(const GradientMap& map, const ChainTracer& chains) {
+  pieces_.clear();
+  pixels_ = chains.pixels();
+  angles_.resize(std::max(angles_.size(), pixels_.size()));
+  smooth_.resize(angles_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Gradient& g = map.gradients()[pixels_[i]];
+    angles_[i] = fast_atan2(g.y, g.x);
+  }
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    const Chain chain = chains.chain(i);
+    const std::size_t end = begin + chain.pixels.size();
+    split_chain(map, begin, end, chain.is_closed);
+    begin = end;
+  }
+  const std::size_t count = std::min(pieces_.size(), kMostArcs);
+  std::partial_sort(pieces_.begin(),
+                    pieces_.begin() + std::ptrdiff_t(count),
+                    pieces_.end(),
+                    [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); });
+  arcs_.clear();
+  for (std::size_t i = 0; i < count; ++i) arcs_.push_back(make_arc(map, pieces_[i]));
+  return arcs_;
+}
+
+void ArcSplitter::unwrap(std::size_t begin, std::size_t end) {
+  float offset = 0.0F;
+  float previous = angles_[begin];
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const float raw = angles_[i];
+    if (raw - previous > std::numbers::pi_v<float>) offset -= static_cast<float>(kTwoPi);
+    if (raw - previous < -std::numbers::pi_v<float>) offset += static_cast<float>(kTwoPi);
+    angles_[i] = raw + offset;
+    previous = raw;
+  }
+}
+
+Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::size_t end) const {
+  // One origin for all arcs, so that their moments can be added.
+  Moments moments(Eigen::Vector2d(0.5 * map.width(), 0.5 * map.height()));
+  for (std::size_t i = begin; i < end; ++i) moments.add(crest_point(map, pixels_[i]).point);
+  return moments;
+}
+
+bool ArcSplitter::is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end) {
+  const double turn = std::abs(angles_[end - 1] - angles_[begin]);
+  if (turn < kWholeTurnLeast || turn > kWholeTurnMost) return false;
+  const auto fit = fit_with_residual(moments_of(map, begin, end));
+  if (!fit) return false;
+  const double radius = std::sqrt(fit->ellipse.semi_major * fit->ellipse.semi_minor);
+  return fit->rms_px < kWholeRms + kWholeRmsRelative * radius;
+}
+
+void ArcSplitter::split_chain(const GradientMap& map,
+                              std::size_t begin,
+                              std::size_t end,
+                              bool is_closed) {
+  unwrap(begin, end);
+  if (is_closed && is_whole_ellipse(map, begin, end)) {
+    add_piece(begin, end);
+    return;
+  }
+  // A run of pixels that turn sharply has its corner where they turn most.
+  std::size_t part = begin;
+  std::size_t corner = end;
+  float sharpest = 0.0F;
+  const auto cut = [&] {
+    if (corner == end) return;
+    split_smooth_part(map, part, corner > part ? corner - 1 : part);
+    part = corner + 2;
+    corner = end;
+    sharpest = 0.0F;
+  };
+  for (std::size_t i = begin + kCornerReach; i + kCornerReach < end; ++i) {
+    const float turn = std::abs(angles_[i + kCornerReach] - angles_[i - kCornerReach]);
+    if (turn > kCornerTurn) {
+      if (turn > sharpest) corner = i;
+      sharpest = std::max(sharpest, turn);
+    } else {
+      cut();
+    }
+  }
+  cut();
+  if (part < end) split_smooth_part(map, part, end);
+}
+
+void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width) {
+  float sum = 0.0F;
+  std::size_t count = 0;
+  for (std::size_t i = begin; i < std::min(end, begin + half_width); ++i, ++count)
+    sum += angles_[i];
+  for (std::size_t i = begin; i < end; ++i) {
+    if (i + half_width < end) {
+      sum += angles_[i + half_width];
+      ++count;
+    }
+    if (i >= begin + half_width + 1) {
+      sum -= angles_[i - half_width - 1];
+      --count;
+    }
+    smooth_[i] = sum / static_cast<float>(count);
+  }
+}
+
+// Cuts where the direction retreats from its furthest.
+void ArcSplitter::split_smooth_part(const GradientMap& map, std::size_t begin, std::size_t end) {
+  if (end < begin + kLeastLength) return;
+  double strength = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Gradient& g = map.gradients()[pixels_[i]];
+    strength += std::abs(g.x) + std::abs(g.y);
+  }
+  const double length = static_cast<double>(end - begin);
+  // The mean of |x| + |y| is 1.27 times that of the norm.
+  const double angle_noise = 1.27 * map.noise() * length / strength;
+  std::size_t half_width = angle_noise < 0.03 ? 2 : angle_noise < 0.08 ? 4 : 6;
+  half_width = std::min(half_width, (end - begin) / 4);
+  // Gradients of neighbours share their pixels: three of them are as good as one.
+  const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
+  const double retreat = std::max(kLeastRetreat, kRetreatOverNoise * angle_noise * smoothed);
+  smooth_angles(begin, end, half_width);
+
+  std::size_t lowest = begin;
+  std::size_t highest = begin;
+  int direction = 0;
+  std::size_t part = begin;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    if (smooth_[i] > smooth_[highest]) highest = i;
+    if (smooth_[i] < smooth_[lowest]) lowest = i;
+    if (direction >= 0 && smooth_[highest] - smooth_[i] > retreat) {
+      if (direction > 0) {
+        add_piece(part, highest + 1);
+        part = highest;
+      }
+      direction = -1;
+      lowest = i;
+    } else if (direction <= 0 && smooth_[i] - smooth_[lowest] > retreat) {
+      if (direction < 0) {
+        add_piece(part, lowest + 1);
+        part = lowest;
+      }
+      direction = 1;
+      highest = i;
+    }
+  }
+  add_piece(part, end);
+}
+
+double ArcSplitter::mean_angle(std::size_t at, std::size_t begin, std::size_t end) const {
+  const std::size_t first = at >= begin + 2 ? at - 2 : begin;
+  const std::size_t last = std::min(end, at + 3);
+  double sum = 0.0;
+  for (std::size_t i = first; i < last; ++i) sum += angles_[i];
+  return sum / static_cast<double>(last - first);
+}
+
+void ArcSplitter::add_piece(std::size_t begin, std::size_t end) {
+  if (end < begin + kLeastLength) return;
+  const double turn = mean_angle(end - 3, begin, end) - mean_angle(begin + 2, begin, end);
+  if (std::abs(turn) >= kLeastTurn) pieces_.push_back({begin, end, turn});
+}
+
+Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
+  Arc arc;
+  arc.begin = piece.begin;
+  arc.end = piece.end;
+  arc.turn_rad = std::abs(piece.turn_rad);
+  // The chain runs with the bright side on its left: turning right, it turns around the dark.
+  arc.polarity = piece.turn_rad > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
+  const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double angle = mean_angle(at[k], arc.begin, arc.end);
+    arc.points[k] = place_of(pixels_[at[k]], map.stride());
+    arc.inwards[k] =
+        -static_cast<int>(arc.polarity) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  }
+  arc.moments = moments_of(map, arc.begin, arc.end);
+  arc.fit = fit_with_residual(arc.moments);
+  return arc;
+}
+
+}  // namespace ellipse

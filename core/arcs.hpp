@@ -1,0 +1,79 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/chains.hpp"
+#include "core/ellipse_fit.hpp"
+#include "core/gradient.hpp"
+
+namespace ellipse {
+
+/// Which side of an edge is dark.
+enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
+
+/// A piece of a chain that turns to one side only, as an ellipse's edge does.
+struct Arc {
+  std::size_t begin = 0;  ///< Of all chains' pixels.
+  std::size_t end = 0;
+  double turn_rad = 0.0;  ///< By which it turns, above 0.
+  Polarity polarity = Polarity::kDarkInside;
+  std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, in its middle, near its end [px].
+  std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals there, towards its inside.
+  Moments moments{Eigen::Vector2d::Zero()};
+  std::optional<MomentFit> fit;  ///< Of the arc alone.
+
+  [[nodiscard]] double length_px() const { return static_cast<double>(end - begin); }
+};
+
+/// Where the crest of the gradient lies within its pixel, and how sharp it is.
+struct CrestPoint {
+  Eigen::Vector2d point;   ///< [px]
+  double sharpness = 0.0;  ///< Curvature of the crest's profile over its height [1/px^2].
+};
+
+/// The vertex of the parabola through three pixels along the axis closest to the gradient
+/// [Devernay1995] 2. The gradients' projections on the middle one count.
+[[nodiscard]] CrestPoint crest_point(const GradientMap& map, std::int32_t pixel);
+
+/// Cuts chains into arcs: at corners, and where the curvature changes its sign.
+class ArcSplitter {
+ public:
+  /// The best arcs, by length and turn, at most kMostArcs. Valid until the next call.
+  /// Allocates only while it has not yet seen as many chains.
+  [[nodiscard]] std::span<Arc> split(const GradientMap& map, const ChainTracer& chains);
+
+  static constexpr std::size_t kMostArcs = 50;
+
+ private:
+  struct Piece {
+    std::size_t begin;
+    std::size_t end;
+    double turn_rad;  // signed
+    [[nodiscard]] double rank() const;
+  };
+
+  void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
+  void split_smooth_part(const GradientMap& map, std::size_t begin, std::size_t end);
+  void smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width);
+  void unwrap(std::size_t begin, std::size_t end);
+  [[nodiscard]] bool is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end);
+  [[nodiscard]] Moments moments_of(const GradientMap& map,
+                                   std::size_t begin,
+                                   std::size_t end) const;
+  [[nodiscard]] double mean_angle(std::size_t at, std::size_t begin, std::size_t end) const;
+  void add_piece(std::size_t begin, std::size_t end);
+  [[nodiscard]] Arc make_arc(const GradientMap& map, const Piece& piece) const;
+
+  std::span<const std::int32_t> pixels_;
+  std::vector<float> angles_;  // of the gradient [rad], without jumps along a chain
+  std::vector<float> smooth_;
+  std::vector<Piece> pieces_;
+  std::vector<Arc> arcs_;
+};
+
+}  // namespace ellipse

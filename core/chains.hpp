@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/gradient.hpp"
+
+namespace ellipse {
+
+/// Neighbouring crests, one after the other along their edge: bright on the same side all the way.
+struct Chain {
+  std::span<const std::int32_t> pixels;  ///< Indices into the maps.
+  bool is_closed = false;                ///< Its end is where its begin is.
+};
+
+/// Links crests to chains. Each crest is in one chain at most.
+class ChainTracer {
+ public:
+  /// Marks the crests of chains with crest::kChained. Allocates only when the picture grows.
+  /// A picture with more crests than a quarter of its pixels keeps the chains of its upper part.
+  void trace(GradientMap& map);
+
+  [[nodiscard]] std::size_t size() const { return begins_.empty() ? 0 : begins_.size() - 1; }
+  [[nodiscard]] Chain chain(std::size_t i) const;
+  /// All pixels of all chains, chain after chain.
+  [[nodiscard]] std::span<const std::int32_t> pixels() const { return {pixels_.data(), count_}; }
+
+ private:
+  void add_chain(std::int32_t seed, GradientMap& map);
+
+  std::vector<std::int32_t> pixels_;
+  std::size_t count_ = 0;
+  std::vector<std::size_t> begins_;
+  std::vector<std::uint8_t> is_closed_;
+  std::vector<std::int32_t> forward_;
+  std::vector<std::int32_t> backward_;
+};
+
+}  // namespace ellipse

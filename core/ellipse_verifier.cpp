@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "core/ellipse_verifier.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/ellipse_fit.hpp"
+
+namespace ellipse {
+namespace {
+
+using Levels = std::array<double, 4>;
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kFirstSupport = 0.76;   // of the wanted support, before the first step
+constexpr double kSecondSupport = 0.91;  // after the first step
+constexpr std::size_t kLeastHits = 16;
+constexpr double kLeastScore = 62.0;          // [nats]
+constexpr double kLeastScoreOfPart = 120.0;   // where little of it is inside
+constexpr double kPart = 0.35;                // of the perimeter
+constexpr double kContourSizeOfLength = 0.9;  // pixels of a contour per pixel of length
+
+constexpr double kCrumpleRelative = 0.025;
+constexpr double kMostCrumplePx = 8.0;
+constexpr double kLeastCrumpledRadius = 12.0;
+constexpr double kCrumpledSupport = 0.6;
+constexpr int kSmoothingDegrees = 8;
+
+int samples_for(const Ellipse& e) {
+  const double length = std::numbers::pi * (e.semi_major + e.semi_minor);
+  return length < 100.0 ? 32 : length < 300.0 ? 64 : 128;
+}
+
+// The mean of chance agreement is p, the observed share s, of n independent samples: n times the
+// Kullback-Leibler divergence bounds -ln of the binomial tail [Hoeffding1963].
+double significance(double n, double s, double p) {
+  s = std::min(s, 0.999);
+  if (s <= p) return 0.0;
+  return n * (s * std::log(s / p) + (1.0 - s) * std::log((1.0 - s) / (1.0 - p)));
+}
+
+// Edges about three pixels apart along the perimeter are independent.
+double best_significance(const Levels& shares,
+                         double inside_px,
+                         double edge_density,
+                         double wider_px,
+                         double most_chance) {
+  double best = 0.0;
+  const double crowded = std::max(0.1, 5.0 * edge_density);
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const double chance =
+        std::min(most_chance, crowded * (kDistanceLevels[k] + wider_px) * kDirectionLevels[k]);
+    best = std::max(best, significance(inside_px / 3.0, shares[k], chance));
+  }
+  return best;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double radius_of(const Ellipse& e) {
+  return std::sqrt(e.semi_major * e.semi_minor);
+}
+
+// Directions are known within .055 rad, and worse by the noise.
+double direction_limit(double base, double per_noise, double signal_to_noise) {
+  return base + per_noise / std::max(1.0, signal_to_noise);
+}
+
+bool is_long_enough(const PerimeterEvidence& evidence, const Thresholds& thresholds) {
+  const double least = thresholds.min_contour_size;
+  return evidence.inside_px >= least &&
+         kContourSizeOfLength * evidence.inside_px * evidence.support >= least;
+}
+
+}  // namespace
+
+struct EllipseVerifier::Request {
+  const GradientMap& map;
+  double edge_density;
+  Ellipse guess;
+  Polarity polarity;
+  const Thresholds& thresholds;
+};
+
+// How well a smooth curve describes the edge's distance from the ellipse.
+struct EllipseVerifier::Smoothness {
+  Levels levels{};               // shares of the inside perimeter, as PerimeterEvidence::levels
+  double deviation_px = 1e9;     // RMS of the curve
+  double direction_error = 9.0;  // median, against the curve's slope [rad]
+};
+
+double EllipseVerifier::crumple_px(const Ellipse& e) {
+  return std::min(kMostCrumplePx, 1.5 + kCrumpleRelative * radius_of(e));
+}
+
+bool EllipseVerifier::is_reasonable(const Ellipse& e,
+                                    const GradientMap& map,
+                                    const Thresholds& thresholds) {
+  if (2.0 * e.semi_major > thresholds.max_axis_px) return false;
+  if (2.0 * e.semi_minor < thresholds.min_axis_px) return false;
+  if (e.aspect_ratio() > thresholds.max_axis_ratio) return false;
+  return e.cx > -map.width() && e.cx < 2 * map.width() && e.cy > -map.height() &&
+         e.cy < 2 * map.height();
+}
+
+// One Gauss-Newton step with Tukey's weights [BeatonTukey1974] over the hits of the last probe.
+bool EllipseVerifier::improve(const Request& request, Ellipse& e, double reach_px) const {
+  if (probe_.hits().size() < 8) return false;
+  GeometricFit fit(e);
+  for (const EdgeHit& hit : probe_.hits()) {
+    const double r = hit.residual_px / reach_px;
+    if (std::abs(r) >= 1.0) continue;
+    const double tukey = (1.0 - r * r) * (1.0 - r * r);
+    fit.add(hit.point, tukey * hit.weight);
+  }
+  const auto better = fit.solve();
+  if (!better || !is_reasonable(*better, request.map, request.thresholds)) return false;
+  e = *better;
+  return true;
+}
+
+// From the guess to the edges, with a narrowing reach.
+bool EllipseVerifier::approach(const Request& request, Ellipse& e) {
+  const int samples = samples_for(e);
+  const double wanted = request.thresholds.ellipse_overlap;
+  const auto probe = [&](int n, int tolerance_px) {
+    return probe_.probe(request.map, e, request.polarity, n, tolerance_px);
+  };
+  (void)probe(std::max(32, samples / 2), 3);
+  if (!improve(request, e, 4.0)) return false;
+  if (probe(samples, 3).support < kSecondSupport * wanted) return false;
+  if (!improve(request, e, 3.0)) return false;
+  const PerimeterEvidence evidence = probe(samples, 2);
+  if (evidence.support < wanted) return false;
+  if (!improve(request, e, 2.0)) return false;
+  const double score =
+      best_significance(evidence.levels, evidence.inside_px, request.edge_density, 0.0, 0.5);
+  if (score < 0.7 * kLeastScore) return false;
+  (void)probe(PerimeterProbe::kMostSamples, 2);
+  return improve(request, e, 2.0);
+}
+
+double EllipseVerifier::median_residual() {
+  values_.clear();
+  for (const EdgeHit& hit : probe_.hits()) values_.push_back(std::abs(hit.residual_px));
+  return median(values_);
+}
+
+double EllipseVerifier::median_direction_error() {
+  values_.clear();
+  for (const EdgeHit& hit : probe_.hits()) values_.push_back(std::abs(hit.direction_error_rad));
+  return median(values_);
+}
+
+std::optional<VerifiedEllipse> EllipseVerifier::verify_exact(const Request& request) {
+  Ellipse e = request.guess;
+  if (!approach(request, e)) return std::nullopt;
+  const PerimeterEvidence found =
+      probe_.probe(request.map, e, request.polarity, std::min(256, 2 * samples_for(e)), 1);
+  if (found.support < request.thresholds.ellipse_overlap || probe_.hits().size() < kLeastHits) {
+    return std::nullopt;
+  }
+  const double score =
+      best_significance(found.levels, found.inside_px, request.edge_density, 0.0, 0.5);
+  if (score < (found.inside_fraction < kPart ? kLeastScoreOfPart : kLeastScore)) {
+    return std::nullopt;
+  }
+  if (median_direction_error() > direction_limit(0.055, 0.55, found.signal_to_noise)) {
+    return std::nullopt;
+  }
+  // 1.48 medians are a standard deviation. Blurred edges are less certain.
+  const double spread_limit = direction_limit(0.10, 2.0, found.signal_to_noise) +
+                              3.0 * std::max(0.0, 0.42 - found.sharpness);
+  if (found.levels[1] < 0.9 && 1.48 * median_residual() > spread_limit) return std::nullopt;
+  if (!is_long_enough(found, request.thresholds)) return std::nullopt;
+  return VerifiedEllipse{e,
+                         request.polarity,
+                         found.inside_fraction,
+                         found.support,
+                         std::min(1.0, found.levels[3] / found.support),
+                         found.inside_fraction * found.levels[1],
+                         score,
+                         false,
+                         false};
+}
+
+// The residual along the perimeter is fitted by a line over a few degrees to both sides of each
+// hit: what is left must be small, and the edge's direction that of the line.
+EllipseVerifier::Smoothness EllipseVerifier::smoothness(int samples,
+                                                        const PerimeterEvidence& evidence) {
+  const std::span<const EdgeHit> hits = probe_.hits();
+  hit_of_sample_.assign(static_cast<std::size_t>(samples), -1);
+  double hit_px = 0.0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    hit_of_sample_[static_cast<std::size_t>(hits[i].sample)] = static_cast<int>(i);
+    hit_px += hits[i].weight;
+  }
+  const int half_width = std::max(2, kSmoothingDegrees * samples / 360);
+  const double direction_slack = std::min(0.1, 0.25 / std::max(1.0, evidence.signal_to_noise));
+  Smoothness result;
+  double squares = 0.0;
+  slopes_.clear();
+  for (const EdgeHit& hit : hits) {
+    double n = 0.0, t1 = 0.0, t2 = 0.0, r1 = 0.0, rt = 0.0;
+    for (int k = -half_width; k <= half_width; ++k) {
+      const int other =
+          hit_of_sample_[static_cast<std::size_t>((hit.sample + k + samples) % samples)];
+      if (other < 0) continue;
+      const EdgeHit& near = hits[static_cast<std::size_t>(other)];
+      const Eigen::Vector2d tangent(-hit.normal.y(), hit.normal.x());
+      const double t = tangent.dot(near.foot - hit.foot);
+      if (std::abs(near.residual_px - hit.residual_px) > 1.0 + 0.35 * std::abs(t)) continue;
+      n += 1.0;
+      t1 += t;
+      t2 += t * t;
+      r1 += near.residual_px;
+      rt += near.residual_px * t;
+    }
+    const double determinant = n * t2 - t1 * t1;
+    if (n < half_width || determinant < 1e-9) continue;
+    const double curve = (t2 * r1 - t1 * rt) / determinant;
+    const double slope = (n * rt - t1 * r1) / determinant;
+    const double left_over = std::abs(hit.residual_px - curve);
+    const double direction_error = std::abs(hit.direction_error_rad + std::atan(slope));
+    squares += curve * curve;
+    slopes_.push_back(direction_error);
+    for (std::size_t k = 0; k < kDistanceLevels.size(); ++k) {
+      const bool is_within =
+          left_over < kDistanceLevels[k] && direction_error < kDirectionLevels[k] + direction_slack;
+      if (is_within) result.levels[k] += hit.weight;
+    }
+  }
+  if (slopes_.empty()) return result;
+  for (double& level : result.levels) level *= evidence.support / hit_px;
+  result.deviation_px = std::sqrt(squares / static_cast<double>(slopes_.size()));
+  result.direction_error = median(slopes_);
+  return result;
+}
+
+std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& request) {
+  Ellipse e = request.guess;
+  if (radius_of(e) < kLeastCrumpledRadius) return std::nullopt;
+  const double reach_px = crumple_px(e);
+  const int tolerance_px = static_cast<int>(reach_px + 0.5);
+  const int samples = samples_for(e);
+  const auto probe = [&](int n) {
+    return probe_.probe(request.map, e, request.polarity, n, tolerance_px);
+  };
+  const double wanted = request.thresholds.ellipse_overlap;
+  if (probe(std::max(32, samples / 2)).support < wanted) return std::nullopt;
+  if (!improve(request, e, 1.6 * reach_px)) return std::nullopt;
+  for (int step = 0; step < 2; ++step) {
+    if (probe(samples).support < std::max(kCrumpledSupport, wanted)) return std::nullopt;
+    if (!improve(request, e, 1.4 * reach_px)) return std::nullopt;
+  }
+  const int fine = std::min(256, 2 * samples);
+  const PerimeterEvidence found = probe(fine);
+  if (found.support < std::max(kCrumpledSupport, wanted)) return std::nullopt;
+  if (probe_.hits().size() < kLeastHits || !is_long_enough(found, request.thresholds)) {
+    return std::nullopt;
+  }
+  const Smoothness smooth = smoothness(fine, found);
+  VerifiedEllipse result{
+      e,
+      request.polarity,
+      found.inside_fraction,
+      found.support,
+      std::min(1.0, smooth.levels[3] / found.support),
+      found.inside_fraction * smooth.levels[1],
+      best_significance(smooth.levels, found.inside_px, request.edge_density, 0.5 * reach_px, 0.6),
+      true,
+      false};
+  const double deviation = smooth.deviation_px / radius_of(e);
+  const auto has = [&](double inside, double level, double most, double direction, double score) {
+    return found.inside_fraction >= inside && smooth.levels[1] >= level && deviation < most &&
+           smooth.direction_error < direction_limit(direction, 0.3, found.signal_to_noise) &&
+           result.score >= score;
+  };
+  const bool is_strong = has(0.45, 0.65, 0.014, 0.045, 80.0) && result.covered >= 0.4 &&
+                         e.semi_minor >= 0.33 * e.semi_major;
+  result.needs_partner = !is_strong;
+  if (is_strong || has(0.2, 0.45, 0.016, 0.055, 50.0)) return result;
+  return std::nullopt;
+}
+
+bool EllipseVerifier::is_promising(const GradientMap& map,
+                                   const Ellipse& guess,
+                                   Polarity polarity,
+                                   const Thresholds& thresholds) {
+  const double wanted = thresholds.ellipse_overlap;
+  const int samples = std::max(32, samples_for(guess) / 2);
+  if (probe_.probe(map, guess, polarity, samples, 2).support >= kFirstSupport * wanted) return true;
+  const double reach_px = crumple_px(guess);
+  if (reach_px < 2.2) return false;
+  const int tolerance_px = static_cast<int>(reach_px + 0.5);
+  return probe_.probe(map, guess, polarity, 32, tolerance_px).support >= wanted;
+}
+
+std::optional<VerifiedEllipse> EllipseVerifier::verify(const GradientMap& map,
+                                                       double edge_density,
+                                                       const Ellipse& guess,
+                                                       Polarity polarity,
+                                                       const Thresholds& thresholds) {
+  const Request request{map, edge_density, guess, polarity, thresholds};
+  if (auto exact = verify_exact(request)) return exact;
+  return verify_crumpled(request);
+}
+
+}  // namespace ellipse

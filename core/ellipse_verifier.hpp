@@ -1,0 +1,74 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <optional>
+#include <vector>
+
+#include "core/ellipse.hpp"
+#include "core/gradient.hpp"
+#include "core/perimeter.hpp"
+#include "core/thresholds.hpp"
+
+namespace ellipse {
+
+/// An ellipse that its edges speak for.
+struct VerifiedEllipse {
+  Ellipse ellipse;
+  Polarity polarity = Polarity::kDarkInside;
+  double inside_fraction = 0.0;  ///< Of the perimeter inside the picture.
+  double support = 0.0;          ///< Share of the inside perimeter that meets edges.
+  double on_ellipse = 0.0;       ///< Share of these edges that lie on the ellipse.
+  double covered = 0.0;          ///< Share of the whole perimeter that fits well.
+  double score = 0.0;            ///< Significance: -ln of the odds that chance made it [nats].
+  bool is_crumpled = false;      ///< Its edge leaves the ellipse, smoothly.
+  bool needs_partner = false;    ///< Too little by itself: counts beside a concentric one only.
+};
+
+/// Fits a guessed ellipse to the edges around it, and decides whether they make one.
+///
+/// The evidence is weighed a contrario [Desolneux2000]: by how unlikely it is that edges which lie
+/// about by chance agree so well in place and direction. An ellipse that fails as an exact one has
+/// a second chance as a crumpled one: then its edge may leave it, but along a smooth curve whose
+/// slope is the edge's own.
+class EllipseVerifier {
+ public:
+  /// A quick look: whether enough edges are near the guess.
+  [[nodiscard]] bool is_promising(const GradientMap& map,
+                                  const Ellipse& guess,
+                                  Polarity polarity,
+                                  const Thresholds& thresholds);
+
+  /// @param edge_density  Share of the picture's pixels that are chained crests.
+  /// @param thresholds    Axes, ratio, overlaps and contour size.
+  [[nodiscard]] std::optional<VerifiedEllipse> verify(const GradientMap& map,
+                                                      double edge_density,
+                                                      const Ellipse& guess,
+                                                      Polarity polarity,
+                                                      const Thresholds& thresholds);
+
+  /// Whether axes, ratio and place are such that it is worth a look.
+  [[nodiscard]] static bool is_reasonable(const Ellipse& e,
+                                          const GradientMap& map,
+                                          const Thresholds& thresholds);
+
+  /// How far the edge of a crumpled pad of this size may leave its ellipse [px].
+  [[nodiscard]] static double crumple_px(const Ellipse& e);
+
+ private:
+  struct Request;
+
+  [[nodiscard]] std::optional<VerifiedEllipse> verify_exact(const Request& request);
+  [[nodiscard]] std::optional<VerifiedEllipse> verify_crumpled(const Request& request);
+  [[nodiscard]] bool approach(const Request& request, Ellipse& e);
+  [[nodiscard]] bool improve(const Request& request, Ellipse& e, double reach_px) const;
+  [[nodiscard]] double median_residual();
+  [[nodiscard]] double median_direction_error();
+  struct Smoothness;
+  [[nodiscard]] Smoothness smoothness(int samples, const PerimeterEvidence& evidence);
+
+  PerimeterProbe probe_;
+  std::vector<double> values_;
+  std::vector<double> slopes_;
+  std::vector<int> hit_of_sample_;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,96 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/image_view.hpp"
+
+namespace ellipse {
+
+/// The gradient at a pixel, from dark to bright. A slope of one grey level per pixel is
+/// kGradientGain.
+struct Gradient {
+  std::int16_t x = 0;
+  std::int16_t y = 0;
+};
+
+/// What the 5 x 5 kernels make of a slope of one grey level per pixel.
+inline constexpr double kGradientGain = 128.0;
+
+/// Pixels where the gradient has its crest: one byte a pixel, 0 where there is none. The low four
+/// bits tell the direction of the edge, which is the gradient turned by 90 degrees from x to y.
+namespace crest {
+inline constexpr std::uint8_t kDirection = 0x0f;
+inline constexpr std::uint8_t kFree = 0x10;     ///< In no chain yet.
+inline constexpr std::uint8_t kVisited = 0x20;  ///< A walk has been here.
+inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
+
+/// The edge's direction in eighths of a turn from +x to +y.
+[[nodiscard]] constexpr int octant_of(std::uint8_t code) {
+  constexpr std::uint8_t kOctants[16] = {0, 4, 0, 4, 2, 2, 6, 6, 1, 3, 7, 5, 1, 3, 7, 5};
+  return kOctants[code & kDirection];
+}
+}  // namespace crest
+
+/// Which instructions the hot loops use. All give the same integers.
+enum class Simd { kBaseline, kAvx2 };
+
+/// The best that this processor has.
+[[nodiscard]] Simd best_simd();
+
+/// The gradient of a picture and its crests, in one pass over the rows.
+///
+/// Exact integer arithmetic: separable 5 x 5 kernels, smoothing [1 4 6 4 1] one way and difference
+/// [-1 -2 0 2 1] the other [FaridSimoncelli2004]. A crest is a pixel above the threshold whose
+/// magnitude is not below its two neighbours' along the axis closest to the gradient [Canny1986].
+class GradientMap {
+ public:
+  explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}
+
+  /// @param threshold  Least gradient of a crest [grey levels per pixel]; 0 = by the noise.
+  /// @param floor      Least threshold by the noise [grey levels per pixel].
+  /// Allocates only when the picture grows. O(pixels).
+  void compute(const ImageView& luma, double threshold, double floor);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// From row to row, of both maps [pixels].
+  [[nodiscard]] int stride() const { return stride_; }
+
+  [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }
+  [[nodiscard]] const std::uint8_t* crests() const { return crests_.data(); }
+  [[nodiscard]] std::uint8_t* crests() { return crests_.data(); }
+
+  /// Standard deviation of the gradient's noise in one direction [units of Gradient].
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] double threshold() const { return threshold_; }
+
+  /// No crest is nearer to the border: the kernels reach beyond it [pixels].
+  static constexpr int kBorder = 3;
+
+ private:
+  static constexpr int kRows = 3;  // of magnitudes that a crest is judged by
+
+  void resize(const ImageView& luma);
+  void compute_row(const ImageView& luma, int y);
+  void measure_noise(const ImageView& luma, double floor);
+  [[nodiscard]] std::int16_t* row_of(std::vector<std::int16_t>& rows, int y);
+
+  Simd simd_;
+  int width_ = 0;
+  int height_ = 0;
+  int stride_ = 0;
+  double noise_ = 0.0;
+  double threshold_ = 0.0;
+  std::vector<Gradient> gradients_;
+  std::vector<std::uint8_t> crests_;
+  std::vector<std::int16_t> smooth_;      // one row, smoothed down the columns
+  std::vector<std::int16_t> difference_;  // one row, differences down the columns
+  std::vector<std::int16_t> x_;           // kRows rows each
+  std::vector<std::int16_t> y_;
+  std::vector<std::int16_t> magnitude_;
+  std::vector<int> histogram_;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,57 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/arcs.hpp"
+#include "core/ellipse.hpp"
+#include "core/gradient.hpp"
+
+namespace ellipse {
+
+/// Where an edge was met, searching from the perimeter along its normal.
+struct EdgeHit {
+  Eigen::Vector2d point;             ///< On the edge [px], finer than pixels.
+  Eigen::Vector2d foot;              ///< On the perimeter [px].
+  Eigen::Vector2d normal;            ///< Of the perimeter there, outwards.
+  double residual_px = 0.0;          ///< Of the point along the normal, above 0 outside.
+  double direction_error_rad = 0.0;  ///< From the normal to the gradient.
+  double weight = 0.0;               ///< Length of the perimeter that it stands for [px].
+  int sample = 0;                    ///< Its number around the perimeter.
+};
+
+/// Tolerances of distance [px] and direction [rad], from strict to lax.
+inline constexpr std::array<double, 4> kDistanceLevels = {0.35, 0.7, 1.0, 1.5};
+inline constexpr std::array<double, 4> kDirectionLevels = {0.12, 0.2, 0.3, 0.45};
+
+/// What the edges say of an ellipse.
+struct PerimeterEvidence {
+  double inside_px = 0.0;          ///< Length of the perimeter inside the picture.
+  double inside_fraction = 0.0;    ///< Of the perimeter.
+  double support = 0.0;            ///< Share of the inside length that meets edges.
+  std::array<double, 4> levels{};  ///< The same within each of the tolerances.
+  double signal_to_noise = 0.0;    ///< Mean gradient over the noise's.
+  double sharpness = 0.0;          ///< Mean of CrestPoint::sharpness.
+};
+
+/// Walks around ellipses and looks for chained edges along the normals.
+class PerimeterProbe {
+ public:
+  /// @param samples       Around the whole perimeter: 32, 64, 128 or 256.
+  /// @param tolerance_px  How far from the perimeter an edge may lie.
+  /// An edge counts where its gradient is within 30 degrees of the normal, and of the right sign.
+  [[nodiscard]] PerimeterEvidence probe(
+      const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px);
+
+  /// Of the last call.
+  [[nodiscard]] std::span<const EdgeHit> hits() const { return hits_; }
+
+  static constexpr int kMostSamples = 256;
+
+ private:
+  std::vector<EdgeHit> hits_;
+};
+
+}  // namespace ellipse

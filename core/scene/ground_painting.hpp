@@ -1,0 +1,31 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+
+namespace ellipse {
+
+/// What lies around the pad. None of them holds an ellipse; most hold what resembles one.
+enum class GroundKind {
+  kPlain,
+  kAsphalt,  ///< Speckled, with cracks.
+  kGrass,    ///< Blades in all directions.
+  kRoad,     ///< Asphalt with painted lines and arcs.
+  kTiles,    ///< Square tiles with dark joints.
+  kSquares,  ///< A clutter of squares.
+  kFlowers,  ///< A clutter of flowers.
+  kRounded,  ///< A clutter of rounded rectangles.
+  kClutter,  ///< All of these clutters together, and arcs.
+  kPicture,  ///< A picture of one's own.
+};
+
+/// Width and height of what draw_ground() gives [texels].
+inline constexpr int kGroundTileSize = 1024;
+
+/// A tile of a ground whose borders meet: grey levels relative to the ground's mean, as floats.
+[[nodiscard]] cv::Mat draw_ground(GroundKind kind, std::uint64_t seed);
+
+/// A smaller one of fine grain.
+[[nodiscard]] cv::Mat draw_ground_grain(std::uint64_t seed);
+
+}  // namespace ellipse
