@@ -17,6 +17,13 @@ packages=(
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
+case "${1:-}" in
+  "" | --without-tests) ;;
+  *)
+    echo "usage: setup.sh [--without-tests]" >&2
+    exit 2
+    ;;
+esac
 if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev

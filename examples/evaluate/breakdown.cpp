@@ -24,9 +24,11 @@ std::vector<std::string> names_of(const std::vector<double>& limits, double unit
   return names;
 }
 
-std::size_t range_of(double value, const std::vector<double>& limits) {
+// nullopt below the first limit.
+std::optional<std::size_t> range_of(double value, const std::vector<double>& limits) {
   const auto above = std::upper_bound(limits.begin(), limits.end(), value);
-  return above == limits.begin() ? 0 : static_cast<std::size_t>(above - limits.begin()) - 1;
+  if (above == limits.begin()) return std::nullopt;
+  return static_cast<std::size_t>(above - limits.begin()) - 1;
 }
 
 struct Axis {
@@ -109,7 +111,7 @@ Panel centre_panel(const Evaluation& evaluation, const std::string& dataset) {
                         }).all_centre_errors_px();
     Curve curve{evaluation.methods[method].name, std::vector<double>(limits.size(), 0.0)};
     for (const double error : errors) {
-      curve.y[range_of(error, limits)] += 1.0 / static_cast<double>(errors.size());
+      curve.y[*range_of(error, limits)] += 1.0 / static_cast<double>(errors.size());
     }
     panel.curves.push_back(std::move(curve));
   }

@@ -3,6 +3,7 @@
 
 #include <gio/gio.h>
 #include <json-glib/json-glib.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "examples/evaluate/peer_detection.hpp"
 
@@ -59,7 +61,10 @@ ObjectPtr<GSubprocess> start(const std::string& command) {
   const WordsPtr owned_words(words);
   constexpr auto kPipes =
       static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDIN_PIPE | G_SUBPROCESS_FLAGS_STDOUT_PIPE);
-  ObjectPtr<GSubprocess> program(g_subprocess_newv(words, kPipes, &error));
+  const ObjectPtr<GSubprocessLauncher> launcher(g_subprocess_launcher_new(kPipes));
+  g_subprocess_launcher_set_child_setup(
+      launcher.get(), [](gpointer) { setpgid(0, 0); }, nullptr, nullptr);
+  ObjectPtr<GSubprocess> program(g_subprocess_launcher_spawnv(launcher.get(), words, &error));
   if (!program) fail(command, error);
   return program;
 }
@@ -73,10 +78,27 @@ void check_status(const std::string& command, GSubprocess* program) {
   if (status != 0) fail(command, "ended with status " + std::to_string(status));
 }
 
+// Ends a program that is not wanted any more.
+class Watch {
+ public:
+  Watch(GSubprocess* program, const std::function<bool()>& is_wanted)
+      : thread_([program, &is_wanted](const std::stop_token& stop) {
+          while (!stop.stop_requested() && is_wanted()) g_usleep(kPatienceUs);
+          if (!stop.stop_requested()) g_subprocess_force_exit(program);
+        }) {}
+
+ private:
+  static constexpr gulong kPatienceUs = 20'000;
+  std::jthread thread_;
+};
+
 // Writes and reads at the same time, so that neither program ever waits for the other.
-std::string output_of(const std::string& command, const std::string& input) {
+std::string output_of(const std::string& command,
+                      const std::string& input,
+                      const std::function<bool()>& is_wanted) {
   const IgnoredPipeSignal no_signal;
   const ObjectPtr<GSubprocess> program = start(command);
+  const Watch watch(program.get(), is_wanted);
   const BytesPtr in(g_bytes_new(input.data(), input.size()));
   GBytes* out = nullptr;
   GError* error = nullptr;
@@ -178,7 +200,8 @@ std::map<std::string, PeerAnswer> answers_in(const std::string& output,
 }  // namespace
 
 std::map<std::string, PeerAnswer> run_command_peer(const std::string& command,
-                                                   std::span<const std::filesystem::path> images) {
+                                                   std::span<const std::filesystem::path> images,
+                                                   const std::function<bool()>& is_wanted) {
   std::set<std::string> asked;
   std::string input;
   for (const std::filesystem::path& image : images) {
@@ -188,7 +211,7 @@ std::map<std::string, PeerAnswer> run_command_peer(const std::string& command,
     if (asked.insert(image.string()).second) input += image.string() + '\n';
   }
   try {
-    return answers_in(output_of(command, input), asked);
+    return answers_in(output_of(command, input, is_wanted), asked);
   } catch (const std::invalid_argument& error) {
     fail(command, error.what());
   }

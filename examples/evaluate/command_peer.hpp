@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -30,7 +31,13 @@ struct PeerAnswer {
 /// Throws std::runtime_error that names the command, where it cannot be started, ends with another
 /// status than 0 or by a signal, or a line is no such answer, names an image that was not asked for
 /// or names one twice. Waits until the program ends. Not thread-safe: SIGPIPE is ignored meanwhile.
+/// The program is in a process group of its own: a Ctrl-C is for this one.
+///
+/// @param is_wanted  Asked from another thread ten times a second; false ends the program, and
+/// throws.
 [[nodiscard]] std::map<std::string, PeerAnswer> run_command_peer(
-    const std::string& command, std::span<const std::filesystem::path> images);
+    const std::string& command,
+    std::span<const std::filesystem::path> images,
+    const std::function<bool()>& is_wanted = [] { return true; });
 
 }  // namespace evaluate

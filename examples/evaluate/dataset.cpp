@@ -27,7 +27,12 @@ void check_axes(const Row& row, const ellipse::Ellipse& e) {
 
 Truth truth_of_csv(const Row& row) {
   Truth truth;
-  if (row.text("cx").empty()) return truth;
+  int empty = 0;
+  for (const char* column : {"cx", "cy", "semi_major", "semi_minor", "angle_rad"}) {
+    empty += row.text(column).empty() ? 1 : 0;
+  }
+  if (empty == 5) return truth;
+  if (empty > 0) row.fail("has a part of an ellipse only");
   truth.target = ellipse::Ellipse{row.number("cx"),
                                   row.number("cy"),
                                   row.number("semi_major"),
@@ -35,6 +40,8 @@ Truth truth_of_csv(const Row& row) {
                                   row.number("angle_rad")};
   check_axes(row, *truth.target);
   truth.visible_fraction = row.optional_number("visible_fraction");
+  const double visible = truth.visible_fraction.value_or(1.0);
+  if (visible < 0.0 || visible > 1.0) row.fail("visible_fraction must be from 0 to 1");
   return truth;
 }
 
@@ -73,7 +80,11 @@ bool natural_less(const std::string& a, const std::string& b) {
   return parts(a) < parts(b);
 }
 
-using FramesBySequence = std::map<std::string, std::vector<Frame>>;
+// By the names of data set and sequence.
+using FramesBySequence = std::map<std::pair<std::string, std::string>, std::vector<Frame>>;
+
+constexpr std::int64_t kFrameNs = 33'333'333;
+constexpr std::int64_t kNoTime = -1;
 
 class FilePictures : public PictureSource {
  public:
@@ -113,17 +124,24 @@ class Reader {
  private:
   void read_csv(const fs::path& file) {
     const auto use = [&](const Row& row) {
-      const fs::path image = named(folder_ / row.text("image"));
-      const Conditions conditions{row.optional_number("noise"), row.optional_number("crumple")};
-      add(row, image, truth_of_csv(row), conditions);
+      const fs::path image = named(row, folder_ / row.text("image"));
+      Frame frame;
+      frame.image = image;
+      frame.truth = truth_of_csv(row);
+      frame.conditions = {row.optional_number("noise"), row.optional_number("crumple")};
+      frame.pts_ns = static_cast<std::int64_t>(row.optional_number("pts_ns").value_or(kNoTime));
+      add(row, std::move(frame), row.has("dataset") ? row.text("dataset") : own_name());
     };
     for_each_row(file, ',', use, [&](const std::string& problem) { lose(problem); });
   }
 
   void read_published(const fs::path& file) {
     const auto use = [&](const Row& row) {
-      const fs::path image = named(file.parent_path() / row.text("Filename"));
-      add(row, image, truth_of_published(row), {});
+      Frame frame;
+      frame.image = named(row, file.parent_path() / row.text("Filename"));
+      frame.truth = truth_of_published(row);
+      frame.pts_ns = kNoTime;
+      add(row, std::move(frame), own_name());
     };
     for_each_row(file, '\t', use, [&](const std::string& problem) { lose(problem); });
   }
@@ -133,24 +151,27 @@ class Reader {
     ++dataset_.missing_frames;
   }
 
+  [[nodiscard]] std::string own_name() const { return folder_.filename().string(); }
+
   // Also an image whose line is broken has a line.
-  fs::path named(const fs::path& image) {
-    named_.insert(image.lexically_normal());
+  fs::path named(const Row& row, const fs::path& image) {
+    const bool is_new = named_.insert(image.lexically_normal()).second;
+    if (!is_new) row.fail("image " + image.string() + " has a line before");
     return image;
   }
 
-  void add(const Row& row, const fs::path& image, const Truth& truth, const Conditions& with) {
-    if (!fs::exists(image)) row.fail("image " + image.string() + " is not there");
-    const std::string sequence = sequence_of(image);
-    Frame frame{sequence + "/" + image.filename().string(), image, 0, truth, with};
-    frames_[sequence].push_back(std::move(frame));
+  void add(const Row& row, Frame frame, const std::string& dataset) {
+    if (!fs::exists(frame.image)) row.fail("image " + frame.image.string() + " is not there");
+    const std::string sequence = sequence_of(frame.image);
+    frame.name = sequence + "/" + frame.image.filename().string();
+    frames_[{dataset, sequence}].push_back(std::move(frame));
   }
 
   // A sequence is a folder of pictures, named by its path inside the data set.
   [[nodiscard]] std::string sequence_of(const fs::path& image) const {
     const fs::path folder = image.parent_path().lexically_normal();
     const std::string inside = folder.lexically_relative(folder_).generic_string();
-    if (inside == ".") return folder_.filename().string();
+    if (inside == ".") return own_name();
     return inside.starts_with("images/") ? inside.substr(7) : inside;
   }
 
@@ -160,9 +181,9 @@ class Reader {
     for (const fs::path& folder : folders) {
       if (!fs::is_directory(folder)) continue;
       for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const std::string extension = entry.path().extension().string();
-        const bool is_picture = extension == ".jpg" || extension == ".jpeg" || extension == ".png";
-        if (!is_picture || named_.contains(entry.path().lexically_normal())) continue;
+        if (!PictureReader::is_picture(entry.path()) ||
+            named_.contains(entry.path().lexically_normal()))
+          continue;
         dataset_.problems.push_back(entry.path().string() + ": has no line in the table");
       }
     }
@@ -170,12 +191,15 @@ class Reader {
 
   void collect() {
     const auto pictures = std::make_shared<FilePictures>();
-    for (auto& [name, list] : frames_) {
+    for (auto& [names, list] : frames_) {
       std::stable_sort(list.begin(), list.end(), [](const Frame& a, const Frame& b) {
         return natural_less(a.name, b.name);
       });
-      for (std::size_t i = 0; i < list.size(); ++i) list[i].number = i;
-      dataset_.sequences.push_back({folder_.filename().string(), name, std::move(list), pictures});
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        list[i].number = i;
+        if (list[i].pts_ns == kNoTime) list[i].pts_ns = static_cast<std::int64_t>(i) * kFrameNs;
+      }
+      dataset_.sequences.push_back({names.first, names.second, std::move(list), pictures});
     }
   }
 
@@ -185,7 +209,10 @@ class Reader {
   Dataset dataset_;
 };
 
-void write_row(std::ostream& out, const fs::path& image, const Frame& frame) {
+void write_row(std::ostream& out,
+               const fs::path& image,
+               const Frame& frame,
+               const std::string& dataset) {
   const auto number = [&](const std::optional<double>& value) {
     out << ',';
     if (value) out << *value;
@@ -201,9 +228,20 @@ void write_row(std::ostream& out, const fs::path& image, const Frame& frame) {
     out << ",,,,,";
   }
   number(frame.truth.visible_fraction);
+  out << ',' << frame.pts_ns;
   number(frame.conditions.noise);
   number(frame.conditions.crumple);
-  out << '\n';
+  out << ',' << dataset << '\n';
+}
+
+void check_written(std::ofstream& out, const fs::path& file) {
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": " + error.message());
 }
 
 }  // namespace
@@ -218,23 +256,24 @@ Dataset read_dataset(const fs::path& folder) {
 void write_dataset(const std::vector<Sequence>& sequences,
                    const fs::path& folder,
                    const std::function<bool(const Frame&)>& advance) {
-  fs::create_directories(folder);
+  make_folder(folder);
   const fs::path table = folder / "gt.csv";
   std::ofstream out(table);
   out.precision(17);
-  out << "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction,noise,crumple\n";
+  out << "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction,pts_ns,noise,crumple,"
+         "dataset\n";
   for (const Sequence& sequence : sequences) {
-    fs::create_directories(folder / "images" / sequence.name);
+    make_folder(folder / "images" / sequence.name);
     for (const Frame& frame : sequence.frames) {
       const fs::path image = fs::path("images") / frame.name;
       if (!cv::imwrite((folder / image).string(), sequence.pictures->picture(frame))) {
         throw std::runtime_error((folder / image).string() + ": cannot be written");
       }
-      write_row(out, image, frame);
-      if (!advance(frame)) break;
+      write_row(out, image, frame, sequence.dataset);
+      if (!advance(frame)) return check_written(out, table);
     }
   }
-  if (!out.flush()) throw std::runtime_error(table.string() + ": cannot be written");
+  check_written(out, table);
 }
 
 }  // namespace evaluate

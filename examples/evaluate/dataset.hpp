@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -23,7 +24,7 @@ struct Truth {
   bool is_labelled = true;
 };
 
-/// What made a frame hard, where its data set says so.
+/// What is varied among frames that are otherwise the same, where the data set says so.
 struct Conditions {
   std::optional<double> noise;    ///< Standard deviation [grey levels].
   std::optional<double> crumple;  ///< Departure of the edge from its ellipse, of the radius.
@@ -33,6 +34,7 @@ struct Frame {
   std::string name;             ///< As "sequence/file", for people and for other programs.
   std::filesystem::path image;  ///< To be read; empty where the frame is rendered.
   std::size_t number = 0;       ///< In its sequence.
+  std::int64_t pts_ns = 0;      ///< Its time.
   Truth truth;
   Conditions conditions;
 };
@@ -63,16 +65,17 @@ struct Dataset {
 };
 
 /// Reads a data set from a folder with `gt.csv` (columns image, cx, cy, semi_major, semi_minor,
-/// angle_rad and, if there, visible_fraction, noise, crumple; images named relative to the folder),
-/// or with the `ground_truth.txt` of the published AirLab data set, in the folder itself or in
-/// folders below.
+/// angle_rad and, if there, visible_fraction, pts_ns, noise, crumple, dataset; images named
+/// relative to the folder), or with the `ground_truth.txt` of the published AirLab data set, in the
+/// folder itself or in folders below.
 ///
-/// A broken line, a line whose image is not there, and an image without a line are problems; the
-/// other frames are there. Throws std::runtime_error that names the file, where there is no table,
-/// or none that can be read. gst_init() must have been called.
+/// Frames without a time are 1/30 s apart. A broken line, a line whose image is not there, and an
+/// image without a line are problems; the other frames are there. Throws std::runtime_error that
+/// names the file, where there is no table, or none that can be read. gst_init() must have been
+/// called.
 [[nodiscard]] Dataset read_dataset(const std::filesystem::path& folder);
 
-/// Writes pictures and `gt.csv`, from which read_dataset() gives the same frames.
+/// Writes rendered pictures and `gt.csv`, from which read_dataset() gives the same frames.
 /// @param advance  Called after each frame; false ends it early.
 /// Throws std::runtime_error that names the file, where it cannot be written.
 void write_dataset(const std::vector<Sequence>& sequences,

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <iomanip>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <ostream>
 #include <stdexcept>
+
+#include "core/scene/random.hpp"
 
 namespace evaluate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr std::int64_t kFrameNs = 33'333'333;  // data sets of single pictures carry no time
 
 // cv::Canny and cv::findContours alone, on a picture that was smoothed before: what any method on
 // contours pays before it looks for an ellipse.
@@ -51,9 +52,12 @@ class Run {
   Run(const std::vector<std::unique_ptr<Method>>& methods, Rule rule)
       : methods_(methods), rule_(rule) {
     for (const auto& method : methods) evaluation_.methods.push_back({method->name(), {}});
+    answers_.resize(methods.size());
+    order_.resize(methods.size() + 1);  // the last one is the reference
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
   }
 
-  void see(const Sequence& sequence, const Frame& frame, std::int64_t pts_ns) {
+  void see(const Sequence& sequence, const Frame& frame) {
     cv::Mat picture;
     try {
       picture = sequence.pictures->picture(frame);
@@ -63,12 +67,18 @@ class Run {
       return;
     }
     const SeenFrame seen{&sequence, &frame, {picture.cols, picture.rows}};
-    const double reference_ms = reference_.run_ms(picture);
-    // Each is first in its turn, as the first one finds the caches cold.
-    for (std::size_t turn = 0; turn < methods_.size(); ++turn) {
-      const std::size_t i = (turn + evaluation_.frames.size()) % methods_.size();
-      const Answer answer = methods_[i]->find(frame, picture, pts_ns);
-      evaluation_.methods[i].results.push_back(judged(answer, seen, reference_ms, rule_));
+    // In another order each time, because each leaves the caches to the next.
+    shuffle();
+    double reference_ms = 0.0;
+    for (const std::size_t i : order_) {
+      if (i == methods_.size()) {
+        reference_ms = reference_.run_ms(picture);
+      } else {
+        answers_[i] = methods_[i]->find(frame, picture, frame.pts_ns);
+      }
+    }
+    for (std::size_t i = 0; i < methods_.size(); ++i) {
+      evaluation_.methods[i].results.push_back(judged(answers_[i], seen, reference_ms, rule_));
     }
     evaluation_.frames.push_back(seen);
   }
@@ -76,10 +86,20 @@ class Run {
   [[nodiscard]] Evaluation& evaluation() { return evaluation_; }
 
  private:
+  void shuffle() {
+    for (std::size_t i = order_.size(); i > 1; --i) {
+      std::swap(order_[i - 1],
+                order_[static_cast<std::size_t>(random_.below(static_cast<int>(i)))]);
+    }
+  }
+
   const std::vector<std::unique_ptr<Method>>& methods_;
   Rule rule_;
   Reference reference_;
   Evaluation evaluation_;
+  ellipse::Random random_{1};
+  std::vector<std::size_t> order_;
+  std::vector<Answer> answers_;
 };
 
 void add_new(std::vector<std::string>& names, const std::string& name) {
@@ -97,10 +117,8 @@ Evaluation evaluate(const std::vector<Sequence>& sequences,
   for (const Sequence& sequence : sequences) evaluation.planned_frames += sequence.frames.size();
   for (const Sequence& sequence : sequences) {
     for (const auto& method : methods) method->start();
-    std::int64_t pts_ns = 0;
     for (const Frame& frame : sequence.frames) {
-      run.see(sequence, frame, pts_ns);
-      pts_ns += kFrameNs;
+      run.see(sequence, frame);
       evaluation.is_interrupted = !advance(frame);
       if (evaluation.is_interrupted) return std::move(evaluation);
     }

@@ -35,8 +35,8 @@ struct Evaluation {
   bool is_interrupted = false;
 };
 
-/// Runs all methods on each frame in turn, so that all meet the same machine in the same mood, and
-/// cv::Canny + cv::findContours beside them.
+/// Runs all methods on each frame, in random order, so that all meet the same machine in the same
+/// mood, and cv::Canny + cv::findContours among them.
 ///
 /// @param sequences  Borrowed by the result.
 /// @param advance    Called after each frame; false ends it early.

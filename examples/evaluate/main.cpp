@@ -21,32 +21,43 @@ void on_interrupt(int /*signal*/) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("DATASET",
-                 options.datasets,
-                 "Folders with gt.csv or ground_truth.txt; none = the rendered twin");
-  app.add_option("--methods", options.methods, "Methods, separated by commas; none = all of them")
-      ->delimiter(',');
-  app.add_option("--peer",
-                 options.peers,
-                 "NAME=COMMAND: a program that reads image paths and answers JSON lines")
-      ->allow_extra_args(false);
+  CLI::Option* datasets =
+      app.add_option("DATASET",
+                     options.datasets,
+                     "Folders with gt.csv or ground_truth.txt; none = the rendered twin");
   app.add_option("--set", options.settings, "property=value, as of the element ellipsetrack")
       ->allow_extra_args(false);
   app.add_option("--rule", options.rule, "When an answer is right")
       ->capture_default_str()
       ->check(CLI::IsMember({"iou", "published"}));
-  app.add_option("--sweep",
-                 options.sweeps,
-                 "PROPERTY=FROM:TO:STEP or PROPERTY=VALUE,...: how much depends on it")
-      ->allow_extra_args(false);
+  CLI::Option* sweep =
+      app.add_option("--sweep",
+                     options.sweeps,
+                     "PROPERTY=FROM:TO:STEP or PROPERTY=VALUE,...: how much depends on it")
+          ->allow_extra_args(false);
   app.add_option("--sweep-dir", options.sweep_folder, "Where sweeps leave CSV, SVG and PNG")
-      ->capture_default_str();
-  app.add_option("--report", options.report_folder, "Write a page with everything in it");
-  app.add_option(
-      "--frames", options.frames_file, "Write one JSON line a frame, of the first method");
-  app.add_option("--json", options.json_file, "Write all measures as JSON");
-  app.add_option("--make-dataset", options.dataset_folder, "Write the frames and gt.csv, no more");
-  app.add_option("--ground", options.ground_file, "A picture to lie under the twin's scenes");
+      ->capture_default_str()
+      ->needs(sweep);
+  app.add_option("--ground", options.ground_file, "A picture to lie under the twin's scenes")
+      ->excludes(datasets);
+  CLI::Option* make =
+      app.add_option(
+             "--make-dataset", options.dataset_folder, "Write the twin: pictures and gt.csv")
+          ->excludes(datasets)
+          ->excludes(sweep);
+  for (CLI::Option* option :
+       {app.add_option("--methods", options.methods, "Separated by commas; none = all of them")
+            ->delimiter(','),
+        app.add_option("--peer",
+                       options.peers,
+                       "NAME=COMMAND: a program that reads image paths and answers JSON lines")
+            ->allow_extra_args(false),
+        app.add_option("--report", options.report_folder, "Write a page with everything in it"),
+        app.add_option(
+            "--frames", options.frames_file, "Write one JSON line a frame, of the first method"),
+        app.add_option("--json", options.json_file, "Write all measures as JSON")}) {
+    option->excludes(sweep)->excludes(make);
+  }
 }
 
 }  // namespace

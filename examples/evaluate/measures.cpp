@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace evaluate {
 namespace {
@@ -65,7 +66,9 @@ Outcome judge(const std::optional<ellipse::Ellipse>& answer,
 }
 
 void Measures::add(const Result& result) {
-  times_ms_[static_cast<std::size_t>(result.outcome)].push_back(result.processing_ms);
+  const auto outcome = static_cast<std::size_t>(result.outcome);
+  ++counts_[outcome];
+  if (std::isfinite(result.processing_ms)) times_ms_[outcome].push_back(result.processing_ms);
   reference_ms_.push_back(result.reference_ms);
   if (result.outcome != Outcome::kTruePositive) return;
   const int log2_scale = std::bit_width(static_cast<unsigned>(result.scale)) - 1;
@@ -73,20 +76,16 @@ void Measures::add(const Result& result) {
   centre_errors_px_[static_cast<std::size_t>(slot)].push_back(result.centre_error_px);
 }
 
-void Measures::add(const Measures& other) {
-  for (std::size_t i = 0; i < times_ms_.size(); ++i) append(times_ms_[i], other.times_ms_[i]);
-  for (std::size_t i = 0; i < centre_errors_px_.size(); ++i) {
-    append(centre_errors_px_[i], other.centre_errors_px_[i]);
-  }
-  append(reference_ms_, other.reference_ms_);
-}
-
 int Measures::count(Outcome outcome) const {
-  return static_cast<int>(times_ms(outcome).size());
+  return counts_[static_cast<std::size_t>(outcome)];
 }
 
 int Measures::judged() const {
-  return static_cast<int>(all_times_ms().size()) - count(Outcome::kNotJudged);
+  return frames() - count(Outcome::kNotJudged);
+}
+
+int Measures::frames() const {
+  return std::accumulate(counts_.begin(), counts_.end(), 0);
 }
 
 double Measures::accuracy() const {

@@ -62,10 +62,10 @@ class Measures {
   static constexpr int kScales = 8;  ///< 1, 2, 4, ... 128
 
   void add(const Result& result);
-  void add(const Measures& other);
 
   [[nodiscard]] int count(Outcome outcome) const;
   [[nodiscard]] int judged() const;
+  [[nodiscard]] int frames() const;  ///< Judged or not.
 
   /// [Keipour2021] III.A; NaN where nothing was counted.
   [[nodiscard]] double accuracy() const;
@@ -83,7 +83,8 @@ class Measures {
   [[nodiscard]] std::vector<double> all_centre_errors_px() const;
 
  private:
-  std::array<std::vector<double>, kOutcomes> times_ms_;
+  std::array<int, kOutcomes> counts_{};
+  std::array<std::vector<double>, kOutcomes> times_ms_;  // of the frames that were answered
   std::array<std::vector<double>, kScales> centre_errors_px_;
   std::vector<double> reference_ms_;
 };

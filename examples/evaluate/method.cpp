@@ -2,11 +2,13 @@
 #include "examples/evaluate/method.hpp"
 
 #include <chrono>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "core/target_selection.hpp"
 #include "examples/evaluate/command_peer.hpp"
+#include "examples/evaluate/peer_detection.hpp"
 #include "examples/evaluate/peers.hpp"
 
 namespace evaluate {
@@ -52,10 +54,15 @@ class CommandMethod : public Method {
 
   Answer find(const Frame& frame, const cv::Mat& /*picture*/, std::int64_t /*pts_ns*/) override {
     const auto found = answers_.find(frame.image.string());
-    if (found == answers_.end()) return {};
     Answer answer;
+    answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
+    if (found == answers_.end()) return answer;
     answer.processing_ms = found->second.ms;
-    if (const auto target = ellipse::select_target(found->second.detections)) {
+    std::vector<ellipse::Detection> detections = found->second.detections;
+    std::erase_if(detections, [](const ellipse::Detection& detection) {
+      return !is_within(detection.ellipse, ellipse::Thresholds());
+    });
+    if (const auto target = ellipse::select_target(detections)) {
       answer.target = target->ellipse;
     }
     return answer;
@@ -129,12 +136,13 @@ PeerCommand parse_peer(const std::string& text) {
 
 std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
                                             std::span<const Sequence> sequences,
-                                            std::vector<std::string>& problems) {
+                                            std::vector<std::string>& problems,
+                                            const std::function<bool()>& is_wanted) {
   std::vector<std::filesystem::path> images;
   for (const Sequence& sequence : sequences) {
     for (const Frame& frame : sequence.frames) images.push_back(frame.image);
   }
-  auto answers = run_command_peer(peer.command, images);
+  auto answers = run_command_peer(peer.command, images, is_wanted);
   if (answers.size() < images.size()) {
     problems.push_back("peer " + peer.name + ": no answer for " +
                        std::to_string(images.size() - answers.size()) + " of " +

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -17,8 +18,8 @@ namespace evaluate {
 /// What a method says of one frame.
 struct Answer {
   std::optional<ellipse::Ellipse> target;
-  int scale = 1;  ///< Frame scale at which it was found.
-  double processing_ms = 0.0;
+  int scale = 1;               ///< Frame scale at which it was found.
+  double processing_ms = 0.0;  ///< NaN where nothing was answered.
 };
 
 /// A way to find the target in a sequence.
@@ -62,9 +63,11 @@ struct PeerCommand {
 
 /// A method whose answers are all asked for at once.
 /// @param problems  What is missing from them is added here.
+/// @param is_wanted  Asked from another thread from time to time; false ends the program.
 /// Throws std::runtime_error that names the command.
 [[nodiscard]] std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
                                                           std::span<const Sequence> sequences,
-                                                          std::vector<std::string>& problems);
+                                                          std::vector<std::string>& problems,
+                                                          const std::function<bool()>& is_wanted);
 
 }  // namespace evaluate

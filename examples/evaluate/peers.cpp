@@ -126,6 +126,7 @@ class EdgeDrawingPeer final : public Peer {
 class HoughCirclesPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     cv::GaussianBlur(picture, smooth_, {7, 7}, 1.5);
+    found_.clear();  // OpenCV 4.6 leaves it as it is where it finds nothing
     cv::HoughCircles(smooth_,
                      found_,
                      cv::HOUGH_GRADIENT_ALT,

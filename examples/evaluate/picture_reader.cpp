@@ -4,9 +4,11 @@
 #include <gst/app/app.h>
 #include <gst/video/video.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace evaluate {
 namespace {
@@ -17,16 +19,26 @@ constexpr GstClockTime kPatience = 3 * GST_SECOND;
   throw std::runtime_error(file.string() + ": is no picture that can be read");
 }
 
-bool is_jpeg(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".jpg" || extension == ".jpeg" || extension == ".JPG";
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(g_ascii_tolower(c));
+  return extension;
 }
 
-// The marker SOI, without which the decoder would wait for more.
-bool starts_as_jpeg(GBytes* bytes) {
+bool is_jpeg(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+// With the markers SOI and EOI: without the first the decoder would wait for more, without the
+// second it would make up what is missing.
+bool is_whole_jpeg(GBytes* bytes) {
+  constexpr std::string_view kEnd = "\xff\xd9";
   gsize size = 0;
-  const auto* data = static_cast<const guint8*>(g_bytes_get_data(bytes, &size));
-  return size > 2 && data[0] == 0xff && data[1] == 0xd8;
+  const auto* data = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+  const std::string_view text(data, size);
+  return text.starts_with("\xff\xd8") &&
+         text.substr(size - std::min<gsize>(size, 4096)).find(kEnd) != std::string_view::npos;
 }
 
 cv::Mat copy_of(GstSample* sample) {
@@ -73,7 +85,7 @@ class PictureReader::JpegPipeline {
 
   /// An empty picture where the bytes are none.
   cv::Mat decode(GBytes* bytes) {
-    if (!starts_as_jpeg(bytes)) return {};
+    if (!is_whole_jpeg(bytes)) return {};
     GstBuffer* buffer = gst_buffer_new_wrapped_bytes(bytes);
     GST_BUFFER_PTS(buffer) = time_;
     time_ += GST_SECOND / 30;
@@ -91,6 +103,10 @@ class PictureReader::JpegPipeline {
   GstAppSink* out_ = nullptr;
   GstClockTime time_ = 0;
 };
+
+bool PictureReader::is_picture(const std::filesystem::path& file) {
+  return is_jpeg(file) || extension_of(file) == ".png";
+}
 
 PictureReader::PictureReader() = default;
 

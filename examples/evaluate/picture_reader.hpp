@@ -16,7 +16,11 @@ class PictureReader {
   PictureReader(const PictureReader&) = delete;
   PictureReader& operator=(const PictureReader&) = delete;
 
-  /// Throws std::runtime_error that names the file, where it is no picture that can be read.
+  /// Whether a file's name is that of a JPEG or PNG picture.
+  [[nodiscard]] static bool is_picture(const std::filesystem::path& file);
+
+  /// A JPEG that is cut off is none. Throws std::runtime_error that names the file, where it is no
+  /// picture that can be read.
   [[nodiscard]] cv::Mat read(const std::filesystem::path& file);
 
  private:

@@ -12,8 +12,8 @@
 namespace evaluate {
 namespace {
 
-constexpr int kPanelWidth = 520;
-constexpr int kPanelHeight = 330;
+constexpr int kPanelWidth = 560;
+constexpr int kPanelHeight = 300;
 constexpr int kColumns = 2;
 
 template <class Type>
@@ -66,8 +66,13 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t number) {
   }
   script << "plot ";
   for (std::size_t k = 0; k < panel.curves.size(); ++k) {
-    script << (k > 0 ? ", " : "") << "$data" << number << " using 1:" << k + 2
-           << " with linespoints lw 2 pt 7 ps 0.5 title " << quoted(panel.curves[k].title);
+    script << (k > 0 ? ", " : "") << "$data" << number << " using ";
+    if (panel.ranges.empty()) {
+      script << "1:" << k + 2 << " with linespoints lw 2 pt 7 ps 0.5";
+    } else {
+      script << k + 2 << " with histograms";
+    }
+    script << " title " << quoted(panel.curves[k].title);
   }
   script << '\n';
 }
@@ -77,12 +82,12 @@ std::string script_of(const std::vector<Panel>& panels, PlotFormat format) {
   script.precision(10);
   const std::size_t rows = (panels.size() + kColumns - 1) / kColumns;
   const int columns = panels.size() > 1 ? kColumns : 1;
-  script
-      << "set terminal " << (format == PlotFormat::kSvg ? "svg" : "pngcairo") << " size "
-      << columns * kPanelWidth << ',' << static_cast<int>(rows) * kPanelHeight
-      << " font \"sans,11\" noenhanced background \"white\"\n"
-      << "set datafile missing \"NaN\"\nset grid lc rgb \"#dddddd\"\nset border 3\n"
-      << "set tics nomirror\nset key below\nset bmargin 6\nset offsets graph 0.02, 0.02, 0.05, 0\n";
+  script << "set terminal " << (format == PlotFormat::kSvg ? "svg" : "pngcairo") << " size "
+         << columns * kPanelWidth << ',' << static_cast<int>(rows) * kPanelHeight
+         << " font \"sans,11\" noenhanced background \"white\"\n"
+         << "set datafile missing \"NaN\"\nset grid lc rgb \"#dddddd\"\nset border 3\n"
+         << "set tics nomirror\nset key outside right center vertical reverse Left\nset style fill "
+            "solid 0.85\nset boxwidth 0.9\nset offsets graph 0.02, 0.02, 0.05, 0\n";
   for (std::size_t i = 0; i < panels.size(); ++i) write_data(script, panels[i], i);
   script << "set multiplot layout " << rows << ',' << columns << '\n';
   for (std::size_t i = 0; i < panels.size(); ++i) write_panel(script, panels[i], i);

@@ -17,7 +17,7 @@ struct Panel {
   std::string x_label;
   std::string y_label;
   std::vector<double> x;            ///< Places, or
-  std::vector<std::string> ranges;  ///< names of ranges, side by side.
+  std::vector<std::string> ranges;  ///< names of ranges: bars side by side.
   std::vector<Curve> curves;
   bool is_share = false;  ///< From 0 to 1.
 };

@@ -58,7 +58,12 @@ ellipse::TrackerSettings settings_from(const Options& options) {
     if (equals == std::string::npos) {
       throw std::invalid_argument("--set " + assignment + ": expected property=value");
     }
-    ellipse::set_by_name(settings, assignment.substr(0, equals), assignment.substr(equals + 1));
+    const std::string name = assignment.substr(0, equals);
+    if (options.sweeps.empty() && (name == "detector" || name == "tracking")) {
+      throw std::invalid_argument("--set " + assignment +
+                                  ": --methods names detector and tracking");
+    }
+    ellipse::set_by_name(settings, name, assignment.substr(equals + 1));
   }
   settings.validate();
   return settings;
@@ -71,6 +76,8 @@ void write_files(std::vector<Sequence>& sequences, const fs::path& folder) {
   for (Sequence& sequence : sequences) {
     for (Frame& frame : sequence.frames) frame.image = folder / "images" / frame.name;
   }
+  if (interrupted)
+    throw std::runtime_error("interrupted while frames were written to " + folder.string());
 }
 
 // A folder of its own that is gone in the end.
@@ -127,9 +134,21 @@ class Session {
     }
     for (const std::string& folder : options_.datasets) {
       Dataset dataset = read_dataset(folder);
+      make_names_unique(dataset, folder);
       missing_frames_ += dataset.missing_frames;
       problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
       for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
+    }
+  }
+
+  // Figures are given by the data set's name: two of one name must not become one.
+  void make_names_unique(Dataset& dataset, const std::string& folder) const {
+    for (Sequence& sequence : dataset.sequences) {
+      const bool is_taken =
+          std::any_of(sequences_.begin(), sequences_.end(), [&](const auto& known) {
+            return known.dataset == sequence.dataset;
+          });
+      if (is_taken) sequence.dataset = folder + ":" + sequence.dataset;
     }
   }
 
@@ -137,8 +156,13 @@ class Session {
     ProgressBar progress(frames_of(sequences_));
     Evaluation evaluation = evaluate(
         sequences_, methods, rule_, [&](const Frame& frame) { return advance(progress, frame); });
-    missing_frames_ += evaluation.missing_frames;
-    problems_.insert(problems_.end(), evaluation.problems.begin(), evaluation.problems.end());
+    for (const std::string& problem : evaluation.problems) {
+      const bool is_known =
+          std::find(problems_.begin(), problems_.end(), problem) != problems_.end();
+      if (is_known) continue;  // by the sweep before
+      problems_.push_back(problem);
+      ++missing_frames_;
+    }
     return evaluation;
   }
 
@@ -152,7 +176,13 @@ class Session {
       write_files(sequences_, files_->path());
     }
     for (const PeerCommand& peer : peers_) {
-      methods.push_back(make_command_method(peer, sequences_, problems_));
+      try {
+        methods.push_back(
+            make_command_method(peer, sequences_, problems_, [] { return !interrupted; }));
+      } catch (const std::runtime_error& error) {
+        if (!interrupted) throw;
+        problems_.emplace_back(error.what());
+      }
     }
     return methods;
   }
@@ -221,7 +251,9 @@ class Session {
 }  // namespace
 
 int run(const Options& options) {
-  return Session(options).run();
+  const int status = Session(options).run();
+  if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");
+  return status;
 }
 
 void interrupt() {

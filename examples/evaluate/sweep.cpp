@@ -2,10 +2,12 @@
 #include "examples/evaluate/sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "examples/evaluate/plots.hpp"
@@ -20,35 +22,39 @@ constexpr std::size_t kMostValues = 200;
   throw std::invalid_argument("--sweep " + text + ": " + what);
 }
 
-double parse_number(const std::string& text, const std::string& all) {
+std::optional<double> number_in(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    fail(all, "\"" + text + "\" is no number");
-  }
-  return value;
+  const bool is_number = error == std::errc{} && end == text.data() + text.size();
+  return is_number && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-std::vector<double> parse_numbers(const std::string& text, char separator, const std::string& all) {
-  std::vector<double> numbers;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    numbers.push_back(parse_number(text.substr(begin, end - begin), all));
+    parts.push_back(text.substr(begin, end - begin));
     begin = end + 1;
   }
-  return numbers;
+  return parts;
 }
 
-std::vector<double> range(double from, double to, double step, const std::string& all) {
+std::vector<std::string> range(const std::vector<std::string>& parts, const std::string& all) {
+  if (parts.size() != 3) fail(all, "expected PROPERTY=FROM:TO:STEP");
+  std::array<double, 3> numbers{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = number_in(parts[i]);
+    if (!value) fail(all, "\"" + parts[i] + "\" is no number");
+    numbers[i] = *value;
+  }
+  const auto [from, to, step] = numbers;
   if (!(step > 0.0) || !(to >= from)) fail(all, "expected from <= to and a step above 0");
   const double steps = std::floor((to - from) / step + 1e-9);
   if (steps >= static_cast<double>(kMostValues)) fail(all, "more than 200 values");
-  std::vector<double> values;
-  for (int i = 0; i <= static_cast<int>(steps); ++i) {
-    // Rounded, so that 0.3 + 5 x 0.05 is 0.55.
-    values.push_back(std::round((from + i * step) * 1e9) / 1e9);
-  }
+  std::vector<std::string> values;
+  // Nine digits, so that 0.3 + 5 x 0.05 is 0.55.
+  for (int i = 0; i <= static_cast<int>(steps); ++i)
+    values.push_back(format("%.9g", from + i * step));
   return values;
 }
 
@@ -95,7 +101,11 @@ Panel panel_of(const Sweep& sweep,
                const std::string& title,
                const std::string& y_label,
                const std::vector<std::string>& names) {
-  Panel panel{title, sweep.property, y_label, sweep.values, {}, {}, y_label.empty()};
+  Panel panel{title, sweep.property, y_label, {}, {}, {}, y_label.empty()};
+  for (const std::string& value : sweep.values) {
+    if (const auto x = number_in(value)) panel.x.push_back(*x);
+  }
+  if (panel.x.size() < sweep.values.size()) panel.ranges = sweep.values;  // nicks side by side
   for (const Column& column : kColumns) {
     if (std::find(names.begin(), names.end(), column.name) == names.end()) continue;
     Curve curve{column.name, {}};
@@ -114,21 +124,15 @@ Sweep parse_sweep(const std::string& text) {
   if (equals == std::string::npos || equals == 0) fail(text, "expected PROPERTY=FROM:TO:STEP");
   const std::string values = text.substr(equals + 1);
   Sweep sweep{text.substr(0, equals), {}};
-  if (values.find(':') == std::string::npos) {
-    sweep.values = parse_numbers(values, ',', text);
-    return sweep;
-  }
-  const std::vector<double> numbers = parse_numbers(values, ':', text);
-  if (numbers.size() != 3) fail(text, "expected PROPERTY=FROM:TO:STEP");
-  sweep.values = range(numbers[0], numbers[1], numbers[2], text);
+  sweep.values =
+      values.find(':') == std::string::npos ? split(values, ',') : range(split(values, ':'), text);
   return sweep;
 }
 
 std::vector<std::unique_ptr<Method>> methods_of(const Sweep& sweep,
                                                 const ellipse::TrackerSettings& settings) {
   std::vector<std::unique_ptr<Method>> methods;
-  for (const double value : sweep.values) {
-    const std::string text = format("%.9g", value);
+  for (const std::string& text : sweep.values) {
     ellipse::TrackerSettings changed = settings;
     ellipse::set_by_name(changed, sweep.property, text);
     changed.validate();
@@ -142,13 +146,13 @@ Table sweep_table(const Sweep& sweep, const Evaluation& evaluation) {
   for (const Column& column : kColumns) table.header.emplace_back(column.name);
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
     const Measures measures = measures_at(evaluation, i);
-    std::vector<std::string> row{format("%.6g", sweep.values[i])};
+    std::vector<std::string> row{sweep.values[i]};
     for (const Column& column : kColumns) {
       row.push_back(number(column.get(measures), column.digits));
     }
     table.rows.push_back(std::move(row));
   }
-  table.note = std::to_string(evaluation.frames.size()) + " frames";
+  table.note = std::to_string(evaluation.frames.size()) + " frames of all data sets together";
   return table;
 }
 

@@ -15,10 +15,11 @@ namespace evaluate {
 /// One property at several values: the sensitivity studies of [Keipour2021] Figures 3 and 4.
 struct Sweep {
   std::string property;
-  std::vector<double> values;
+  std::vector<std::string> values;
 };
 
-/// From "property=from:to:step" (both ends count) or "property=value,value,...".
+/// From "property=from:to:step" (both ends count) or "property=value,value,...", where
+/// a value may also be a nick.
 /// Throws std::invalid_argument that names what is wrong.
 [[nodiscard]] Sweep parse_sweep(const std::string& text);
 

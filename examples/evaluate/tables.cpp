@@ -48,7 +48,7 @@ double grade(const Measures& measures) {
 void write_json_times(std::ostream& out, const Measures& measures) {
   for (std::size_t i = 0; i < kOutcomes; ++i) {
     const std::vector<double>& ms = measures.times_ms(static_cast<Outcome>(i));
-    out << ",\"" << kOutcomeNames[i] << "\":{\"frames\":" << ms.size()
+    out << ",\"" << kOutcomeNames[i] << "\":{\"frames\":" << measures.count(static_cast<Outcome>(i))
         << ",\"avg_ms\":" << json_number(mean(ms))
         << ",\"max_ms\":" << json_number(quantile(ms, 1.0))
         << ",\"min_ms\":" << json_number(quantile(ms, 0.0))
@@ -76,7 +76,7 @@ Table measures_table(const Evaluation& evaluation, const std::string& dataset) {
   table.title = "Accuracy, precision, recall and F1 on " + dataset;
   table.header = {"method", "accuracy", "precision", "recall", "F1", "TP", "TN", "FP", "FN", "WD"};
   int not_judged = 0;
-  std::size_t frames = 0;
+  int frames = 0;
   for (std::size_t i = 0; i < evaluation.methods.size(); ++i) {
     const Measures m = measures_of(evaluation, i, in_dataset(dataset));
     table.rows.push_back({evaluation.methods[i].name,
@@ -90,7 +90,7 @@ Table measures_table(const Evaluation& evaluation, const std::string& dataset) {
                           count(m, Outcome::kFalseNegative),
                           count(m, Outcome::kWrong)});
     not_judged = std::max(not_judged, m.count(Outcome::kNotJudged));
-    frames = m.all_times_ms().size();
+    frames = m.frames();
   }
   table.note = std::to_string(frames) + " frames";
   if (not_judged > 0) {
@@ -137,7 +137,7 @@ Table sequences_table(const Evaluation& evaluation, const std::string& dataset) 
     std::vector<std::string> row{sequence, ""};
     for (std::size_t i = 0; i < evaluation.methods.size(); ++i) {
       const Measures measures = measures_of(evaluation, i, claim);
-      row[1] = std::to_string(measures.all_times_ms().size());
+      row[1] = std::to_string(measures.frames());
       row.push_back(number(grade(measures), 3));
     }
     table.rows.push_back(std::move(row));

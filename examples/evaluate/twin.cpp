@@ -19,6 +19,9 @@ constexpr int kWidth = 640;
 constexpr int kHeight = 360;
 constexpr double kFramesPerSecond = 30.0;
 
+// What is varied among clips that are otherwise the same.
+enum Family { kNone = 0, kNoise = 1, kCrumple = 2, kBoth = 3 };
+
 // A piece of a scene: so many frames from a time on, each so many 30ths of a second after the last.
 struct Clip {
   const char* dataset;
@@ -29,6 +32,7 @@ struct Clip {
   int frames;
   int stride;
   void (*change)(Scene&);
+  Family family = kNone;
 };
 
 void keep(Scene& /*scene*/) {}
@@ -46,6 +50,11 @@ void crumpled(Scene& scene) {
 template <int kLevels>
 void noisy(Scene& scene) {
   scene.sensor.read_noise = kLevels;
+}
+
+void noisy_jpeg(Scene& scene) {
+  scene.sensor.read_noise = 14.0;
+  scene.sensor.jpeg_quality = 45;
 }
 
 void bright(Scene& scene) {
@@ -81,10 +90,13 @@ constexpr Clip kClips[] = {
     {"twin", "disc", "disc", 113, 2.0, 60, 2, keep},
     {"twin", "bullseye", "bullseye", 114, 2.0, 60, 2, keep},
     {"twin", "hover-clutter", "hover", 115, 0.0, 60, 2, keep},
-    {"twin", "crumpled-1", "crumpled", 116, 4.0, 40, 2, crumpled<1>},
-    {"twin", "crumpled-3", "crumpled", 117, 4.0, 40, 2, crumpled<3>},
-    {"twin", "noise-7", "approach", 118, 4.0, 40, 2, noisy<7>},
-    {"twin", "noise-14-jpeg", "noise", 119, 2.0, 60, 2, keep},
+    // The same frames with one thing changed, so that its effect can be seen.
+    {"twin", "plain", "approach", 116, 4.0, 30, 2, keep, kBoth},
+    {"twin", "crumpled-1", "approach", 116, 4.0, 30, 2, crumpled<1>, kCrumple},
+    {"twin", "crumpled-2", "approach", 116, 4.0, 30, 2, crumpled<2>, kCrumple},
+    {"twin", "crumpled-3", "approach", 116, 4.0, 30, 2, crumpled<3>, kCrumple},
+    {"twin", "noise-7", "approach", 116, 4.0, 30, 2, noisy<7>, kNoise},
+    {"twin", "noise-14-jpeg", "approach", 116, 4.0, 30, 2, noisy_jpeg, kNoise},
     {"twin", "none-clutter", "negative", 120, 0.0, 24, 10, keep},
     {"twin", "none-flowers", "negative", 121, 1.0, 20, 10, on<GroundKind::kFlowers>},
     {"twin", "none-rounded", "negative", 122, 2.0, 20, 10, on<GroundKind::kRounded>},
@@ -102,6 +114,10 @@ class Rendered : public PictureSource {
 
   [[nodiscard]] double time_of(std::size_t frame) const {
     return clip_.from_s + static_cast<double>(frame) * clip_.stride / kFramesPerSecond;
+  }
+
+  [[nodiscard]] std::int64_t pts_ns_of(std::size_t frame) const {
+    return std::llround(1e9 * time_of(frame));
   }
 
   [[nodiscard]] Truth truth_of(std::size_t frame) const {
@@ -140,14 +156,18 @@ Sequence make_sequence(const Clip& clip, const cv::Mat& ground) {
     scene.ground.picture = ground;
   }
   const auto rendered = std::make_shared<Rendered>(clip, scene);
+  Conditions conditions;
+  if ((clip.family & kNoise) != 0) conditions.noise = scene.sensor.read_noise;
+  if ((clip.family & kCrumple) != 0) conditions.crumple = scene.pad.crumple;
   Sequence sequence{clip.dataset, clip.name, {}, rendered};
   for (int i = 0; i < clip.frames; ++i) {
     const auto number = static_cast<std::size_t>(i);
     sequence.frames.push_back({frame_name(clip, i),
                                {},
                                number,
+                               rendered->pts_ns_of(number),
                                rendered->truth_of(number),
-                               {scene.sensor.read_noise, scene.pad.crumple}});
+                               conditions});
   }
   return sequence;
 }

@@ -309,7 +309,7 @@ struct Fingerprint {
 constexpr Fingerprint kFingerprints[] = {
     {"approach", 0xf2d325fb58e82ca3U},
     {"oblique", 0xae3bf7adc26f972aU},
-    {"dusk", 0xfdcaba2f65bc1b07U},
+    {"dusk", 0xd81441abc3a435aaU},
     {"glare", 0xfc3966c6b014873fU},
     {"occluded", 0x160751ec4464e983U},
     {"dash", 0x22705a707d88d3d8U},

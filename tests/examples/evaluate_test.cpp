@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The instrument that everything is measured with: examples/evaluate.
+// What is made of the answers: measures, tables, report, sweeps.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "examples/evaluate/breakdown.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
@@ -26,199 +27,6 @@ namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
-
-class DatasetFiles : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() /
-        ("ellipse-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-  }
-  // Pictures that are there, but are not read.
-  void touch(const std::vector<std::string>& names) const {
-    for (const std::string& name : names) write(name, "");
-  }
-  [[nodiscard]] std::string error() const {
-    try {
-      (void)read_dataset(folder_);
-    } catch (const std::runtime_error& e) {
-      return e.what();
-    }
-    return "";
-  }
-
-  fs::path folder_;
-};
-
-TEST_F(DatasetFiles, ReadsCsvInNaturalOrderBySequence) {
-  write("gt.csv",
-        "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction\n"
-        "images/b/frame10.jpg,1,2,30,20,0.5,0.75\n"
-        "images/b/frame9.jpg,,,,,,\n"
-        "images/a/frame1.jpg,1,2,30,20,-0.5,\r\n");
-  touch({"images/b/frame10.jpg", "images/b/frame9.jpg", "images/a/frame1.jpg"});
-  const Dataset dataset = read_dataset(folder_);
-  EXPECT_TRUE(dataset.problems.empty());
-  const auto& sequences = dataset.sequences;
-  ASSERT_EQ(sequences.size(), 2U);
-  EXPECT_EQ(sequences[0].name, "a");
-  ASSERT_EQ(sequences[1].frames.size(), 2U);
-  EXPECT_EQ(sequences[1].frames[0].name, "b/frame9.jpg");
-  EXPECT_FALSE(sequences[1].frames[0].truth.target);
-  EXPECT_EQ(sequences[1].frames[1].truth.target->semi_major, 30.0);
-  EXPECT_EQ(sequences[1].frames[1].truth.visible_fraction, 0.75);
-  EXPECT_FALSE(sequences[0].frames[0].truth.visible_fraction);
-}
-
-TEST_F(DatasetFiles, ReadsThePublishedForm) {
-  write("one/ground_truth.txt",
-        "Filename\tHasTarget\tTargetCenterX\tTargetCenterY\tTargetWidth\tTargetHeight\t"
-        "TargetAngle\n"
-        "f1.jpg\t1\t100.0\t50.0\t40.0\t60.0\t90.0\n"
-        "f2.jpg\t0\t0.000\t0.000\t0.000\t0.000\t0.000\n"
-        "f3.jpg\t1\t-1.000\t-1.000\t-1.000\t-1.000\t-1.000\n");
-  touch({"one/f1.jpg", "one/f2.jpg", "one/f3.jpg"});
-  const auto sequences = read_dataset(folder_).sequences;
-  ASSERT_EQ(sequences.size(), 1U);
-  const auto& frames = sequences[0].frames;
-  ASSERT_EQ(frames.size(), 3U);
-  // The width is the minor axis and lies along y, so that the major axis lies along x.
-  EXPECT_EQ(frames[0].truth.target->semi_major, 30.0);
-  EXPECT_EQ(frames[0].truth.target->semi_minor, 20.0);
-  EXPECT_NEAR(std::sin(frames[0].truth.target->angle_rad), 0.0, 1e-12);
-  EXPECT_FALSE(frames[1].truth.target);
-  EXPECT_TRUE(frames[1].truth.is_labelled);
-  EXPECT_FALSE(frames[2].truth.is_labelled);
-}
-
-TEST_F(DatasetFiles, KeepsFoldersOfTheSameNameApart) {
-  write("gt.csv",
-        "image,cx,cy,semi_major,semi_minor,angle_rad\n"
-        "one/img/1.png,,,,,\ntwo/img/1.png,,,,,\n3.png,,,,,\n");
-  touch({"one/img/1.png", "two/img/1.png", "3.png"});
-  const auto sequences = read_dataset(folder_).sequences;
-  ASSERT_EQ(sequences.size(), 3U);
-  EXPECT_EQ(sequences[0].name, folder_.filename().string());
-  EXPECT_EQ(sequences[1].name, "one/img");
-  EXPECT_EQ(sequences[2].name, "two/img");
-}
-
-TEST_F(DatasetFiles, NamesFileAndLineOfWhatIsBroken) {
-  touch({"a.jpg", "b.jpg", "c.jpg", "d.jpg"});
-  write("gt.csv",
-        "image,cx,cy,semi_major,semi_minor,angle_rad\n"
-        "a.jpg,1,2,x,20,0\n"
-        "b.jpg,1,2,10,20,0\n"
-        "c.jpg,1,2\n"
-        "d.jpg,1,2,20,10,0\n");
-  const Dataset dataset = read_dataset(folder_);
-  ASSERT_EQ(dataset.problems.size(), 4U);  // and c.jpg has no line that could be read
-  EXPECT_NE(dataset.problems[0].find("gt.csv:2: semi_major"), std::string::npos);
-  EXPECT_NE(dataset.problems[1].find("gt.csv:3: the axes"), std::string::npos);
-  EXPECT_NE(dataset.problems[2].find("gt.csv:4: 3 fields"), std::string::npos);
-  EXPECT_EQ(dataset.missing_frames, 3U);
-  ASSERT_EQ(dataset.sequences.size(), 1U);
-  EXPECT_EQ(dataset.sequences[0].frames.size(), 1U);
-}
-
-TEST_F(DatasetFiles, NamesImagesAndLinesThatMissEachOther) {
-  touch({"a.jpg", "c.jpg"});
-  write("gt.csv", "image,cx,cy,semi_major,semi_minor,angle_rad\na.jpg,,,,,\nb.jpg,,,,,\n");
-  const Dataset dataset = read_dataset(folder_);
-  ASSERT_EQ(dataset.problems.size(), 2U);
-  EXPECT_NE(dataset.problems[0].find("gt.csv:3: image"), std::string::npos);
-  EXPECT_NE(dataset.problems[1].find("c.jpg: has no line"), std::string::npos);
-  EXPECT_EQ(dataset.missing_frames, 1U);
-}
-
-TEST_F(DatasetFiles, RefusesWhatIsNoTable) {
-  EXPECT_NE(error().find("neither gt.csv nor ground_truth.txt"), std::string::npos);
-  write("gt.csv", "");
-  EXPECT_NE(error().find("is empty"), std::string::npos);
-  write("gt.csv", "image,cx\na.jpg,1\n");
-  touch({"a.jpg"});
-  EXPECT_NE(error().find("no column \"cy\""), std::string::npos) << error();
-}
-
-TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
-  std::vector<Sequence> twin = make_twin();
-  twin.resize(2);
-  for (Sequence& sequence : twin) sequence.frames.resize(3);
-  write_dataset(twin, folder_, [](const Frame& /*frame*/) { return true; });
-  const std::vector<Sequence> again = read_dataset(folder_).sequences;
-  ASSERT_EQ(again.size(), 2U);
-  for (std::size_t i = 0; i < again.size(); ++i) {
-    ASSERT_EQ(again[i].frames.size(), 3U);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Frame& written = twin[i].frames[k];
-      const Frame& read = again[i].frames[k];
-      EXPECT_EQ(read.name, written.name);
-      EXPECT_EQ(read.truth.target, written.truth.target);
-      EXPECT_EQ(read.conditions.noise, written.conditions.noise);
-      EXPECT_EQ(cv::norm(again[i].pictures->picture(read), twin[i].pictures->picture(written)), 0);
-    }
-  }
-}
-
-TEST(Twin, HasTheSizeOfThePapersDataSet) {
-  std::map<std::string, std::pair<int, int>> counts;  // frames, with the target
-  for (const Sequence& sequence : make_twin()) {
-    for (const Frame& frame : sequence.frames) {
-      ++counts[sequence.dataset].first;
-      counts[sequence.dataset].second += frame.truth.target ? 1 : 0;
-    }
-  }
-  EXPECT_EQ(counts["twin"], std::pair(1511, 1378));
-  EXPECT_EQ(counts["thin"], std::pair(456, 456));
-}
-
-TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
-  // The target's outline is where the picture changes.
-  const Sequence sequence = make_twin()[0];
-  const Frame& frame = sequence.frames[70];
-  const cv::Mat picture = sequence.pictures->picture(frame);
-  double contrast = 0.0;
-  for (int i = 0; i < 36; ++i) {
-    const ellipse::Ellipse& e = *frame.truth.target;
-    const Eigen::Vector2d out = e.center() + 1.08 * (e.point_at(0.174 * i) - e.center());
-    const Eigen::Vector2d in = e.center() + 0.92 * (e.point_at(0.174 * i) - e.center());
-    const auto level = [&](const Eigen::Vector2d& p) {
-      return static_cast<double>(picture.at<std::uint8_t>(cvRound(p.y()), cvRound(p.x())));
-    };
-    contrast += (level(out) - level(in)) / 36.0;
-  }
-  EXPECT_GT(contrast, 100.0);
-}
-
-TEST(PictureReader, NamesWhatItCannotRead) {
-  gst_init(nullptr, nullptr);
-  const fs::path bad = fs::temp_directory_path() / "ellipse-bad.jpg";
-  const fs::path good = fs::temp_directory_path() / "ellipse-good.jpg";
-  std::ofstream(bad) << "no picture";
-  cv::imwrite(good.string(), cv::Mat(32, 48, CV_8U, cv::Scalar(77)));
-  PictureReader reader;
-  for (const fs::path& file : {bad, fs::path("/no/such.jpg"), fs::path("/no/such.png")}) {
-    try {
-      (void)reader.read(file);
-      ADD_FAILURE() << file;
-    } catch (const std::runtime_error& error) {
-      EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
-    }
-  }
-  const cv::Mat picture = reader.read(good);  // also after an error
-  EXPECT_EQ(picture.cols, 48);
-  EXPECT_NEAR(picture.at<std::uint8_t>(5, 5), 77, 1);
-  fs::remove(bad);
-  fs::remove(good);
-}
 
 constexpr FrameSize kFrame{320, 240};
 const ellipse::Ellipse kTarget{160.0, 120.0, 50.0, 40.0, 0.3};
@@ -317,7 +125,7 @@ class HandMade : public testing::Test {
         kTarget, grown, shifted, other, std::nullopt, std::nullopt};
     for (std::size_t i = 0; i < kFrames; ++i) {
       const Truth truth = i == 5 ? Truth{} : truth_of(kTarget);
-      sequence_.frames.push_back({"f" + std::to_string(i), {}, i, truth, {}});
+      sequence_.frames.push_back({"f" + std::to_string(i), {}, i, 0, truth, {}});
     }
     methods_.push_back(std::make_unique<Scripted>(answers));
   }
@@ -410,18 +218,47 @@ TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
   fs::remove_all(folder);
 }
 
+TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
+  class Silent : public Method {
+   public:
+    Silent() : Method("silent") {}
+    Answer find(const Frame&, const cv::Mat&, std::int64_t) override {
+      return {std::nullopt, 1, std::nan("")};
+    }
+  };
+  methods_[0] = std::make_unique<Silent>();
+  const Measures m = measures(run(Rule::kIou));
+  EXPECT_EQ(m.frames(), static_cast<int>(kFrames));
+  EXPECT_EQ(m.count(Outcome::kFalseNegative), 5);
+  EXPECT_TRUE(m.all_times_ms().empty());
+}
+
+TEST_F(HandMade, BreakdownLeavesOutWhatIsHardlyVisible) {
+  for (Frame& frame : sequence_.frames) frame.truth = truth_of(kTarget, 0.2);
+  sequence_.frames[1].truth = truth_of(kTarget, 0.4);
+  sequence_.frames[3].truth = truth_of(kTarget, 0.8);
+  const auto panels = breakdown(run(Rule::kIou), "hand");
+  const auto by_visible = std::find_if(panels.begin(), panels.end(), [](const Panel& panel) {
+    return panel.title == "Recall by visible part";
+  });
+  ASSERT_NE(by_visible, panels.end());
+  EXPECT_EQ(by_visible->curves[0].y[0], 1.0);  // frame 1 alone
+  EXPECT_EQ(by_visible->curves[0].y[2], 0.0);  // frame 3 alone
+}
+
 TEST(Sweep, IsRangesAndLists) {
   const Sweep range = parse_sweep("detect-contour-overlap=0.3:0.5:0.05");
   EXPECT_EQ(range.property, "detect-contour-overlap");
-  EXPECT_EQ(range.values, (std::vector<double>{0.3, 0.35, 0.4, 0.45, 0.5}));
-  EXPECT_EQ(parse_sweep("max-scale=1,2,8").values, (std::vector<double>{1.0, 2.0, 8.0}));
-  for (const char* bad : {"x", "=1", "x=", "x=a", "x=1:2", "x=2:1:1", "x=1:2:0", "x=0:1:1e-9"}) {
+  EXPECT_EQ(range.values, (std::vector<std::string>{"0.3", "0.35", "0.4", "0.45", "0.5"}));
+  EXPECT_EQ(parse_sweep("max-scale=1,2,8").values, (std::vector<std::string>{"1", "2", "8"}));
+  for (const char* bad : {"x", "=1", "x=1:2", "x=a:2:1", "x=2:1:1", "x=1:2:0", "x=0:1:1e-9"}) {
     EXPECT_THROW((void)parse_sweep(bad), std::invalid_argument) << bad;
   }
 }
 
 TEST(Sweep, NamesWhatIsNoProperty) {
-  for (const char* bad : {"no-such=1:2:1", "detect-contour-overlap=0.5,7"}) {
+  for (const char* bad :
+       {"no-such=1:2:1", "detect-contour-overlap=0.5,7", "max-axis=", "tracking=none,best"}) {
     try {
       (void)methods_of(parse_sweep(bad), {});
       ADD_FAILURE() << bad;

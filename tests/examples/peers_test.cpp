@@ -71,6 +71,14 @@ TEST_P(EachPeer, FindsADisc) {
   EXPECT_EQ(target_found->contour_overlap, 0.0);
 }
 
+TEST_P(EachPeer, ForgetsThePictureBefore) {
+  const auto detector = make_peer(GetParam());
+  const support::Picture with = support::rendered(disc(), target());
+  ASSERT_FALSE(detector->detect(with.view(), kLimits).empty());
+  const support::Picture without(with.width, with.height, 128);
+  EXPECT_TRUE(detector->detect(without.view(), kLimits).empty());
+}
+
 TEST_P(EachPeer, ServesTheTrackerInSingleFrames) {
   ellipse::TrackerSettings settings;
   settings.tracking = ellipse::TrackingMode::kNone;

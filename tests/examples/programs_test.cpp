@@ -2,6 +2,7 @@
 //
 // The example programs as people start them.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -40,7 +41,7 @@ Outcome run(const std::string& program, const std::string& arguments) {
 class Programs : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / "ellipse-programs-test";
+    folder_ = fs::temp_directory_path() / ("ellipse-programs-" + std::to_string(getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
