@@ -19,6 +19,11 @@ constexpr double kSameExact = 0.05;
 constexpr double kSameCrumpled = 0.08;
 constexpr double kSameRefused = 0.1;
 constexpr double kOnEllipsePx = 2.5;
+constexpr double kLeastTurnSupport = 0.5;
+constexpr double kLoneInside = 0.3;        // of the perimeter
+constexpr double kLonePartSupport = 0.35;  // above the wanted one, where less than half is inside
+constexpr double kLoneSupport = 0.25;      // above the wanted one, or
+constexpr double kLoneScore = 100.0;       // [nats]
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
@@ -170,10 +175,21 @@ bool ArcDetector::has_partner(std::size_t i) const {
   return false;
 }
 
+// What has no concentric partner must be more than an arc or a petal: seen to a good part, and
+// there without a gap; or whole; or long enough to make up for a gap.
+bool ArcDetector::stands_alone(const VerifiedEllipse& found, const Thresholds& thresholds) {
+  if (found.needs_partner || found.inside_fraction < kLoneInside) return false;
+  const double support = std::min(found.support, found.turn_support);
+  const double wanted = thresholds.ellipse_overlap;
+  if (found.inside_fraction < 0.5) return support >= wanted + kLonePartSupport;
+  return support >= wanted + kLoneSupport || found.score >= kLoneScore;
+}
+
 void ArcDetector::report(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < found_.size(); ++i) {
     const VerifiedEllipse& found = found_[i];
-    if (found.needs_partner && !has_partner(i)) continue;
+    if (found.turn_support < kLeastTurnSupport) continue;
+    if (!has_partner(i) && !stands_alone(found, thresholds)) continue;
     if (found.on_ellipse < thresholds.contour_overlap) continue;
     detections_.push_back({found.ellipse, found.on_ellipse, found.support, found.score});
   }

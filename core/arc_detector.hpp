@@ -36,6 +36,8 @@ class ArcDetector final : public Detector {
   void add(const VerifiedEllipse& found);
   void use_arcs_on(const VerifiedEllipse& found);
   [[nodiscard]] bool has_partner(std::size_t i) const;
+  [[nodiscard]] static bool stands_alone(const VerifiedEllipse& found,
+                                         const Thresholds& thresholds);
   void report(const Thresholds& thresholds);
 
   GradientMap map_;

@@ -15,7 +15,8 @@ struct VerifiedEllipse {
   Ellipse ellipse;
   Polarity polarity = Polarity::kDarkInside;
   double inside_fraction = 0.0;  ///< Of the perimeter inside the picture.
-  double support = 0.0;          ///< Share of the inside perimeter that meets edges.
+  double support = 0.0;          ///< Share of the inside perimeter that meets edges, by length.
+  double turn_support = 0.0;     ///< The same by turn, of which a flat ellipse's ends have most.
   double on_ellipse = 0.0;       ///< Share of these edges that lie on the ellipse.
   double covered = 0.0;          ///< Share of the whole perimeter that fits well.
   double score = 0.0;            ///< Significance: -ln of the odds that chance made it [nats].

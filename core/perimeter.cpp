@@ -58,6 +58,8 @@ PerimeterEvidence PerimeterProbe::probe(
   const double spacing = 2.0 * std::numbers::pi / samples;
   double total_px = 0.0;
   double hit_px = 0.0;
+  double inside_turn = 0.0;
+  double hit_turn = 0.0;
   double gradients = 0.0;
   for (int i = 0; i < samples; ++i) {
     const Eigen::Vector2d& u =
@@ -75,6 +77,8 @@ PerimeterEvidence PerimeterProbe::probe(
       continue;
     }
     evidence.inside_px += length;
+    const double turn = 1.0 / (speed * speed);  // curvature times length, but for a factor
+    inside_turn += turn;
     const bool is_flat = std::abs(normal.x()) > std::abs(normal.y());
     const Crossing crossing{static_cast<int>(y) * map.stride() + static_cast<int>(x),
                             is_flat ? 1 : map.stride()};
@@ -89,6 +93,7 @@ PerimeterEvidence PerimeterProbe::probe(
                                          sign * (g.x * normal.x() + g.y * normal.y()));
     hits_.push_back(hit);
     hit_px += length;
+    hit_turn += turn;
     gradients += std::hypot(static_cast<double>(g.x), static_cast<double>(g.y));
     evidence.sharpness += crest.sharpness;
     for (std::size_t k = 0; k < kDistanceLevels.size(); ++k) {
@@ -101,6 +106,7 @@ PerimeterEvidence PerimeterProbe::probe(
   if (!(evidence.inside_px > 0.0)) return evidence;
   evidence.inside_fraction = evidence.inside_px / total_px;
   evidence.support = hit_px / evidence.inside_px;
+  evidence.turn_support = hit_turn / inside_turn;
   for (double& level : evidence.levels) level /= evidence.inside_px;
   if (hits_.empty()) return evidence;
   const auto hits = static_cast<double>(hits_.size());

@@ -31,7 +31,8 @@ struct PerimeterEvidence {
   double inside_px = 0.0;          ///< Length of the perimeter inside the picture.
   double inside_fraction = 0.0;    ///< Of the perimeter.
   double support = 0.0;            ///< Share of the inside length that meets edges.
-  std::array<double, 4> levels{};  ///< The same within each of the tolerances.
+  double turn_support = 0.0;       ///< The same, of the inside turn of the perimeter.
+  std::array<double, 4> levels{};  ///< Share of the length within each of the tolerances.
   double signal_to_noise = 0.0;    ///< Mean gradient over the noise's.
   double sharpness = 0.0;          ///< Mean of CrestPoint::sharpness.
 };
