@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/ellipse_fit.hpp"
+#include "core/picture_refinement.hpp"
+#include "core/target_selection.hpp"
 
 namespace ellipse {
 namespace {
@@ -19,6 +21,9 @@ constexpr double kSameExact = 0.05;
 constexpr double kSameCrumpled = 0.08;
 constexpr double kSameRefused = 0.1;
 constexpr double kOnEllipsePx = 2.5;
+constexpr double kEnoughScore = 150.0;  // at half size [nats], and
+constexpr double kEnoughSupport = 0.85;
+constexpr double kFullSizeGradient = 0.4;  // of the threshold at half size, where edges are steeper
 constexpr double kLeastTurnSupport = 0.5;
 constexpr double kLoneInside = 0.3;        // of the perimeter
 constexpr double kLonePartSupport = 0.35;  // above the wanted one, where less than half is inside
@@ -61,14 +66,55 @@ bool are_partners(const Ellipse& a, const Ellipse& b) {
          std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
 }
 
+// Lengths for a picture of half the size.
+Thresholds halved(const Thresholds& thresholds) {
+  Thresholds half = thresholds;
+  half.min_axis_px /= 2.0;
+  half.max_axis_px /= 2.0;
+  half.min_contour_size /= 2;
+  return half;
+}
+
+// The evidence for an ellipse and for all that are concentric with it.
+double set_score(const Detection& target, std::span<const Detection> detections) {
+  double sum = 0.0;
+  for (const Detection& other : detections) {
+    const bool is_itself = other.ellipse == target.ellipse;
+    if (is_itself || are_partners(target.ellipse, other.ellipse)) sum += other.score;
+  }
+  return sum;
+}
+
 }  // namespace
 
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
                                                const Thresholds& thresholds) {
+  if (!detect_at_half_size(luma, thresholds)) detect_all(luma, thresholds);
+  return detections_;
+}
+
+bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& thresholds) {
+  if (thresholds.min_contour_size < kHalfSizeContourPx) return false;
+  const ImageView half = scaler_.reduce(luma, 2);
+  detect_all(half, halved(thresholds));
+  const auto target = select_target(detections_);
+  if (!target || target->ellipse_overlap < kEnoughSupport) return false;
+  if (set_score(*target, detections_) < kEnoughScore) return false;
+  for (std::size_t i = 0; i < detections_.size(); ++i) {
+    Ellipse& e = detections_[i].ellipse;
+    e = scaled(e, 2.0);
+    e = refined_on_picture(luma, e, polarities_[i], kFullSizeGradient * map_.threshold())
+            .value_or(e);
+  }
+  return true;
+}
+
+void ArcDetector::detect_all(const ImageView& luma, const Thresholds& thresholds) {
   detections_.clear();
+  polarities_.clear();
   found_.clear();
   refused_.clear();
-  if (luma.empty()) return detections_;
+  if (luma.empty()) return;
   const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
   map_.compute(luma, thresholds.edge_high, floor);
   chains_.trace(map_);
@@ -78,7 +124,6 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
   try_single_arcs(thresholds);
   try_pairs(thresholds);
   report(thresholds);
-  return detections_;
 }
 
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
@@ -192,6 +237,7 @@ void ArcDetector::report(const Thresholds& thresholds) {
     if (!has_partner(i) && !stands_alone(found, thresholds)) continue;
     if (found.on_ellipse < thresholds.contour_overlap) continue;
     detections_.push_back({found.ellipse, found.on_ellipse, found.support, found.score});
+    polarities_.push_back(found.polarity);
   }
 }
 

@@ -8,12 +8,17 @@
 #include "core/detector.hpp"
 #include "core/ellipse_verifier.hpp"
 #include "core/gradient.hpp"
+#include "core/scale.hpp"
 
 namespace ellipse {
 
 /// Finds ellipses from the arcs of their edges: gradient, crests, chains, arcs, then every arc and
 /// every pair of arcs that could be of one ellipse, fitted from their moments and verified on the
 /// edges around the whole perimeter.
+///
+/// Looks at the picture in half its size first, refines what it finds there on the full picture,
+/// and looks at the full size only where the answer is weak, or where contours below
+/// kHalfSizeContourPx are asked for.
 ///
 /// Allocates nothing in the steady state. The work on one picture is bounded: the pixels, the best
 /// arcs, and so many pairs of them.
@@ -24,12 +29,16 @@ class ArcDetector final : public Detector {
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.7, 0.55}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.6, 0.45}; }
 
+  static constexpr int kHalfSizeContourPx = 50;
+
  private:
   struct Refused {
     Ellipse ellipse;
     Polarity polarity;
   };
 
+  void detect_all(const ImageView& luma, const Thresholds& thresholds);
+  [[nodiscard]] bool detect_at_half_size(const ImageView& luma, const Thresholds& thresholds);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
   void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);
@@ -40,6 +49,7 @@ class ArcDetector final : public Detector {
                                          const Thresholds& thresholds);
   void report(const Thresholds& thresholds);
 
+  Scaler scaler_;
   GradientMap map_;
   ChainTracer chains_;
   ArcSplitter splitter_;
@@ -49,6 +59,7 @@ class ArcDetector final : public Detector {
   std::vector<VerifiedEllipse> found_;
   std::vector<Refused> refused_;
   std::vector<Detection> detections_;
+  std::vector<Polarity> polarities_;  // of the detections
   double edge_density_ = 0.0;
 };
 

@@ -13,6 +13,7 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Found by experiment, see docs/provenance.md.
 constexpr std::size_t kLeastLength = 10;
+constexpr std::size_t kEnoughPoints = 48;  // of an arc
 constexpr double kLeastTurn = 0.25;        // [rad]
 constexpr std::size_t kCornerReach = 3;    // [px] before and after
 constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
@@ -24,16 +25,21 @@ constexpr double kWholeRms = 0.8;            // [px], and
 constexpr double kWholeRmsRelative = 0.012;  // of its radius: a crumpled pad
 constexpr double kMostRankedTurn = 3.0;      // [rad]; more is no better
 
-// The arc tangent within 3e-4 rad [Abramowitz1964] 4.4.47, shortened.
-float fast_atan2(float y, float x) {
-  const float ax = std::abs(x);
-  const float ay = std::abs(y);
-  const float z = std::min(ax, ay) / (std::max(ax, ay) + 1e-9F);
-  const float s = z * z;
-  float r = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
-  if (ay > ax) r = 1.57079637F - r;
-  if (x < 0.0F) r = 3.14159274F - r;
-  return y < 0.0F ? -r : r;
+// The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
+// branches, so that the compiler makes vectors of it. The angle takes the place of x.
+void to_angles(float* __restrict x, const float* __restrict y, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const float ax = std::abs(x[i]);
+    const float ay = std::abs(y[i]);
+    const float larger = ax > ay ? ax : ay;
+    const float smaller = ax > ay ? ay : ax;
+    const float z = smaller / (larger + 1e-9F);
+    const float s = z * z;
+    const float low = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
+    const float octant = ay > ax ? 1.57079637F - low : low;
+    const float half = x[i] < 0.0F ? 3.14159274F - octant : octant;
+    x[i] = y[i] < 0.0F ? -half : half;
+  }
 }
 
 Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
@@ -70,8 +76,10 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map, const ChainTracer& cha
   smooth_.resize(angles_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Gradient& g = map.gradients()[pixels_[i]];
-    angles_[i] = fast_atan2(g.y, g.x);
+    angles_[i] = g.x;
+    smooth_[i] = g.y;
   }
+  to_angles(angles_.data(), smooth_.data(), pixels_.size());
   std::size_t begin = 0;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const Chain chain = chains.chain(i);
@@ -104,7 +112,11 @@ void ArcSplitter::unwrap(std::size_t begin, std::size_t end) {
 Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::size_t end) const {
   // One origin for all arcs, so that their moments can be added.
   Moments moments(Eigen::Vector2d(0.5 * map.width(), 0.5 * map.height()));
-  for (std::size_t i = begin; i < end; ++i) moments.add(crest_point(map, pixels_[i]).point);
+  // A guess needs no more points than these: it is refined on the edges later.
+  const std::size_t step = (end - begin) / kEnoughPoints + 1;
+  for (std::size_t i = begin + step / 2; i < end; i += step) {
+    moments.add(crest_point(map, pixels_[i]).point, static_cast<double>(step));
+  }
   return moments;
 }
 

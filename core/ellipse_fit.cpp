@@ -94,7 +94,7 @@ double taubin_rms(const Moments& m,
 
 }  // namespace
 
-void Moments::add(const Eigen::Vector2d& point_px) {
+void Moments::add(const Eigen::Vector2d& point_px, double weight) {
   const double x = point_px.x() - origin_.x();
   const double y = point_px.y() - origin_.y();
   const double xx = x * x;
@@ -115,7 +115,7 @@ void Moments::add(const Eigen::Vector2d& point_px) {
                             xx * yy,
                             xy * yy,
                             yy * yy};
-  for (int i = 0; i < 15; ++i) sums_[i] += terms[i];
+  for (int i = 0; i < 15; ++i) sums_[i] += weight * terms[i];
 }
 
 void Moments::add(const Moments& other) {

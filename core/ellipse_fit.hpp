@@ -16,7 +16,7 @@ class Moments {
   /// @param origin_px  A point near the data, such as its first one: it keeps the sums small.
   explicit Moments(const Eigen::Vector2d& origin_px) : origin_(origin_px) {}
 
-  void add(const Eigen::Vector2d& point_px);
+  void add(const Eigen::Vector2d& point_px, double weight = 1.0);
   /// The points of both. Both must have the same origin.
   void add(const Moments& other);
 

@@ -155,6 +155,23 @@ bool is_saturated(std::uint8_t level) {
 
 }  // namespace
 
+Gradient gradient_at(const ImageView& luma, int x, int y) {
+  std::array<int, 5> smooth{};
+  std::array<int, 5> difference{};
+  const std::uint8_t* a = luma.row(y - 2) + x - 2;
+  const std::uint8_t* b = luma.row(y - 1) + x - 2;
+  const std::uint8_t* c = luma.row(y) + x - 2;
+  const std::uint8_t* d = luma.row(y + 1) + x - 2;
+  const std::uint8_t* e = luma.row(y + 2) + x - 2;
+  for (std::size_t i = 0; i < 5; ++i) {
+    smooth[i] = a[i] + e[i] + 4 * (b[i] + d[i]) + 6 * c[i];
+    difference[i] = (e[i] - a[i]) + 2 * (d[i] - b[i]);
+  }
+  return {static_cast<Int>(smooth[4] - smooth[0] + 2 * (smooth[3] - smooth[1])),
+          static_cast<Int>(difference[0] + difference[4] + 4 * (difference[1] + difference[3]) +
+                           6 * difference[2])};
+}
+
 Simd best_simd() {
 #if ELLIPSE_HAS_AVX2
   return __builtin_cpu_supports("avx2") ? Simd::kAvx2 : Simd::kBaseline;

@@ -33,6 +33,9 @@ inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
 }
 }  // namespace crest
 
+/// The gradient of one pixel, as GradientMap computes it. At least two pixels from the border.
+[[nodiscard]] Gradient gradient_at(const ImageView& luma, int x, int y);
+
 /// Which instructions the hot loops use. All give the same integers.
 enum class Simd { kBaseline, kAvx2 };
 

@@ -89,12 +89,14 @@ PerimeterEvidence PerimeterProbe::probe(
     const CrestPoint crest = crest_point(map, pixel);
     EdgeHit hit{crest.point, foot, normal, 0.0, 0.0, length, i};
     hit.residual_px = normal.dot(crest.point - foot);
-    hit.direction_error_rad = std::atan2(sign * (g.y * normal.x() - g.x * normal.y()),
-                                         sign * (g.x * normal.x() + g.y * normal.y()));
+    const double strength =
+        std::sqrt(static_cast<double>(g.x) * g.x + static_cast<double>(g.y) * g.y);
+    const double sine = sign * (g.y * normal.x() - g.x * normal.y()) / strength;
+    hit.direction_error_rad = sine * (1.0 + sine * sine / 6.0);  // below 30 degrees within .003
     hits_.push_back(hit);
     hit_px += length;
     hit_turn += turn;
-    gradients += std::hypot(static_cast<double>(g.x), static_cast<double>(g.y));
+    gradients += strength;
     evidence.sharpness += crest.sharpness;
     for (std::size_t k = 0; k < kDistanceLevels.size(); ++k) {
       if (std::abs(hit.residual_px) < kDistanceLevels[k] &&

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "core/picture_refinement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/ellipse_fit.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr std::size_t kSamples = 96;
+constexpr int kReach = 2;   // pixels to both sides
+constexpr int kBorder = 3;  // of the 5 x 5 kernels and the parabola
+constexpr double kLeastCosine = 0.87;
+constexpr std::size_t kLeastPoints = 12;
+constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // [px]
+
+// Where the gradient has its crest across an ellipse's perimeter; nullopt where there is none.
+std::optional<Eigen::Vector2d> crest_across(const ImageView& luma,
+                                            const Eigen::Vector2d& foot,
+                                            const Eigen::Vector2d& to_bright,
+                                            double least_gradient) {
+  const bool is_flat = std::abs(to_bright.x()) > std::abs(to_bright.y());
+  const int x = static_cast<int>(std::floor(foot.x() + 0.5));
+  const int y = static_cast<int>(std::floor(foot.y() + 0.5));
+  const int margin = kReach + 1 + kBorder;
+  if (x < margin || y < margin || x >= luma.width - margin || y >= luma.height - margin) {
+    return std::nullopt;
+  }
+  std::array<Gradient, 2 * kReach + 3> gradients;
+  std::array<double, 2 * kReach + 3> heights{};
+  for (int k = 0; k < 2 * kReach + 3; ++k) {
+    const int offset = k - kReach - 1;
+    const auto i = static_cast<std::size_t>(k);
+    gradients[i] = gradient_at(luma, x + (is_flat ? offset : 0), y + (is_flat ? 0 : offset));
+    heights[i] = gradients[i].x * to_bright.x() + gradients[i].y * to_bright.y();
+  }
+  const auto top = std::max_element(heights.begin() + 1, heights.end() - 1);
+  const auto i = static_cast<std::size_t>(top - heights.begin());
+  const double strength = std::hypot(gradients[i].x, gradients[i].y);
+  if (*top < least_gradient || *top < kLeastCosine * strength) return std::nullopt;
+  const double curvature = heights[i - 1] - 2.0 * heights[i] + heights[i + 1];
+  if (!(curvature < 0.0)) return std::nullopt;
+  const double offset = std::clamp(0.5 * (heights[i - 1] - heights[i + 1]) / curvature, -0.7, 0.7);
+  const double along = static_cast<double>(i) - kReach - 1 + offset;
+  return Eigen::Vector2d(x + (is_flat ? along : 0.0), y + (is_flat ? 0.0 : along));
+}
+
+}  // namespace
+
+std::optional<Ellipse> refined_on_picture(const ImageView& luma,
+                                          const Ellipse& e,
+                                          Polarity polarity,
+                                          double least_gradient) {
+  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d across(-axis.y(), axis.x());
+  const double sign = static_cast<int>(polarity);
+  std::array<Eigen::Vector2d, kSamples> points;
+  std::array<double, kSamples> lengths{};
+  std::size_t count = 0;
+  const double step = 2.0 * std::numbers::pi / kSamples;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double u = std::cos(step * static_cast<double>(i));
+    const double v = std::sin(step * static_cast<double>(i));
+    const Eigen::Vector2d foot = e.center() + e.semi_major * u * axis + e.semi_minor * v * across;
+    const Eigen::Vector2d slope = e.semi_minor * u * axis + e.semi_major * v * across;
+    const double speed = slope.norm();
+    const Eigen::Vector2d normal = slope / speed;
+    const auto point = crest_across(luma, foot, sign * normal, least_gradient);
+    if (!point) continue;
+    const double curvature = e.semi_major * e.semi_minor / (speed * speed * speed);
+    points[count] = *point + kCurvatureBias * curvature * normal;
+    lengths[count++] = speed * step;
+  }
+  if (count < kLeastPoints) return std::nullopt;
+
+  Ellipse refined = e;
+  for (const double reach : kTukeyReach) {
+    GeometricFit fit(refined);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double r = fit.distance_px(points[i]) / reach;
+      if (std::abs(r) < 1.0) fit.add(points[i], (1.0 - r * r) * (1.0 - r * r) * lengths[i]);
+    }
+    const auto better = fit.solve();
+    if (!better) return std::nullopt;
+    refined = *better;
+  }
+  return refined;
+}
+
+}  // namespace ellipse
