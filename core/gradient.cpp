@@ -253,7 +253,7 @@ void GradientMap::compute(const ImageView& luma, double threshold, double floor)
   resize(luma);
   if (luma.empty()) return;
   measure_noise(luma, floor);
-  if (threshold > 0.0) threshold_ = std::min(kGradientGain * threshold, kLargestThreshold);
+  if (threshold > 0.0) threshold_ = std::min(kGradientGain * threshold, 32767.0);
   std::fill(crests_.begin(), crests_.end(), std::uint8_t{0});
   const auto least = static_cast<Int>(threshold_);
   const int inside = width_ - 2 * kBorder;

@@ -87,8 +87,10 @@ PerimeterEvidence PerimeterProbe::probe(
 
     const Gradient& g = map.gradients()[pixel];
     const CrestPoint crest = crest_point(map, pixel);
-    EdgeHit hit{crest.point, foot, normal, 0.0, 0.0, length, i};
-    hit.residual_px = normal.dot(crest.point - foot);
+    const double curvature = e.semi_major * e.semi_minor / (speed * speed * speed);
+    const Eigen::Vector2d edge = crest.point + kCrestShift * curvature * normal;
+    EdgeHit hit{edge, foot, normal, 0.0, 0.0, length, i};
+    hit.residual_px = normal.dot(edge - foot);
     const double strength =
         std::sqrt(static_cast<double>(g.x) * g.x + static_cast<double>(g.y) * g.y);
     const double sine = sign * (g.y * normal.x() - g.x * normal.y()) / strength;

@@ -72,7 +72,7 @@ std::optional<Ellipse> refined_on_picture(const ImageView& luma,
     const auto point = crest_across(luma, foot, sign * normal, least_gradient);
     if (!point) continue;
     const double curvature = e.semi_major * e.semi_minor / (speed * speed * speed);
-    points[count] = *point + kCurvatureBias * curvature * normal;
+    points[count] = *point + kCrestShift * curvature * normal;
     lengths[count++] = speed * step;
   }
   if (count < kLeastPoints) return std::nullopt;

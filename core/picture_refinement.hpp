@@ -18,8 +18,4 @@ namespace ellipse {
                                                         Polarity polarity,
                                                         double least_gradient);
 
-/// How far inside a curved edge the crest of its smoothed gradient lies [px], per curvature
-/// [1/px]: smoothing with variance v along an edge of curvature k draws its crest in by v k / 2.
-inline constexpr double kCurvatureBias = 0.5;
-
 }  // namespace ellipse

@@ -47,7 +47,7 @@ class BruteForce {
   }
 
   [[nodiscard]] double at(const Eigen::Vector2d& pixel) const {
-    constexpr int kHalf = 6;
+    constexpr int kHalf = 4;
     const double step = 3.6 * blur_px_ / kHalf;
     double sum = 0.0;
     double weights = 0.0;

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "core/arc_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/scene/random.hpp"
+#include "core/target_selection.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+Thresholds detecting() {
+  Thresholds thresholds;
+  const ArcDetector detector;
+  thresholds.contour_overlap = detector.detecting_overlaps().contour;
+  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
+  return thresholds;
+}
+
+double best_iou(const Picture& picture, const Ellipse& truth, const Thresholds& thresholds) {
+  ArcDetector detector;
+  double best = 0.0;
+  for (const Detection& d : detector.detect(picture.view(), thresholds)) {
+    best = std::max(best, iou_inside(d.ellipse, truth, picture.width, picture.height));
+  }
+  return best;
+}
+
+Scene disc() {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  return scene;
+}
+
+bool finds_nothing(const Picture& picture) {
+  ArcDetector detector;
+  return detector.detect(picture.view(), detecting()).empty();
+}
+
+TEST(ArcDetector, FindsRingsOfEitherPolarity) {
+  const Ellipse truth{160.2, 119.7, 70.0, 45.0, 0.6};
+  Scene scene = plain_ring();
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+  std::swap(scene.pad.paint_level, scene.ground.level);
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+}
+
+TEST(ArcDetector, FindsWhatIsPartlyHidden) {
+  const Ellipse truth{160.2, 119.7, 70.0, 55.0, 0.6};
+  Scene scene = plain_ring();
+  scene.pad.gaps_rad = {0.3, 2.5};
+  scene.pad.gap_width_rad = 0.5;
+  scene.bars = {support::bar_px({60.0, 0.0}, {220.0, 239.0}, 14.0, 90.0)};
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.95);
+}
+
+TEST(ArcDetector, FindsWhatTheFrameCuts) {
+  const Ellipse truth{20.0, 119.7, 80.0, 60.0, 0.2};
+  EXPECT_GT(best_iou(rendered(plain_ring(), truth), truth, detecting()), 0.95);
+}
+
+TEST(ArcDetector, FindsCrumpledRings) {
+  const Ellipse truth{160.0, 120.0, 90.0, 70.0, 0.2};
+  for (const double crumple : {0.01, 0.02, 0.03}) {
+    Scene scene = plain_ring();
+    scene.pad.crumple = crumple;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.93) << crumple;
+  }
+}
+
+TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
+  const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
+  const Picture picture = rendered(disc(), truth, 120, 100);
+  EXPECT_EQ(best_iou(picture, truth, detecting()), 0.0);
+  Thresholds thresholds = detecting();
+  thresholds.min_contour_size = 20;
+  EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
+}
+
+TEST(ArcDetector, RejectsByEachThreshold) {
+  const Ellipse truth{160.0, 120.0, 60.0, 30.0, 0.2};
+  const Picture picture = rendered(disc(), truth);
+  ASSERT_GT(best_iou(picture, truth, detecting()), 0.95);
+  const auto with = [&](auto change) {
+    Thresholds thresholds = detecting();
+    change(thresholds);
+    return best_iou(picture, truth, thresholds);
+  };
+  EXPECT_EQ(with([](Thresholds& t) { t.min_axis_px = 62.0; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.max_axis_px = 118.0; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.max_axis_ratio = 1.9; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.min_contour_size = 400; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.edge_high = 60.0; }), 0.0);
+}
+
+TEST(ArcDetector, IsExact) {
+  // Discs of 10 to 120 px under noise: the centre and both axes, without bias.
+  Random random(4);
+  std::vector<double> centre;
+  std::vector<double> axes;
+  ArcDetector detector;
+  for (int i = 0; i < 60; ++i) {
+    const double radius = 10.0 * std::pow(12.0, random.unit());
+    const double flat = std::sqrt(random.between(1.0, 2.0));
+    const Ellipse truth{200.0 + random.unit(),
+                        180.0 + random.unit(),
+                        radius * flat,
+                        radius / flat,
+                        random.between(-1.5, 1.5)};
+    Scene scene = disc();
+    scene.sensor.read_noise = 3.0;
+    scene.seed = static_cast<std::uint64_t>(i);
+    const Picture picture = rendered(scene, truth, 400, 360);
+    const auto target = select_target(detector.detect(picture.view(), detecting()));
+    ASSERT_TRUE(target) << truth.semi_major;
+    centre.push_back((target->ellipse.center() - truth.center()).norm());
+    axes.push_back(target->ellipse.semi_major - truth.semi_major);
+    axes.push_back(target->ellipse.semi_minor - truth.semi_minor);
+  }
+  std::sort(centre.begin(), centre.end());
+  std::sort(axes.begin(), axes.end());
+  EXPECT_LE(centre[30], 0.02);
+  EXPECT_NEAR(axes[60], 0.0, 0.01);
+  EXPECT_GT(axes.front(), -0.1);
+  EXPECT_LT(axes.back(), 0.1);
+}
+
+TEST(ArcDetector, AdaptsToTheLight) {
+  const Ellipse truth{160.0, 120.0, 60.0, 40.0, 0.2};
+  for (const double gain : {1.0, 0.4, 0.14}) {
+    Scene scene = plain_ring();
+    scene.sensor.gain = gain;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.9) << gain;
+  }
+}
+
+TEST(ArcDetector, FindsNothingInAFlatPicture) {
+  for (const int level : {0, 128, 255}) {
+    EXPECT_TRUE(finds_nothing(Picture(200, 150, static_cast<std::uint8_t>(level)))) << level;
+  }
+}
+
+TEST(ArcDetector, FindsNothingInNoise) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Picture picture(320, 240);
+    Random random(seed);
+    for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
+    EXPECT_TRUE(finds_nothing(picture)) << seed;
+  }
+}
+
+TEST(ArcDetector, FindsNothingOnACheckerboard) {
+  for (const int square : {1, 2, 7, 20, 33}) {
+    Picture picture(320, 240);
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        picture.at(x, y) = ((x / square + y / square) & 1) != 0 ? 255 : 0;
+      }
+    }
+    EXPECT_TRUE(finds_nothing(picture)) << square;
+  }
+}
+
+TEST(ArcDetector, SurvivesAnySizeAndStride) {
+  ArcDetector detector;
+  Random random(8);
+  for (const int width : {1, 2, 3, 5, 8, 33, 257}) {
+    for (const int height : {1, 2, 3, 5, 8, 33, 257}) {
+      const int stride = width + 7;
+      std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * height));
+      for (std::uint8_t& level : pixels) level = random.below(8) == 0 ? 255 : 0;
+      EXPECT_LE(detector.detect({pixels.data(), width, height, stride}, detecting()).size(), 400U);
+    }
+  }
+  EXPECT_TRUE(detector.detect({}, detecting()).empty());
+}
+
+TEST(ArcDetector, GivesTheSameForTheSame) {
+  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 70.0, 45.0, 0.6});
+  ArcDetector used;
+  (void)used.detect(Picture(500, 300, 90).view(), detecting());
+  const auto again = used.detect(picture.view(), detecting());
+  ArcDetector fresh;
+  const auto first = fresh.detect(picture.view(), detecting());
+  ASSERT_EQ(first.size(), again.size());
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].ellipse, again[i].ellipse);
+}
+
+}  // namespace
+}  // namespace ellipse
