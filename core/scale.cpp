@@ -1,22 +1,53 @@
 // SPDX-License-Identifier: MIT
 #include "core/scale.hpp"
 
-#include <opencv2/imgproc.hpp>
+#include <algorithm>
 
 namespace ellipse {
+namespace {
+
+// Column by column. Sixteen bits hold 128 rows.
+void add_rows(const ImageView& luma, int first, int count, std::uint16_t* __restrict sums) {
+  const std::uint8_t* __restrict row = luma.row(first);
+  for (int x = 0; x < luma.width; ++x) sums[x] = row[x];
+  for (int k = 1; k < count; ++k) {
+    row = luma.row(first + k);
+    for (int x = 0; x < luma.width; ++x) sums[x] = static_cast<std::uint16_t>(sums[x] + row[x]);
+  }
+}
+
+void average(const std::uint16_t* __restrict sums,
+             int scale,
+             int width,
+             std::uint8_t* __restrict out) {
+  if (scale == 2) {  // the one that is used most, as vectors
+    for (int x = 0; x < width; ++x) {
+      out[x] = static_cast<std::uint8_t>((sums[2 * x] + sums[2 * x + 1] + 2) >> 2);
+    }
+    return;
+  }
+  const int pixels = scale * scale;
+  for (int x = 0; x < width; ++x) {
+    int sum = pixels / 2;
+    for (int k = 0; k < scale; ++k) sum += sums[x * scale + k];
+    out[x] = static_cast<std::uint8_t>(sum / pixels);
+  }
+}
+
+}  // namespace
 
 ImageView Scaler::reduce(const ImageView& luma, int scale) {
-  if (scale == 1) return luma;
+  if (scale <= 1) return luma;
   const int width = luma.width / scale;
   const int height = luma.height / scale;
   if (width == 0 || height == 0) return {};
-  const cv::Mat whole_blocks(height * scale,
-                             width * scale,
-                             CV_8UC1,
-                             const_cast<std::uint8_t*>(luma.data),
-                             static_cast<std::size_t>(luma.stride));
-  cv::resize(whole_blocks, reduced_, {width, height}, 0, 0, cv::INTER_AREA);
-  return {reduced_.data, width, height, static_cast<std::ptrdiff_t>(reduced_.step)};
+  reduced_.resize(std::max(reduced_.size(), static_cast<std::size_t>(width) * height));
+  sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(luma.width)));
+  for (int y = 0; y < height; ++y) {
+    add_rows(luma, y * scale, scale, sums_.data());
+    average(sums_.data(), scale, width, reduced_.data() + static_cast<std::ptrdiff_t>(y) * width);
+  }
+  return {reduced_.data(), width, height, width};
 }
 
 Ellipse to_frame(const Ellipse& in_region, const Rect& region, int scale) {

@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <opencv2/core/mat.hpp>
+#include <cstdint>
+#include <vector>
 
 #include "core/ellipse.hpp"
 #include "core/image_view.hpp"
@@ -13,13 +14,14 @@ class Scaler {
   /// Each pixel of the result is the mean of scale x scale pixels, so that x in the result is
   /// (x + 0.5) scale - 0.5 in the picture. What is left over at the right and below is cut off.
   ///
-  /// @param scale  A power of two, at least 1. At 1 the picture itself is returned.
+  /// @param scale  A power of two from 1 to 128. At 1 the picture itself is returned.
   /// @return Valid until the next call or until the picture goes away; empty where the picture is
   ///         smaller than `scale`. Allocates when the picture is larger than any before.
   [[nodiscard]] ImageView reduce(const ImageView& luma, int scale);
 
  private:
-  cv::Mat reduced_;
+  std::vector<std::uint8_t> reduced_;
+  std::vector<std::uint16_t> sums_;
 };
 
 /// From the pixels of a region reduced by `scale` to those of the frame that the region is in:

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/arc_detector.hpp"
 #include "core/contour_detector.hpp"
 #include "core/ellipse_fit.hpp"
 #include "core/luma.hpp"
@@ -123,20 +124,23 @@ TEST_F(Allocations, NoneInLumaOfARegionThatMoves) {
   EXPECT_EQ(steady_allocations_of(read), 0);
 }
 
-// cv::resize has a table of scale^2 + columns numbers, on the stack while they are at most 264.
-TEST_F(Allocations, NoneInScalerOfSmallPictures) {
+TEST_F(Allocations, NoneInScaler) {
   Scaler scaler;
-  for (const int scale : {2, 4, 8}) {
-    const Picture picture(200 * scale, 16 * scale);
+  for (int scale = 1; scale <= 128; scale *= 2) {
+    const Picture picture(3840, 2 * scale);
     EXPECT_EQ(steady_allocations_of([&] { return scaler.reduce(picture.view(), scale).width; }), 0);
   }
 }
 
-TEST_F(Allocations, AtMostThatTableInScalerOfAnyPicture) {
-  Scaler scaler;
-  for (int scale = 1; scale <= 128; scale *= 2) {
-    const Picture picture(3840, 2 * scale);
-    EXPECT_LE(steady_allocations_of([&] { return scaler.reduce(picture.view(), scale).width; }), 1);
+TEST_F(Allocations, NoneInArcDetector) {
+  for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
+    ArcDetector detector;
+    for (const int least_contour : {50, 20}) {  // at half the size first, and not
+      Thresholds thresholds;
+      thresholds.min_contour_size = least_contour;
+      const auto detect = [&] { return detector.detect(picture.view(), thresholds).size(); };
+      EXPECT_EQ(steady_allocations_of(detect), 0) << least_contour;
+    }
   }
 }
 

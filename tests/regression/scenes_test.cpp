@@ -49,7 +49,7 @@ constexpr Limits kLimits[] = {
     {"occluded", 2.0, 0.1, 40, "contours", "redetect", 0, 23},
     {"dash", 2.0, 1.0 / 30.0, 20, "contours", "redetect", 13, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "contours", "none", 8, 0},
-    {"touchdown", 2.0, 0.1, 40, "contours", "redetect", 16, 3},
+    {"touchdown", 2.0, 0.1, 40, "contours", "redetect", 17, 2},
     {"touchdown", 2.0, 0.1, 40, "contours", "none", 14, 2},
     {"reenter", 2.0, 0.1, 40, "contours", "redetect", 19, 0},
     {"reenter", 2.0, 0.1, 40, "contours", "none", 19, 0},
