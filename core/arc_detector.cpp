@@ -167,7 +167,7 @@ void ArcDetector::try_ellipse(const Ellipse& guess,
   for (const Refused& known : refused_) {
     if (known.polarity == polarity && are_same(known.ellipse, guess, kSameRefused)) return;
   }
-  if (!verifier_.is_promising(map_, guess, polarity, thresholds)) return;
+  if (!EllipseVerifier::is_promising(map_, guess, polarity, thresholds)) return;
   const auto verified = verifier_.verify(map_, edge_density_, guess, polarity, thresholds);
   if (verified) {
     add(*verified);

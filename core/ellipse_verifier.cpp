@@ -142,7 +142,7 @@ bool EllipseVerifier::approach(const Request& request, Ellipse& e) {
   const double score =
       best_significance(evidence.levels, evidence.inside_px, request.edge_density, 0.0, 0.5);
   if (score < 0.7 * kLeastScore) return false;
-  (void)probe(PerimeterProbe::kMostSamples, 2);
+  (void)probe(128, 2);
   return improve(request, e, 2.0);
 }
 
@@ -297,11 +297,11 @@ bool EllipseVerifier::is_promising(const GradientMap& map,
                                    const Thresholds& thresholds) {
   const double wanted = thresholds.ellipse_overlap;
   const int samples = std::max(32, samples_for(guess) / 2);
-  if (probe_.probe(map, guess, polarity, samples, 2).support >= kFirstSupport * wanted) return true;
+  if (perimeter_support(map, guess, polarity, samples, 2) >= kFirstSupport * wanted) return true;
   const double reach_px = crumple_px(guess);
   if (reach_px < 2.2) return false;
   const int tolerance_px = static_cast<int>(reach_px + 0.5);
-  return probe_.probe(map, guess, polarity, 32, tolerance_px).support >= wanted;
+  return perimeter_support(map, guess, polarity, 32, tolerance_px) >= wanted;
 }
 
 std::optional<VerifiedEllipse> EllipseVerifier::verify(const GradientMap& map,

@@ -33,10 +33,10 @@ struct VerifiedEllipse {
 class EllipseVerifier {
  public:
   /// A quick look: whether enough edges are near the guess.
-  [[nodiscard]] bool is_promising(const GradientMap& map,
-                                  const Ellipse& guess,
-                                  Polarity polarity,
-                                  const Thresholds& thresholds);
+  [[nodiscard]] static bool is_promising(const GradientMap& map,
+                                         const Ellipse& guess,
+                                         Polarity polarity,
+                                         const Thresholds& thresholds);
 
   /// @param edge_density  Share of the picture's pixels that are chained crests.
   /// @param thresholds    Axes, ratio, overlaps and contour size.

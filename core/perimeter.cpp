@@ -45,52 +45,96 @@ std::int32_t nearest_edge(const GradientMap& map,
   return -1;
 }
 
+// One place on the perimeter, and the edge that was met there.
+struct Place {
+  Eigen::Vector2d foot;
+  Eigen::Vector2d normal;
+  double speed;        // length per eccentric anomaly
+  bool is_inside;      // the picture
+  std::int32_t pixel;  // of the edge; -1 where none was met
+};
+
+// Calls use(place, sample) all around an ellipse.
+template <class Use>
+void for_each_place(const GradientMap& map,
+                    const Ellipse& e,
+                    Polarity polarity,
+                    int samples,
+                    int tolerance_px,
+                    const Use& use) {
+  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d across(-axis.y(), axis.x());
+  const Eigen::Vector2d major = e.semi_major * axis;
+  const Eigen::Vector2d minor = e.semi_minor * across;
+  const Eigen::Vector2d slope_u = e.semi_minor * axis;
+  const Eigen::Vector2d slope_v = e.semi_major * across;
+  const double sign = static_cast<int>(polarity);  // dark inside: the gradient points outwards
+  const int margin = GradientMap::kBorder + tolerance_px;
+  const int stride = PerimeterProbe::kMostSamples / samples;
+  for (int i = 0; i < samples; ++i) {
+    const Eigen::Vector2d& u = circle_points()[static_cast<std::size_t>(i * stride)];
+    Place place{e.center() + u.x() * major + u.y() * minor,
+                u.x() * slope_u + u.y() * slope_v,
+                0.0,
+                false,
+                -1};
+    place.speed = place.normal.norm();
+    place.normal /= place.speed;
+    const double x = place.foot.x() + 0.5;
+    const double y = place.foot.y() + 0.5;
+    place.is_inside =
+        x >= margin && y >= margin && x < map.width() - margin && y < map.height() - margin;
+    if (place.is_inside) {
+      const bool is_flat = std::abs(place.normal.x()) > std::abs(place.normal.y());
+      const Crossing crossing{static_cast<int>(y) * map.stride() + static_cast<int>(x),
+                              is_flat ? 1 : map.stride()};
+      place.pixel = nearest_edge(map, crossing, sign * place.normal, tolerance_px);
+    }
+    use(place, i);
+  }
+}
+
 }  // namespace
+
+double perimeter_support(
+    const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
+  double inside = 0.0;
+  double met = 0.0;
+  for_each_place(map, e, polarity, samples, tolerance_px, [&](const Place& place, int /*sample*/) {
+    inside += place.is_inside ? place.speed : 0.0;
+    met += place.pixel >= 0 ? place.speed : 0.0;
+  });
+  return inside > 0.0 ? met / inside : 0.0;
+}
 
 PerimeterEvidence PerimeterProbe::probe(
     const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
   hits_.clear();
   PerimeterEvidence evidence;
-  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d across(-axis.y(), axis.x());
-  const double sign = static_cast<int>(polarity);  // dark inside: the gradient points outwards
-  const int margin = GradientMap::kBorder + tolerance_px;
+  const double sign = static_cast<int>(polarity);
   const double spacing = 2.0 * std::numbers::pi / samples;
   double total_px = 0.0;
   double hit_px = 0.0;
   double inside_turn = 0.0;
   double hit_turn = 0.0;
   double gradients = 0.0;
-  for (int i = 0; i < samples; ++i) {
-    const Eigen::Vector2d& u =
-        circle_points()[static_cast<std::size_t>(i * (kMostSamples / samples))];
-    const Eigen::Vector2d foot =
-        e.center() + e.semi_major * u.x() * axis + e.semi_minor * u.y() * across;
-    Eigen::Vector2d normal = e.semi_minor * u.x() * axis + e.semi_major * u.y() * across;
-    const double speed = normal.norm();
-    normal /= speed;
-    const double length = speed * spacing;
+  const auto use = [&](const Place& place, int sample) {
+    const double length = place.speed * spacing;
+    const double turn = 1.0 / (place.speed * place.speed);  // curvature x length, but for a factor
     total_px += length;
-    const double x = foot.x() + 0.5;
-    const double y = foot.y() + 0.5;
-    if (!(x >= margin && y >= margin && x < map.width() - margin && y < map.height() - margin)) {
-      continue;
-    }
+    if (!place.is_inside) return;
     evidence.inside_px += length;
-    const double turn = 1.0 / (speed * speed);  // curvature times length, but for a factor
     inside_turn += turn;
-    const bool is_flat = std::abs(normal.x()) > std::abs(normal.y());
-    const Crossing crossing{static_cast<int>(y) * map.stride() + static_cast<int>(x),
-                            is_flat ? 1 : map.stride()};
-    const std::int32_t pixel = nearest_edge(map, crossing, sign * normal, tolerance_px);
-    if (pixel < 0) continue;
+    if (place.pixel < 0) return;
 
-    const Gradient& g = map.gradients()[pixel];
-    const CrestPoint crest = crest_point(map, pixel);
-    const double curvature = e.semi_major * e.semi_minor / (speed * speed * speed);
+    const Gradient& g = map.gradients()[place.pixel];
+    const Eigen::Vector2d& normal = place.normal;
+    const CrestPoint crest = crest_point(map, place.pixel);
+    const double curvature =
+        e.semi_major * e.semi_minor / (place.speed * place.speed * place.speed);
     const Eigen::Vector2d edge = crest.point + kCrestShift * curvature * normal;
-    EdgeHit hit{edge, foot, normal, 0.0, 0.0, length, i};
-    hit.residual_px = normal.dot(edge - foot);
+    EdgeHit hit{edge, place.foot, normal, 0.0, 0.0, length, sample};
+    hit.residual_px = normal.dot(edge - place.foot);
     const double strength =
         std::sqrt(static_cast<double>(g.x) * g.x + static_cast<double>(g.y) * g.y);
     const double sine = sign * (g.y * normal.x() - g.x * normal.y()) / strength;
@@ -106,7 +150,8 @@ PerimeterEvidence PerimeterProbe::probe(
         evidence.levels[k] += length;
       }
     }
-  }
+  };
+  for_each_place(map, e, polarity, samples, tolerance_px, use);
   if (!(evidence.inside_px > 0.0)) return evidence;
   evidence.inside_fraction = evidence.inside_px / total_px;
   evidence.support = hit_px / evidence.inside_px;

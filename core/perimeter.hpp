@@ -37,6 +37,10 @@ struct PerimeterEvidence {
   double sharpness = 0.0;          ///< Mean of CrestPoint::sharpness.
 };
 
+/// The same as PerimeterEvidence::support of PerimeterProbe::probe(), and no more.
+[[nodiscard]] double perimeter_support(
+    const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px);
+
 /// Walks around ellipses and looks for chained edges along the normals.
 class PerimeterProbe {
  public:

@@ -53,6 +53,10 @@ std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tra
   const ImageView region = luma_reader_.read(frame, search_region_);
   const ImageView reduced = scaler_.reduce(region, scale_);
   const auto detections = detector_->detect(reduced, determine_thresholds(is_tracking));
+  candidates_.assign(detections.begin(), detections.end());
+  for (Detection& candidate : candidates_) {
+    candidate.ellipse = to_frame(candidate.ellipse, search_region_, scale_);
+  }
   const std::optional<Ellipse> last_target =
       is_tracking_ ? std::optional(to_region(last_ellipse_, search_region_, scale_)) : std::nullopt;
   const std::optional<Detection> selected = select_target(detections, last_target);

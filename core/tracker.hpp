@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "core/luma.hpp"
 #include "core/scale.hpp"
@@ -51,6 +53,9 @@ class Tracker {
   /// Forgets the target, the scale and the region. Numbers of targets go on.
   void reset();
 
+  /// All ellipses of the last frame, the target among them [px of the frame]. Until the next call.
+  [[nodiscard]] std::span<const Detection> candidates() const { return candidates_; }
+
   /// Where the last frame was searched [px].
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
@@ -63,6 +68,7 @@ class Tracker {
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;
   bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
+  std::vector<Detection> candidates_;
   LumaReader luma_reader_;
   Scaler scaler_;
 

@@ -16,6 +16,7 @@
 
 #include "gst/gstellipseoverlay.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "gst/overlay.hpp"
@@ -26,6 +27,7 @@ enum { PROP_0, PROP_TRUTH, PROP_OVERLAY, PROP_OVERLAY_COLOR, PROP_LINE_WIDTH };
 static constexpr auto kDefaultParts = static_cast<GstEllipseOverlayFlags>(
     GST_ELLIPSE_OVERLAY_ELLIPSE | GST_ELLIPSE_OVERLAY_CENTRE | GST_ELLIPSE_OVERLAY_LABEL);
 static constexpr guint kTruthColor = 0xffff4040U;
+static constexpr guint kCandidateColor = 0xffb0b0b0;
 
 struct _GstEllipseOverlay {
   GstVideoFilter parent;
@@ -77,11 +79,17 @@ static void gst_ellipse_overlay_get_property(GObject* object,
 static void draw_all(GstVideoFrame& frame, const OverlayStyle& style, bool shows_truth) {
   OverlayStyle truth_style = style;
   truth_style.color_argb = kTruthColor;
+  const OverlayStyle candidate_style{
+      GST_ELLIPSE_OVERLAY_ELLIPSE, kCandidateColor, std::max(1U, style.line_width_px / 2)};
   gpointer state = nullptr;
   while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(frame.buffer, &state)) {
-    const bool is_truth = meta->role == GST_ELLIPSE_ROLE_TRUTH;
-    if (is_truth && !shows_truth) continue;
-    draw_overlay(frame, *meta, is_truth ? truth_style : style);
+    if (meta->role == GST_ELLIPSE_ROLE_TRUTH) {
+      if (shows_truth) draw_overlay(frame, *meta, truth_style);
+    } else if (meta->role == GST_ELLIPSE_ROLE_CANDIDATE) {
+      draw_overlay(frame, *meta, candidate_style);
+    } else {
+      draw_overlay(frame, *meta, style);
+    }
   }
 }
 

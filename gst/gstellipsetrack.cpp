@@ -207,6 +207,10 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
     if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
     details = gst_ellipse_meta_to_structure(meta);
   }
+  if (properties.candidates) {
+    attach_candidate_metas(
+        buffer, self->stream->tracker.candidates(), target, GST_VIDEO_FILTER(self)->in_info);
+  }
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target = target;
 

@@ -17,18 +17,32 @@ const gchar* state_nick(const std::optional<ellipse::Target>& target) {
   return "lost";
 }
 
+static GstEllipseMeta* attach(GstBuffer* buffer,
+                              GstEllipseRole role,
+                              const ellipse::Ellipse& e,
+                              const GstVideoInfo& info) {
+  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, role);
+  const gint width = GST_VIDEO_INFO_WIDTH(&info);
+  const gint height = GST_VIDEO_INFO_HEIGHT(&info);
+  meta->cx = e.cx;
+  meta->cy = e.cy;
+  meta->semi_major = e.semi_major;
+  meta->semi_minor = e.semi_minor;
+  meta->angle_rad = e.angle_rad;
+  meta->visible_fraction = ellipse::visible_fraction(e, width, height);
+  meta->frame_width = static_cast<guint>(width);
+  meta->frame_height = static_cast<guint>(height);
+  meta->pts = GST_BUFFER_PTS(buffer);
+  return meta;
+}
+
 const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
                                          const ellipse::Target& target,
                                          const GstVideoInfo& info,
                                          GstClockTime processing_time) {
-  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
   meta->state = static_cast<GstEllipseState>(target.state);
   meta->id = target.id;
-  meta->cx = target.ellipse.cx;
-  meta->cy = target.ellipse.cy;
-  meta->semi_major = target.ellipse.semi_major;
-  meta->semi_minor = target.ellipse.semi_minor;
-  meta->angle_rad = target.ellipse.angle_rad;
   meta->contour_overlap = target.contour_overlap;
   meta->ellipse_overlap = target.ellipse_overlap;
   meta->visible_fraction = target.visible_fraction;
@@ -37,11 +51,20 @@ const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->roi_y = target.search_region.y;
   meta->roi_width = static_cast<guint>(target.search_region.width);
   meta->roi_height = static_cast<guint>(target.search_region.height);
-  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
-  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
-  meta->pts = GST_BUFFER_PTS(buffer);
   meta->processing_time = processing_time;
   return meta;
+}
+
+void attach_candidate_metas(GstBuffer* buffer,
+                            std::span<const ellipse::Detection> candidates,
+                            const std::optional<ellipse::Target>& target,
+                            const GstVideoInfo& info) {
+  for (const ellipse::Detection& candidate : candidates) {
+    if (target && candidate.ellipse == target->ellipse) continue;
+    GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
+    meta->contour_overlap = candidate.contour_overlap;
+    meta->ellipse_overlap = candidate.ellipse_overlap;
+  }
 }
 
 void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {

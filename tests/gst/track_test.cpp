@@ -89,6 +89,34 @@ TEST(EllipseTrack, AttachesNothingWhereNothingIs) {
   EXPECT_EQ(target_on(out), nullptr);
 }
 
+TEST(EllipseTrack, AttachesCandidatesWhereTheyAreAskedFor) {
+  for (const char* detector : {"contours", "arcs"}) {
+    const auto harness = tracker("detector=" + std::string(detector) + " candidates=true");
+    const auto out = push(harness, gray_buffer_of(ring_picture()));
+    ASSERT_NE(target_on(out), nullptr) << detector;
+    const GstEllipseMeta* inner =
+        gst_buffer_get_ellipse_meta(out.get(), GST_ELLIPSE_ROLE_CANDIDATE);
+    ASSERT_NE(inner, nullptr) << detector;
+    EXPECT_NEAR(inner->semi_major, kRing.semi_major * (1.0 - 0.205), 0.5) << detector;
+    EXPECT_EQ(inner->frame_width, 320U);
+    const auto without = tracker("detector=" + std::string(detector));
+    const auto plain = push(without, gray_buffer_of(ring_picture()));
+    EXPECT_EQ(gst_buffer_get_ellipse_meta(plain.get(), GST_ELLIPSE_ROLE_CANDIDATE), nullptr);
+  }
+}
+
+TEST(EllipseTrack, DetectorCanChangeWhilePlaying) {
+  const auto harness = tracker();
+  ASSERT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+  for (const char* detector : {"arcs", "contours", "arcs"}) {
+    gst_util_set_object_arg(G_OBJECT(element_of(harness)), "detector", detector);
+    const auto out = push(harness, gray_buffer_of(ring_picture()));
+    const GstEllipseMeta* meta = target_on(out);
+    ASSERT_NE(meta, nullptr) << detector;
+    EXPECT_NEAR(meta->semi_major, kRing.semi_major, 0.2) << detector;
+  }
+}
+
 TEST(EllipseTrack, RoiMetaSurroundsTheTarget) {
   const auto harness = tracker();
   const auto out = push(harness, gray_buffer_of(ring_picture()));

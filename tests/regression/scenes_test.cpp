@@ -97,7 +97,7 @@ constexpr Limits kLimits[] = {
     {"crumpled", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"noise", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"noise", 2.0, 0.1, 40, "arcs", "none", 40, 0},
-    {"negative", 2.0, 0.1, 40, "arcs", "redetect", 0, 4},
+    {"negative", 2.0, 0.1, 40, "arcs", "redetect", 0, 5},
     {"negative", 2.0, 0.1, 40, "arcs", "none", 0, 6},
     {"orbit", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"orbit", 2.0, 0.1, 40, "arcs", "none", 40, 0},
