@@ -10,7 +10,7 @@
 #include <iostream>
 #include <opencv2/core.hpp>
 
-#include "examples/evaluate/session.hpp"
+#include "examples/evaluate/program.hpp"
 
 namespace evaluate {
 namespace {

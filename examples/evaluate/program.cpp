@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "examples/evaluate/session.hpp"
+#include "examples/evaluate/program.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -101,9 +101,9 @@ class TemporaryFolder {
 };
 
 // One call of the program.
-class Session {
+class Program {
  public:
-  explicit Session(const Options& options)
+  explicit Program(const Options& options)
       : options_(options),
         settings_(settings_from(options)),
         rule_(options.rule == "iou" ? Rule::kIou : Rule::kPublished) {}
@@ -251,7 +251,7 @@ class Session {
 }  // namespace
 
 int run(const Options& options) {
-  const int status = Session(options).run();
+  const int status = Program(options).run();
   if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");
   return status;
 }
