@@ -27,8 +27,11 @@ constexpr double kFullSizeGradient = 0.4;  // of the threshold at half size, whe
 constexpr double kLeastTurnSupport = 0.5;
 constexpr double kLoneInside = 0.3;        // of the perimeter
 constexpr double kLonePartSupport = 0.35;  // above the wanted one, where less than half is inside
-constexpr double kLoneSupport = 0.25;      // above the wanted one, or
-constexpr double kLoneScore = 100.0;       // [nats]
+constexpr double kLoneSupport = 0.25;      // above the wanted one
+constexpr double kLoneCut = 0.75;          // of the perimeter; with less of it the frame cuts it
+constexpr double kLoneRatio = 2.2;         // of the axes
+constexpr double kThickRing = 0.9;         // inner over outer radius
+constexpr double kThinnestRing = 0.97;
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
@@ -57,11 +60,11 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   return true;
 }
 
-// Same centre and shape, another radius, as the two edges of a ring.
-bool are_partners(const Ellipse& a, const Ellipse& b) {
+// Same centre and shape, another radius, as the two edges of a ring at least this thick.
+bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio = kThinnestRing) {
   const double larger = std::max(a.semi_major, b.semi_major);
   const double ratio = std::min(a.semi_major, b.semi_major) / larger;
-  if (ratio < 0.25 || ratio > 0.97) return false;
+  if (ratio < 0.25 || ratio > largest_ratio) return false;
   return (a.center() - b.center()).norm() < 0.06 * larger + 1.5 &&
          std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
 }
@@ -206,11 +209,11 @@ void ArcDetector::use_arcs_on(const VerifiedEllipse& found) {
   }
 }
 
-bool ArcDetector::has_partner(std::size_t i) const {
+bool ArcDetector::has_partner(std::size_t i, double largest_ratio) const {
   const VerifiedEllipse& one = found_[i];
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const VerifiedEllipse& other = found_[k];
-    if (k == i || !are_partners(one.ellipse, other.ellipse)) continue;
+    if (k == i || !are_partners(one.ellipse, other.ellipse, largest_ratio)) continue;
     if (!other.needs_partner) return true;
     if (one.polarity != other.polarity && std::min(one.covered, other.covered) >= 0.2 &&
         std::min(one.inside_fraction, other.inside_fraction) >= 0.3) {
@@ -220,21 +223,29 @@ bool ArcDetector::has_partner(std::size_t i) const {
   return false;
 }
 
-// What has no concentric partner must be more than an arc or a petal: seen to a good part, and
-// there without a gap; or whole; or long enough to make up for a gap.
+// What is alone must be more than a painted arc, or a petal: whole; or, where the frame cuts it,
+// round, seen to a good part, and there without a gap.
 bool ArcDetector::stands_alone(const VerifiedEllipse& found, const Thresholds& thresholds) {
-  if (found.needs_partner || found.inside_fraction < kLoneInside) return false;
   const double support = std::min(found.support, found.turn_support);
   const double wanted = thresholds.ellipse_overlap;
-  if (found.inside_fraction < 0.5) return support >= wanted + kLonePartSupport;
-  return support >= wanted + kLoneSupport || found.score >= kLoneScore;
+  if (found.inside_fraction < kLoneInside) return false;
+  if (found.inside_fraction < kLoneCut && found.ellipse.aspect_ratio() > kLoneRatio) return false;
+  const double excess = found.inside_fraction < 0.5 ? kLonePartSupport : kLoneSupport;
+  return support >= wanted + excess;
+}
+
+// Both edges of a painted line are partners too. So a thin ring has to stand alone.
+bool ArcDetector::is_credible(std::size_t i, const Thresholds& thresholds) const {
+  const VerifiedEllipse& found = found_[i];
+  if (found.turn_support < kLeastTurnSupport) return false;
+  if (found.needs_partner && !has_partner(i, kThinnestRing)) return false;
+  return has_partner(i, kThickRing) || stands_alone(found, thresholds);
 }
 
 void ArcDetector::report(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < found_.size(); ++i) {
     const VerifiedEllipse& found = found_[i];
-    if (found.turn_support < kLeastTurnSupport) continue;
-    if (!has_partner(i) && !stands_alone(found, thresholds)) continue;
+    if (!is_credible(i, thresholds)) continue;
     if (found.on_ellipse < thresholds.contour_overlap) continue;
     detections_.push_back({found.ellipse, found.on_ellipse, found.support, found.score});
     polarities_.push_back(found.polarity);

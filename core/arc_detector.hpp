@@ -44,7 +44,8 @@ class ArcDetector final : public Detector {
   void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);
   void add(const VerifiedEllipse& found);
   void use_arcs_on(const VerifiedEllipse& found);
-  [[nodiscard]] bool has_partner(std::size_t i) const;
+  [[nodiscard]] bool has_partner(std::size_t i, double largest_ratio) const;
+  [[nodiscard]] bool is_credible(std::size_t i, const Thresholds& thresholds) const;
   [[nodiscard]] static bool stands_alone(const VerifiedEllipse& found,
                                          const Thresholds& thresholds);
   void report(const Thresholds& thresholds);
