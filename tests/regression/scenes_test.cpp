@@ -216,5 +216,32 @@ INSTANTIATE_TEST_SUITE_P(Detectors, BareGround, testing::ValuesIn(kBans), [](con
   return std::string(info.param.detector) + '_' + info.param.ground;
 });
 
+// 800 frames without a pad, full of what resembles one.
+TEST(Clutter, FoolsTheArcsInFewFrames) {
+  TrackerSettings settings;
+  set_by_name(settings, "detector", "arcs");
+  set_by_name(settings, "tracking", "none");
+  Tracker tracker(settings);
+  support::Picture picture(kWidth, kHeight);
+  int wrong = 0;
+  for (std::uint64_t seed = kSeed; seed < kSeed + 8; ++seed) {
+    for (const GroundKind kind : {GroundKind::kClutter,
+                                  GroundKind::kFlowers,
+                                  GroundKind::kRounded,
+                                  GroundKind::kSquares,
+                                  GroundKind::kRoad}) {
+      Scene scene = scene_by_name("negative", seed);
+      scene.ground.kind = kind;
+      SceneRenderer renderer(scene);
+      for (int i = 0; i < 20; ++i) {
+        renderer.render(0.5 * i, i, picture.writable());
+        wrong += tracker.process(picture.view(), 0) ? 1 : 0;
+      }
+    }
+  }
+  RecordProperty("false", wrong);
+  EXPECT_LE(wrong, 6);
+}
+
 }  // namespace
 }  // namespace ellipse
