@@ -103,13 +103,22 @@ bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& t
   const auto target = select_target(detections_);
   if (!target || target->ellipse_overlap < kEnoughSupport) return false;
   if (set_score(*target, detections_) < kEnoughScore) return false;
-  for (std::size_t i = 0; i < detections_.size(); ++i) {
-    Ellipse& e = detections_[i].ellipse;
-    e = scaled(e, 2.0);
-    e = refined_on_picture(luma, e, polarities_[i], kFullSizeGradient * map_.threshold())
-            .value_or(e);
-  }
+  refine_at_full_size(luma, thresholds);
   return true;
+}
+
+// What the exact axes show to be beyond the limits is left out.
+void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
+  const double least_gradient = kFullSizeGradient * map_.threshold();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < detections_.size(); ++i) {
+    Detection detection = detections_[i];
+    detection.ellipse = scaled(detection.ellipse, 2.0);
+    detection.ellipse = refined_on_picture(luma, detection.ellipse, polarities_[i], least_gradient)
+                            .value_or(detection.ellipse);
+    if (thresholds.admit_axes_of(detection.ellipse)) detections_[kept++] = detection;
+  }
+  detections_.resize(kept);
 }
 
 void ArcDetector::detect_all(const ImageView& luma, const Thresholds& thresholds) {

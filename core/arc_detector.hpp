@@ -39,6 +39,7 @@ class ArcDetector final : public Detector {
 
   void detect_all(const ImageView& luma, const Thresholds& thresholds);
   [[nodiscard]] bool detect_at_half_size(const ImageView& luma, const Thresholds& thresholds);
+  void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
   void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);

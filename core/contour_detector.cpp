@@ -152,12 +152,6 @@ Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thic
   return {e, contour_overlap, support.ellipse_overlap(), contour_overlap * support.on_edge_px};
 }
 
-bool has_reasonable_axes(const Ellipse& e, const Thresholds& limits) {
-  if (2.0 * e.semi_major > limits.max_axis_px) return false;
-  if (2.0 * e.semi_minor < limits.min_axis_px) return false;
-  return e.aspect_ratio() <= limits.max_axis_ratio;
-}
-
 bool is_known(const Ellipse& e, std::span<const Detection> known) {
   return std::any_of(known.begin(), known.end(), [&](const Detection& other) {
     return max_difference_px(e, other.ellipse) <= kSameFitPx;
@@ -173,7 +167,7 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
                                  std::span<const Detection> known) {
   const std::optional<Ellipse> e = fit_contour(contour, field);
   if (!e) return std::nullopt;
-  if (!has_reasonable_axes(*e, limits)) return std::nullopt;
+  if (!limits.admit_axes_of(*e)) return std::nullopt;
 
   const double on_ellipse = contour_overlap(contour, *e);
   if (on_ellipse < limits.contour_overlap) return std::nullopt;
@@ -181,8 +175,8 @@ std::optional<Detection> examine(std::span<const cv::Point> contour,
   if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
   if (is_known(*e, known)) return std::nullopt;  // from the other side of the same edge
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
-  const bool is_better = better.ellipse_overlap >= found.ellipse_overlap &&
-                         has_reasonable_axes(better.ellipse, limits);
+  const bool is_better =
+      better.ellipse_overlap >= found.ellipse_overlap && limits.admit_axes_of(better.ellipse);
   return is_better ? better : found;
 }
 

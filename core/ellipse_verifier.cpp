@@ -102,9 +102,7 @@ double EllipseVerifier::crumple_px(const Ellipse& e) {
 bool EllipseVerifier::is_reasonable(const Ellipse& e,
                                     const GradientMap& map,
                                     const Thresholds& thresholds) {
-  if (2.0 * e.semi_major > thresholds.max_axis_px) return false;
-  if (2.0 * e.semi_minor < thresholds.min_axis_px) return false;
-  if (e.aspect_ratio() > thresholds.max_axis_ratio) return false;
+  if (!thresholds.admit_axes_of(e)) return false;
   return e.cx > -map.width() && e.cx < 2 * map.width() && e.cy > -map.height() &&
          e.cy < 2 * map.height();
 }

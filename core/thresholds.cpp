@@ -31,6 +31,11 @@ void Thresholds::validate() const {
   check_range("edge_low", edge_low, {0.0, edge_high > 0.0 ? edge_high : kEdgeRange.max});
 }
 
+bool Thresholds::admit_axes_of(const Ellipse& e) const {
+  return 2.0 * e.semi_major <= max_axis_px && 2.0 * e.semi_minor >= min_axis_px &&
+         e.aspect_ratio() <= max_axis_ratio;
+}
+
 Thresholds Thresholds::at_scale(int scale) const {
   Thresholds result = *this;
   result.min_axis_px /= scale;

@@ -1,5 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include "core/ellipse.hpp"
+
 namespace ellipse {
 
 /// The values that a setting may take. NaN is in no range.
@@ -34,6 +36,9 @@ struct Thresholds {
   /// Throws std::invalid_argument that names the field, where a value is NaN, out of its range, or
   /// a pair is the wrong way round.
   void validate() const;
+
+  /// Whether both axes of an ellipse and their ratio are within the limits.
+  [[nodiscard]] bool admit_axes_of(const Ellipse& e) const;
 
   /// The thresholds for a picture whose pixels are `scale` times larger: lengths shrink with it.
   [[nodiscard]] Thresholds at_scale(int scale) const;

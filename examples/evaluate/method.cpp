@@ -60,7 +60,7 @@ class CommandMethod : public Method {
     answer.processing_ms = found->second.ms;
     std::vector<ellipse::Detection> detections = found->second.detections;
     std::erase_if(detections, [](const ellipse::Detection& detection) {
-      return !is_within(detection.ellipse, ellipse::Thresholds());
+      return !ellipse::Thresholds().admit_axes_of(detection.ellipse);
     });
     if (const auto target = ellipse::select_target(detections)) {
       answer.target = target->ellipse;

@@ -21,9 +21,4 @@ ellipse::Detection scored_by_perimeter(const ellipse::Ellipse& e) {
   return {e, 0.0, 0.0, ellipse::perimeter_px(e)};
 }
 
-bool is_within(const ellipse::Ellipse& e, const ellipse::Thresholds& limits) {
-  return 2.0 * e.semi_major <= limits.max_axis_px && 2.0 * e.semi_minor >= limits.min_axis_px &&
-         e.aspect_ratio() <= limits.max_axis_ratio;
-}
-
 }  // namespace evaluate

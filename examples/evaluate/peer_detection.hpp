@@ -15,7 +15,4 @@ namespace evaluate {
 /// What a peer found, where the peer itself says nothing of its evidence: scored by its perimeter.
 [[nodiscard]] ellipse::Detection scored_by_perimeter(const ellipse::Ellipse& e);
 
-/// Whether both axes and their ratio are within the limits; the other thresholds are not read.
-[[nodiscard]] bool is_within(const ellipse::Ellipse& e, const ellipse::Thresholds& limits);
-
 }  // namespace evaluate

@@ -71,7 +71,7 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
     if (!can_be_axis(p, q, least_sq, most_sq)) continue;
     ++votings;
     const auto candidate = vote(p, q);
-    if (candidate && is_within(candidate->ellipse, limits)) keep(*candidate);
+    if (candidate && limits.admit_axes_of(candidate->ellipse)) keep(*candidate);
   }
   return found_;
 }
