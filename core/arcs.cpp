@@ -43,7 +43,9 @@ void to_angles(float* __restrict x, const float* __restrict y, std::size_t n) {
 }
 
 Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
-  return {static_cast<double>(pixel % stride), static_cast<double>(pixel / stride)};
+  const int x = pixel % stride;
+  const int y = pixel / stride;
+  return Eigen::Vector2i(x, y).cast<double>();
 }
 
 }  // namespace

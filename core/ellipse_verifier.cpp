@@ -246,7 +246,7 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& r
   Ellipse e = request.guess;
   if (radius_of(e) < kLeastCrumpledRadius) return std::nullopt;
   const double reach_px = crumple_px(e);
-  const int tolerance_px = static_cast<int>(reach_px + 0.5);
+  const int tolerance_px = static_cast<int>(std::lround(reach_px));
   const int samples = samples_for(e);
   const auto probe = [&](int n) {
     return probe_.probe(request.map, e, request.polarity, n, tolerance_px);
@@ -298,7 +298,7 @@ bool EllipseVerifier::is_promising(const GradientMap& map,
   if (perimeter_support(map, guess, polarity, samples, 2) >= kFirstSupport * wanted) return true;
   const double reach_px = crumple_px(guess);
   if (reach_px < 2.2) return false;
-  const int tolerance_px = static_cast<int>(reach_px + 0.5);
+  const int tolerance_px = static_cast<int>(std::lround(reach_px));
   return perimeter_support(map, guess, polarity, 32, tolerance_px) >= wanted;
 }
 

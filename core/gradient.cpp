@@ -181,7 +181,7 @@ Simd best_simd() {
 }
 
 std::int16_t* GradientMap::row_of(std::vector<std::int16_t>& rows, int y) {
-  const int length = kPadLeft + width_ + kPadRight;
+  const std::ptrdiff_t length = kPadLeft + width_ + kPadRight;
   return rows.data() + length * ((y + kRows) % kRows) + kPadLeft;
 }
 
@@ -190,7 +190,7 @@ void GradientMap::resize(const ImageView& luma) {
   height_ = luma.height;
   stride_ = (width_ + kPadRight) / kBlock * kBlock;
   const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
-  const auto length = static_cast<std::size_t>(kPadLeft + width_ + kPadRight);
+  const auto length = static_cast<std::size_t>(width_) + kPadLeft + kPadRight;
   gradients_.resize(pixels);
   crests_.resize(pixels + kPadRight);
   smooth_.resize(length);
@@ -268,7 +268,9 @@ void GradientMap::compute(const ImageView& luma, double threshold, double floor)
                          row_of(magnitude_, row) + kBorder,
                          row_of(magnitude_, row + 1) + kBorder};
     kernels_of(simd_).crests(rows, codes + kBorder, least, inside);
-    std::memset(codes + width_ - kBorder, 0, static_cast<std::size_t>(stride_ - width_ + kBorder));
+    std::memset(codes + width_ - kBorder,
+                0,
+                static_cast<std::size_t>(stride_) - static_cast<std::size_t>(width_) + kBorder);
   }
 }
 

@@ -70,9 +70,9 @@ void for_each_place(const GradientMap& map,
   const Eigen::Vector2d slope_v = e.semi_major * across;
   const double sign = static_cast<int>(polarity);  // dark inside: the gradient points outwards
   const int margin = GradientMap::kBorder + tolerance_px;
-  const int stride = PerimeterProbe::kMostSamples / samples;
+  const auto stride = static_cast<std::size_t>(PerimeterProbe::kMostSamples / samples);
   for (int i = 0; i < samples; ++i) {
-    const Eigen::Vector2d& u = circle_points()[static_cast<std::size_t>(i * stride)];
+    const Eigen::Vector2d& u = circle_points()[static_cast<std::size_t>(i) * stride];
     Place place{e.center() + u.x() * major + u.y() * minor,
                 u.x() * slope_u + u.y() * slope_v,
                 0.0,

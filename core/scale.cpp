@@ -21,15 +21,15 @@ void average(const std::uint16_t* __restrict sums,
              int width,
              std::uint8_t* __restrict out) {
   if (scale == 2) {  // the one that is used most, as vectors
-    for (int x = 0; x < width; ++x) {
-      out[x] = static_cast<std::uint8_t>((sums[2 * x] + sums[2 * x + 1] + 2) >> 2);
+    for (int x = 0; x < width; ++x, sums += 2) {
+      out[x] = static_cast<std::uint8_t>((sums[0] + sums[1] + 2) >> 2);
     }
     return;
   }
   const int pixels = scale * scale;
-  for (int x = 0; x < width; ++x) {
+  for (int x = 0; x < width; ++x, sums += scale) {
     int sum = pixels / 2;
-    for (int k = 0; k < scale; ++k) sum += sums[x * scale + k];
+    for (int k = 0; k < scale; ++k) sum += sums[k];
     out[x] = static_cast<std::uint8_t>(sum / pixels);
   }
 }

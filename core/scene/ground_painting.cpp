@@ -22,7 +22,8 @@ float smooth(float t) {
 // Random in [-1, 1] at the corners of a lattice that repeats, smooth between them [Perlin1985].
 void add_noise(cv::Mat& tile, int cells, float amplitude, std::uint64_t seed) {
   const auto corner = [&](int x, int y) {
-    const auto index = static_cast<std::uint64_t>((y % cells) * cells + x % cells);
+    const auto index = static_cast<std::uint64_t>(y % cells) * static_cast<std::uint64_t>(cells) +
+                       static_cast<std::uint64_t>(x % cells);
     return static_cast<float>(hash(seed + index) >> 40U) / static_cast<float>(1U << 23U) - 1.0F;
   };
   const float step = static_cast<float>(cells) / static_cast<float>(tile.cols);
@@ -84,6 +85,7 @@ class Painter {
                                       double dx,
                                       double dy) {
     std::vector<cv::Point> result;
+    result.reserve(points.size());
     for (const cv::Point2d& p : points) {
       result.emplace_back(static_cast<int>(std::floor((p.x + dx) * (1 << kShift))),
                           static_cast<int>(std::floor((p.y + dy) * (1 << kShift))));
@@ -178,9 +180,9 @@ void squares(Painter& painter, int count) {
     const cv::Point2d center = painter.somewhere();
     const double turn = random.between(0.0, kPi);
     const double size = random.between(30.0, 90.0);
-    std::vector<cv::Point2d> outline;
-    for (int corner = 0; corner < 4; ++corner) {
-      outline.push_back(towards(center, turn + corner * kPi / 2.0, size));
+    std::vector<cv::Point2d> outline(4);
+    for (std::size_t corner = 0; corner < outline.size(); ++corner) {
+      outline[corner] = towards(center, turn + static_cast<double>(corner) * kPi / 2.0, size);
     }
     painter.polygon(outline, strong_level(random));
   }

@@ -38,9 +38,11 @@ struct SceneRenderer::Block {
   bool is_in_front = true;
   Vector2d middle{0.0, 0.0};  // on the plane
   double half = 0.0;          // from there to its farthest corner
-  std::array<float, kBlock * kBlock> light{};
+  std::array<float, std::size_t{kBlock} * kBlock> light{};
 
-  [[nodiscard]] float& at(int x, int y) { return light[static_cast<std::size_t>(y * kBlock + x)]; }
+  [[nodiscard]] float& at(int x, int y) {
+    return light[static_cast<std::size_t>(y) * kBlock + static_cast<std::size_t>(x)];
+  }
 
   template <class Use>
   void for_each_pixel(const Use& use) {
