@@ -72,6 +72,24 @@ double direction_limit(double base, double per_noise, double signal_to_noise) {
   return base + per_noise / std::max(1.0, signal_to_noise);
 }
 
+// @param levels  Shares of the inside perimeter that agree within each tolerance.
+VerifiedEllipse described(const Ellipse& e,
+                          Polarity polarity,
+                          const PerimeterEvidence& found,
+                          const Levels& levels,
+                          double score) {
+  VerifiedEllipse result;
+  result.ellipse = e;
+  result.polarity = polarity;
+  result.inside_fraction = found.inside_fraction;
+  result.support = found.support;
+  result.turn_support = found.turn_support;
+  result.on_ellipse = std::min(1.0, levels[3] / found.support);
+  result.covered = found.inside_fraction * levels[1];
+  result.score = score;
+  return result;
+}
+
 bool is_long_enough(const PerimeterEvidence& evidence, const Thresholds& thresholds) {
   const double least = thresholds.min_contour_size;
   return evidence.inside_px >= least &&
@@ -177,16 +195,7 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_exact(const Request& requ
                               3.0 * std::max(0.0, 0.42 - found.sharpness);
   if (found.levels[1] < 0.9 && 1.48 * median_residual() > spread_limit) return std::nullopt;
   if (!is_long_enough(found, request.thresholds)) return std::nullopt;
-  return VerifiedEllipse{e,
-                         request.polarity,
-                         found.inside_fraction,
-                         found.support,
-                         found.turn_support,
-                         std::min(1.0, found.levels[3] / found.support),
-                         found.inside_fraction * found.levels[1],
-                         score,
-                         false,
-                         false};
+  return described(e, request.polarity, found, found.levels, score);
 }
 
 // The residual along the perimeter is fitted by a line over a few degrees to both sides of each
@@ -265,22 +274,15 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& r
     return std::nullopt;
   }
   const Smoothness smooth = smoothness(fine, found);
-  VerifiedEllipse result{
-      e,
-      request.polarity,
-      found.inside_fraction,
-      found.support,
-      found.turn_support,
-      std::min(1.0, smooth.levels[3] / found.support),
-      found.inside_fraction * smooth.levels[1],
-      best_significance(smooth.levels, found.inside_px, request.edge_density, 0.5 * reach_px, 0.6),
-      true,
-      false};
+  const double score =
+      best_significance(smooth.levels, found.inside_px, request.edge_density, 0.5 * reach_px, 0.6);
+  VerifiedEllipse result = described(e, request.polarity, found, smooth.levels, score);
+  result.is_crumpled = true;
   const double deviation = smooth.deviation_px / radius_of(e);
-  const auto has = [&](double inside, double level, double most, double direction, double score) {
+  const auto has = [&](double inside, double level, double most, double direction, double least) {
     return found.inside_fraction >= inside && smooth.levels[1] >= level && deviation < most &&
            smooth.direction_error < direction_limit(direction, 0.3, found.signal_to_noise) &&
-           result.score >= score;
+           score >= least;
   };
   const bool is_strong = has(0.45, 0.65, 0.014, 0.045, 80.0) && result.covered >= 0.4 &&
                          e.semi_minor >= 0.33 * e.semi_major;
