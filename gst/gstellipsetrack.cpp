@@ -200,17 +200,13 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                      const TrackProperties& properties,
                                      const std::optional<ellipse::Target>& target,
                                      GstClockTime processing_time) {
-  const GstEllipseMeta* meta = nullptr;
-  GstStructure* details = nullptr;
-  if (target) {
-    meta = attach_target_meta(buffer, *target, GST_VIDEO_FILTER(self)->in_info, processing_time);
-    if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
-    details = gst_ellipse_meta_to_structure(meta);
-  }
-  if (properties.candidates) {
-    attach_candidate_metas(
-        buffer, self->stream->tracker.candidates(), target, GST_VIDEO_FILTER(self)->in_info);
-  }
+  const GstEllipseMeta* meta = attach_metas(buffer,
+                                            target,
+                                            self->stream->tracker.candidates(),
+                                            properties,
+                                            GST_VIDEO_FILTER(self)->in_info,
+                                            processing_time);
+  GstStructure* details = meta != nullptr ? gst_ellipse_meta_to_structure(meta) : nullptr;
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target = target;
 

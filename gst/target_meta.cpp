@@ -36,10 +36,10 @@ static GstEllipseMeta* attach(GstBuffer* buffer,
   return meta;
 }
 
-const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
-                                         const ellipse::Target& target,
-                                         const GstVideoInfo& info,
-                                         GstClockTime processing_time) {
+static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
+                                                const ellipse::Target& target,
+                                                const GstVideoInfo& info,
+                                                GstClockTime processing_time) {
   GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
   meta->state = static_cast<GstEllipseState>(target.state);
   meta->id = target.id;
@@ -55,10 +55,10 @@ const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   return meta;
 }
 
-void attach_candidate_metas(GstBuffer* buffer,
-                            std::span<const ellipse::Detection> candidates,
-                            const std::optional<ellipse::Target>& target,
-                            const GstVideoInfo& info) {
+static void attach_candidate_metas(GstBuffer* buffer,
+                                   std::span<const ellipse::Detection> candidates,
+                                   const std::optional<ellipse::Target>& target,
+                                   const GstVideoInfo& info) {
   for (const ellipse::Detection& candidate : candidates) {
     if (target && candidate.ellipse == target->ellipse) continue;
     GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
@@ -67,7 +67,7 @@ void attach_candidate_metas(GstBuffer* buffer,
   }
 }
 
-void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
   const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
   const Eigen::Vector2d half = ellipse::half_extent(e);
   const auto first = [](double at) { return static_cast<guint>(std::max(0.0, std::floor(at))); };
@@ -82,4 +82,19 @@ void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
   GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
       buffer, "ellipse", left, top, right - left, bottom - top);
   gst_video_region_of_interest_meta_add_param(roi, gst_ellipse_meta_to_structure(&meta));
+}
+
+const GstEllipseMeta* attach_metas(GstBuffer* buffer,
+                                   const std::optional<ellipse::Target>& target,
+                                   std::span<const ellipse::Detection> candidates,
+                                   const TrackProperties& properties,
+                                   const GstVideoInfo& info,
+                                   GstClockTime processing_time) {
+  const GstEllipseMeta* meta = nullptr;
+  if (target) {
+    meta = attach_target_meta(buffer, *target, info, processing_time);
+    if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
+  }
+  if (properties.candidates) attach_candidate_metas(buffer, candidates, target, info);
+  return meta;
 }

@@ -7,22 +7,18 @@
 
 #include "core/tracker.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/track_properties.hpp"
 
 /// "detected", "tracked", "predicted"; "lost" where there is no target.
 [[nodiscard]] const gchar* state_nick(const std::optional<ellipse::Target>& target);
 
-/// Attaches a target to the buffer that it was found in. @return Owned by the buffer.
-const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
-                                         const ellipse::Target& target,
-                                         const GstVideoInfo& info,
-                                         GstClockTime processing_time);
-
-/// Attaches all of these but the target, with the role "candidate".
-void attach_candidate_metas(GstBuffer* buffer,
-                            std::span<const ellipse::Detection> candidates,
-                            const std::optional<ellipse::Target>& target,
-                            const GstVideoInfo& info);
-
-/// The standard metadata for a region of interest: the target's upright box inside the frame, with
-/// the target's structure as its parameter. Nothing where no pixel of the box is inside.
-void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta);
+/// Attaches what was found in a frame to its buffer: the target; where the properties ask for it,
+/// the target's upright box inside the frame as the standard metadata for a region of interest,
+/// with the target's structure as its parameter, and all other ellipses with the role "candidate".
+/// @return The target's metadata, owned by the buffer; nullptr where there is no target.
+const GstEllipseMeta* attach_metas(GstBuffer* buffer,
+                                   const std::optional<ellipse::Target>& target,
+                                   std::span<const ellipse::Detection> candidates,
+                                   const TrackProperties& properties,
+                                   const GstVideoInfo& info,
+                                   GstClockTime processing_time);
