@@ -21,7 +21,7 @@ constexpr double kSameExact = 0.05;
 constexpr double kSameCrumpled = 0.08;
 constexpr double kSameRefused = 0.1;
 constexpr double kOnEllipsePx = 2.5;
-constexpr double kEnoughScore = 150.0;  // at half size [nats], and
+constexpr double kEnoughScore = 110.0;  // at half size [nats], and
 constexpr double kEnoughSupport = 0.85;
 constexpr double kFullSizeGradient = 0.4;  // of the threshold at half size, where edges are steeper
 constexpr double kLeastTurnSupport = 0.5;
@@ -141,9 +141,8 @@ void ArcDetector::detect_all(const ImageView& luma, const Thresholds& thresholds
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
     const Arc& arc = arcs_[i];
-    if (is_used_[i] != 0 || !arc.fit || arc.turn_rad < kLeastSingleTurn) continue;
-    if (arc.fit->rms_px > fit_limit(arc.fit->ellipse, arc.length_px())) continue;
-    try_ellipse(arc.fit->ellipse, arc.polarity, thresholds);
+    if (is_used_[i] != 0 || arc.turn_rad < kLeastSingleTurn) continue;
+    try_fit(arc.moments, arc.length_px(), arc.polarity, thresholds);
   }
 }
 
@@ -161,11 +160,18 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
       if (++pairs > kMostPairs) return;
       Moments both = a.moments;
       both.add(b.moments);
-      const auto fit = fit_with_residual(both);
-      if (!fit || fit->rms_px > fit_limit(fit->ellipse, a.length_px() + b.length_px())) continue;
-      try_ellipse(fit->ellipse, a.polarity, thresholds);
+      try_fit(both, a.length_px() + b.length_px(), a.polarity, thresholds);
     }
   }
+}
+
+void ArcDetector::try_fit(const Moments& moments,
+                          double length_px,
+                          Polarity polarity,
+                          const Thresholds& thresholds) {
+  const auto fit = fit_with_residual(moments);
+  if (!fit || fit->rms_px > fit_limit(fit->ellipse, length_px)) return;
+  try_ellipse(fit->ellipse, polarity, thresholds);
 }
 
 void ArcDetector::try_ellipse(const Ellipse& guess,

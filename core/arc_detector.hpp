@@ -42,6 +42,10 @@ class ArcDetector final : public Detector {
   void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
+  void try_fit(const Moments& moments,
+               double length_px,
+               Polarity polarity,
+               const Thresholds& thresholds);
   void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);
   void add(const VerifiedEllipse& found);
   void use_arcs_on(const VerifiedEllipse& found);

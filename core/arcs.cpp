@@ -26,13 +26,18 @@ constexpr double kWholeRmsRelative = 0.012;  // of its radius: a crumpled pad
 constexpr double kMostRankedTurn = 3.0;      // [rad]; more is no better
 
 // The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
-// branches, so that the compiler makes vectors of it. The angle takes the place of x.
-void to_angles(float* __restrict x, const float* __restrict y, std::size_t n) {
+// branches, so that the compiler makes vectors of it. The angle takes the place of x. The
+// strength is |x| + |y|.
+void to_angles(float* __restrict x,
+               const float* __restrict y,
+               float* __restrict strengths,
+               std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     const float ax = std::abs(x[i]);
     const float ay = std::abs(y[i]);
     const float larger = ax > ay ? ax : ay;
     const float smaller = ax > ay ? ay : ax;
+    strengths[i] = ax + ay;
     const float z = smaller / (larger + 1e-9F);
     const float s = z * z;
     const float low = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
@@ -48,24 +53,16 @@ Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
   return Eigen::Vector2i(x, y).cast<double>();
 }
 
-}  // namespace
-
-CrestPoint crest_point(const GradientMap& map, std::int32_t pixel) {
+// The crest's place at a pixel, finer than pixels.
+Eigen::Vector2d crest_at(const GradientMap& map, std::int32_t pixel) {
   const Gradient* here = map.gradients() + pixel;
   const bool is_flat = std::abs(here->x) > std::abs(here->y);
-  const int step = is_flat ? 1 : map.stride();
-  const float gx = here->x;
-  const float gy = here->y;
-  const float before = here[-step].x * gx + here[-step].y * gy;
-  const float height = gx * gx + gy * gy;
-  const float after = here[step].x * gx + here[step].y * gy;
-  const float curvature = before - 2.0F * height + after;
-  float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
-  offset = std::clamp(offset, -0.7F, 0.7F);
   Eigen::Vector2d point = place_of(pixel, map.stride());
-  point[is_flat ? 0 : 1] += offset;
-  return {point, height > 0.0F ? -curvature / height : 0.0};
+  point[is_flat ? 0 : 1] += crest_vertex(here, is_flat ? 1 : map.stride()).offset_px;
+  return point;
 }
+
+}  // namespace
 
 double ArcSplitter::Piece::rank() const {
   return static_cast<double>(end - begin) * std::min(std::abs(turn_rad), kMostRankedTurn);
@@ -76,12 +73,13 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map, const ChainTracer& cha
   pixels_ = chains.pixels();
   angles_.resize(std::max(angles_.size(), pixels_.size()));
   smooth_.resize(angles_.size());
+  strengths_.resize(angles_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Gradient& g = map.gradients()[pixels_[i]];
     angles_[i] = g.x;
     smooth_[i] = g.y;
   }
-  to_angles(angles_.data(), smooth_.data(), pixels_.size());
+  to_angles(angles_.data(), smooth_.data(), strengths_.data(), pixels_.size());
   std::size_t begin = 0;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const Chain chain = chains.chain(i);
@@ -117,7 +115,7 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   // A guess needs no more points than these: it is refined on the edges later.
   const std::size_t step = (end - begin) / kEnoughPoints + 1;
   for (std::size_t i = begin + step / 2; i < end; i += step) {
-    moments.add(crest_point(map, pixels_[i]).point, static_cast<double>(step));
+    moments.add(crest_at(map, pixels_[i]), static_cast<double>(step));
   }
   return moments;
 }
@@ -146,13 +144,21 @@ void ArcSplitter::split_chain(const GradientMap& map,
   float sharpest = 0.0F;
   const auto cut = [&] {
     if (corner == end) return;
-    split_smooth_part(map, part, corner > part ? corner - 1 : part);
+    split_smooth_part(map.noise(), part, corner > part ? corner - 1 : part);
     part = corner + 2;
     corner = end;
     sharpest = 0.0F;
   };
-  for (std::size_t i = begin + kCornerReach; i + kCornerReach < end; ++i) {
-    const float turn = std::abs(angles_[i + kCornerReach] - angles_[i - kCornerReach]);
+  // A closed chain has no ends; near those of an open one no corner is told.
+  const std::size_t length = end - begin;
+  const std::size_t margin = is_closed ? 0 : kCornerReach;
+  for (std::size_t i = begin + margin; i + margin < end; ++i) {
+    const bool is_first = i < begin + kCornerReach;
+    const bool is_last = i + kCornerReach >= end;
+    const float before = angles_[is_first ? i + length - kCornerReach : i - kCornerReach];
+    const float after = angles_[is_last ? i + kCornerReach - length : i + kCornerReach];
+    float turn = std::abs(after - before);
+    if (is_first || is_last) turn = std::abs(std::remainder(turn, static_cast<float>(kTwoPi)));
     if (turn > kCornerTurn) {
       if (turn > sharpest) corner = i;
       sharpest = std::max(sharpest, turn);
@@ -161,7 +167,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
     }
   }
   cut();
-  if (part < end) split_smooth_part(map, part, end);
+  if (part < end) split_smooth_part(map.noise(), part, end);
 }
 
 void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width) {
@@ -183,44 +189,52 @@ void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t 
 }
 
 // Cuts where the direction retreats from its furthest.
-void ArcSplitter::split_smooth_part(const GradientMap& map, std::size_t begin, std::size_t end) {
+void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
   if (end < begin + kLeastLength) return;
-  double strength = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const Gradient& g = map.gradients()[pixels_[i]];
-    strength += std::abs(g.x) + std::abs(g.y);
-  }
+  float strength = 0.0F;
+  for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
   const double length = static_cast<double>(end - begin);
   // The mean of |x| + |y| is 1.27 times that of the norm.
-  const double angle_noise = 1.27 * map.noise() * length / strength;
+  const double angle_noise = 1.27 * noise * length / strength;
   std::size_t half_width = angle_noise < 0.03 ? 2 : angle_noise < 0.08 ? 4 : 6;
   half_width = std::min(half_width, (end - begin) / 4);
   // Gradients of neighbours share their pixels: three of them are as good as one.
   const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
-  const double retreat = std::max(kLeastRetreat, kRetreatOverNoise * angle_noise * smoothed);
+  const auto retreat =
+      static_cast<float>(std::max(kLeastRetreat, kRetreatOverNoise * angle_noise * smoothed));
   smooth_angles(begin, end, half_width);
 
-  std::size_t lowest = begin;
-  std::size_t highest = begin;
+  std::size_t lowest_at = begin;
+  std::size_t highest_at = begin;
+  float lowest = smooth_[begin];
+  float highest = lowest;
   int direction = 0;
   std::size_t part = begin;
+  const auto turn_back_at = [&](std::size_t furthest) {
+    if (direction == 0) return;
+    add_piece(part, furthest + 1);
+    part = furthest;
+  };
   for (std::size_t i = begin + 1; i < end; ++i) {
-    if (smooth_[i] > smooth_[highest]) highest = i;
-    if (smooth_[i] < smooth_[lowest]) lowest = i;
-    if (direction >= 0 && smooth_[highest] - smooth_[i] > retreat) {
-      if (direction > 0) {
-        add_piece(part, highest + 1);
-        part = highest;
-      }
+    const float angle = smooth_[i];
+    if (angle > highest) {
+      highest = angle;
+      highest_at = i;
+    }
+    if (angle < lowest) {
+      lowest = angle;
+      lowest_at = i;
+    }
+    if (direction >= 0 && highest - angle > retreat) {
+      turn_back_at(highest_at);
       direction = -1;
-      lowest = i;
-    } else if (direction <= 0 && smooth_[i] - smooth_[lowest] > retreat) {
-      if (direction < 0) {
-        add_piece(part, lowest + 1);
-        part = lowest;
-      }
+      lowest = angle;
+      lowest_at = i;
+    } else if (direction <= 0 && angle - lowest > retreat) {
+      turn_back_at(lowest_at);
       direction = 1;
-      highest = i;
+      highest = angle;
+      highest_at = i;
     }
   }
   add_piece(part, end);
@@ -255,7 +269,6 @@ Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
         -static_cast<int>(arc.polarity) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }
   arc.moments = moments_of(map, arc.begin, arc.end);
-  arc.fit = fit_with_residual(arc.moments);
   return arc;
 }
 

@@ -1,9 +1,9 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,15 +25,14 @@ struct Arc {
   std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, in its middle, near its end [px].
   std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals there, towards its inside.
   Moments moments{Eigen::Vector2d::Zero()};
-  std::optional<MomentFit> fit;  ///< Of the arc alone.
 
   [[nodiscard]] double length_px() const { return static_cast<double>(end - begin); }
 };
 
 /// Where the crest of the gradient lies within its pixel, and how sharp it is.
-struct CrestPoint {
-  Eigen::Vector2d point;   ///< [px]
-  double sharpness = 0.0;  ///< Curvature of the crest's profile over its height [1/px^2].
+struct CrestVertex {
+  float offset_px = 0.0F;  ///< Along the axis, from the pixel's centre.
+  float sharpness = 0.0F;  ///< Curvature of the crest's profile over its height [1/px^2].
 };
 
 /// How far inside a curved edge the crest of its smoothed gradient lies [px], per curvature [1/px]:
@@ -44,7 +43,18 @@ inline constexpr double kCrestShift = 0.5 * (1.0 + 0.36);
 
 /// The vertex of the parabola through three pixels along the axis closest to the gradient
 /// [Devernay1995] 2. The gradients' projections on the middle one count.
-[[nodiscard]] CrestPoint crest_point(const GradientMap& map, std::int32_t pixel);
+/// @param here  The middle one's gradient in a map; its neighbours are `step` before and behind.
+[[nodiscard]] inline CrestVertex crest_vertex(const Gradient* here, int step) {
+  constexpr float kFarthest = 0.7F;
+  const float gx = here->x;
+  const float gy = here->y;
+  const float before = here[-step].x * gx + here[-step].y * gy;
+  const float height = gx * gx + gy * gy;
+  const float after = here[step].x * gx + here[step].y * gy;
+  const float curvature = before - 2.0F * height + after;
+  const float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  return {std::clamp(offset, -kFarthest, kFarthest), height > 0.0F ? -curvature / height : 0.0F};
+}
 
 /// Cuts chains into arcs: at corners, and where the curvature changes its sign.
 class ArcSplitter {
@@ -64,7 +74,7 @@ class ArcSplitter {
   };
 
   void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
-  void split_smooth_part(const GradientMap& map, std::size_t begin, std::size_t end);
+  void split_smooth_part(double noise, std::size_t begin, std::size_t end);
   void smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width);
   void unwrap(std::size_t begin, std::size_t end);
   [[nodiscard]] bool is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end);
@@ -78,6 +88,7 @@ class ArcSplitter {
   std::span<const std::int32_t> pixels_;
   std::vector<float> angles_;  // of the gradient [rad], without jumps along a chain
   std::vector<float> smooth_;
+  std::vector<float> strengths_;  // of the gradient, |x| + |y|
   std::vector<Piece> pieces_;
   std::vector<Arc> arcs_;
 };

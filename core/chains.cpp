@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdlib>
 #include <cstring>
 
@@ -15,41 +14,52 @@ constexpr std::size_t kLongestWalk = 16384;  // pixels
 constexpr std::size_t kLeastClosed = 16;     // pixels
 constexpr int kClosingGap = 3;               // pixels
 
-// One walk along an edge, or against it, over crests that no chain has yet.
-class Walk {
+// For each octant of an edge the codes, as bits, by which a walk may go on: of free crests whose
+// edge turns by an eighth at most.
+constexpr std::array<std::uint32_t, 8> kOpen = [] {
+  std::array<std::uint32_t, 8> open{};
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    for (const unsigned turn : {7U, 0U, 1U}) {
+      open[octant] |= 1U << (crest::kFree | ((octant + turn) & crest::kOctant));
+    }
+  }
+  return open;
+}();
+
+}  // namespace
+
+// Walks along an edge, or against it, over crests where no walk has been yet.
+class ChainTracer::Walk {
  public:
-  Walk(GradientMap& map, bool is_forward)
-      : crests_(map.crests()), gradients_(map.gradients()), turned_(is_forward ? 0 : 4) {
+  Walk(GradientMap& map, bool is_forward) : crests_(map.crests()), gradients_(map.gradients()) {
     const int stride = map.stride();
-    steps_ = {1, stride + 1, stride, stride - 1, -1, -stride - 1, -stride, -stride + 1};
+    const std::array<std::int32_t, 8> steps = {
+        1, stride + 1, stride, stride - 1, -1, -stride - 1, -stride, -stride + 1};
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      steps_[k] = steps[(k + (is_forward ? 7U : 3U)) & 7U];
+    }
   }
 
-  // The pixels after the seed, into `out`; how many.
-  std::size_t run(std::int32_t seed, std::vector<std::int32_t>& out) {
+  // Writes the pixels after the seed to `out`; returns its end.
+  std::int32_t* run(std::int32_t seed, std::int32_t* out) const {
+    const std::int32_t* const last = out + kLongestWalk;
     std::int32_t at = seed;
-    direction_ = octant(crests_[seed]);
-    std::size_t n = 0;
-    while (n < kLongestWalk) {
-      const std::int32_t next = next_of(at);
-      if (next < 0) break;
-      crests_[next] =
-          static_cast<std::uint8_t>((crests_[next] & crest::kDirection) | crest::kVisited);
-      out[n++] = next;
-      at = next;
+    unsigned octant = crests_[seed] & crest::kOctant;
+    while (out != last) {
+      at = next_of(at, octant);
+      if (at < 0) break;
+      const unsigned code = crests_[at];
+      crests_[at] = static_cast<std::uint8_t>(code ^ (crest::kFree | crest::kChained));
+      octant = code & crest::kOctant;
+      *out++ = at;
     }
-    return n;
+    return out;
   }
 
  private:
-  [[nodiscard]] int octant(std::uint8_t code) const {
-    return (crest::octant_of(code) + turned_) & 7;
-  }
-
-  // Whether a walk may go on at a pixel: a free crest whose edge turns by an eighth at most.
-  [[nodiscard]] bool is_open(std::int32_t pixel) const {
-    const std::uint8_t code = crests_[pixel];
-    if ((code & crest::kFree) == 0) return false;
-    return ((octant(code) - direction_ + 1) & 7) <= 2;
+  // Whether a pixel has one of the codes that are open to a walk.
+  [[nodiscard]] bool is_open(std::int32_t pixel, std::uint32_t open) const {
+    return ((open >> (crests_[pixel] & (crest::kFree | crest::kOctant))) & 1U) != 0;
   }
 
   [[nodiscard]] int strength(std::int32_t pixel) const {
@@ -57,51 +67,47 @@ class Walk {
   }
 
   // Straight on, else to the stronger side, else over a gap of one pixel. -1: the end.
-  std::int32_t next_of(std::int32_t at) {
-    const std::int32_t ahead = at + steps_[direction_];
-    const std::int32_t right = at + steps_[(direction_ + 1) & 7];
-    const std::int32_t left = at + steps_[(direction_ + 7) & 7];
-    if (is_open(ahead)) return turn_to(ahead);
-    const bool has_right = is_open(right);
-    const bool has_left = is_open(left);
-    if (has_right && has_left) return turn_to(strength(right) >= strength(left) ? right : left);
-    if (has_right) return turn_to(right);
-    if (has_left) return turn_to(left);
-    for (const std::int32_t step :
-         {steps_[direction_], steps_[(direction_ + 1) & 7], steps_[(direction_ + 7) & 7]}) {
-      if (is_open(ahead + step)) return turn_to(ahead + step);
+  [[nodiscard]] std::int32_t next_of(std::int32_t at, unsigned octant) const {
+    const std::uint32_t open = kOpen[octant];
+    const std::int32_t ahead = at + steps_[octant + 1U];
+    if (is_open(ahead, open)) return ahead;
+    const std::int32_t left = at + steps_[octant];
+    const std::int32_t right = at + steps_[octant + 2U];
+    const bool has_right = is_open(right, open);
+    if (is_open(left, open)) return has_right && strength(right) >= strength(left) ? right : left;
+    if (has_right) return right;
+    for (const std::size_t side : {1U, 2U, 0U}) {
+      const std::int32_t beyond = ahead + steps_[octant + side];
+      if (is_open(beyond, open)) return beyond;
     }
     return -1;
   }
 
-  std::int32_t turn_to(std::int32_t pixel) {
-    direction_ = octant(crests_[pixel]);
-    return pixel;
-  }
-
   std::uint8_t* crests_;
   const Gradient* gradients_;
-  int turned_;
-  std::array<std::int32_t, 8> steps_;
-  int direction_ = 0;
+  std::array<std::int32_t, 10> steps_;  // to the left of octant k, then ahead, then to the right
 };
+
+namespace {
 
 bool are_near(std::int32_t a, std::int32_t b, int stride) {
   return std::abs(a % stride - b % stride) <= kClosingGap &&
          std::abs(a / stride - b / stride) <= kClosingGap;
 }
 
-// Calls use(index) for each free crest, eight pixels at a look.
+// Calls use(index) for each free crest, until it says no. Most blocks have none any more: a chain
+// is walked from where it is met first.
 template <class Use>
 void for_each_free(const GradientMap& map, const Use& use) {
   constexpr std::uint64_t kAllFree = 0x0101010101010101U * crest::kFree;
   const std::uint8_t* crests = map.crests();
-  const std::int32_t pixels = map.stride() * map.height();
-  for (std::int32_t begin = 0; begin < pixels; begin += 8) {
-    std::uint64_t codes = 0;
-    std::memcpy(&codes, crests + begin, sizeof codes);
-    if ((codes & kAllFree) == 0) continue;
-    for (std::int32_t i = begin; i < begin + 8; ++i) {
+  for (const std::int32_t block : map.blocks()) {
+    std::array<std::uint64_t, GradientMap::kBlock / 8> words;
+    std::memcpy(words.data(), crests + block, sizeof words);
+    std::uint64_t all = 0;
+    for (const std::uint64_t word : words) all |= word;
+    if ((all & kAllFree) == 0) continue;
+    for (std::int32_t i = block; i < block + GradientMap::kBlock; ++i) {
       if ((crests[i] & crest::kFree) != 0 && !use(i)) return;
     }
   }
@@ -109,38 +115,41 @@ void for_each_free(const GradientMap& map, const Use& use) {
 
 }  // namespace
 
-void ChainTracer::add_chain(std::int32_t seed, GradientMap& map) {
-  std::uint8_t* crests = map.crests();
-  crests[seed] = static_cast<std::uint8_t>((crests[seed] & crest::kDirection) | crest::kVisited);
-  const std::size_t after = Walk(map, true).run(seed, forward_);
-  const std::size_t before = Walk(map, false).run(seed, backward_);
-  const std::size_t length = before + 1 + after;
-  if (length < kLeastLength) return;
-  std::int32_t* out = pixels_.data() + count_;
-  out = std::reverse_copy(backward_.begin(), backward_.begin() + std::ptrdiff_t(before), out);
+// The walk against the edge comes first, so that the one along it can follow it in place.
+void ChainTracer::add_chain(std::int32_t seed,
+                            std::uint8_t* crests,
+                            const Walk& against,
+                            const Walk& along) {
+  crests[seed] ^= crest::kFree | crest::kChained;
+  std::int32_t* const begin = pixels_.data() + count_;
+  std::int32_t* out = against.run(seed, begin);
+  std::reverse(begin, out);
   *out++ = seed;
-  out = std::copy(forward_.begin(), forward_.begin() + std::ptrdiff_t(after), out);
-  for (std::int32_t* pixel = out - length; pixel != out; ++pixel) {
-    crests[*pixel] |= crest::kChained;
+  out = along.run(seed, out);
+  const auto length = static_cast<std::size_t>(out - begin);
+  if (length < kLeastLength) {
+    for (const std::int32_t* pixel = begin; pixel != out; ++pixel)
+      crests[*pixel] ^= crest::kChained;
+    return;
   }
   count_ += length;
   begins_.push_back(count_);
-  is_closed_.push_back(length > kLeastClosed &&
-                       are_near(*(out - length), *(out - 1), map.stride()));
+  is_closed_.push_back(length > kLeastClosed && are_near(*begin, *(out - 1), stride_));
 }
 
 void ChainTracer::trace(GradientMap& map) {
   const auto pixels =
       static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());
   const std::size_t most = pixels / 4 + 64;
-  forward_.resize(kLongestWalk);
-  backward_.resize(kLongestWalk);
   pixels_.resize(most + 2 * kLongestWalk + 1);
   count_ = 0;
   begins_.assign(1, 0);
   is_closed_.clear();
+  stride_ = map.stride();
+  const Walk against(map, false);
+  const Walk along(map, true);
   for_each_free(map, [&](std::int32_t pixel) {
-    add_chain(pixel, map);
+    add_chain(pixel, map.crests(), against, along);
     return count_ < most;
   });
 }

@@ -27,14 +27,15 @@ class ChainTracer {
   [[nodiscard]] std::span<const std::int32_t> pixels() const { return {pixels_.data(), count_}; }
 
  private:
-  void add_chain(std::int32_t seed, GradientMap& map);
+  class Walk;
 
+  void add_chain(std::int32_t seed, std::uint8_t* crests, const Walk& against, const Walk& along);
+
+  int stride_ = 0;
   std::vector<std::int32_t> pixels_;
   std::size_t count_ = 0;
   std::vector<std::size_t> begins_;
   std::vector<std::uint8_t> is_closed_;
-  std::vector<std::int32_t> forward_;
-  std::vector<std::int32_t> backward_;
 };
 
 }  // namespace ellipse

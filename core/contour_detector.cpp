@@ -116,7 +116,8 @@ std::optional<Ellipse> refined_on_contour(const Ellipse& e,
   for (const cv::Point& pixel : contour) {
     if (!field.is_inside(pixel)) continue;
     const Eigen::Vector2d point = crest(field, pixel, field.gradient(pixel));
-    if (std::abs(fit.distance_px(point)) <= kOverlapTolerancePx) fit.add(point);
+    const PerimeterOffset offset = fit.offset_of(point);
+    if (std::abs(offset.distance_px) <= kOverlapTolerancePx) fit.add(offset);
   }
   return fit.solve();
 }

@@ -2,9 +2,10 @@
 #include "core/ellipse_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ellipse {
@@ -17,6 +18,8 @@ constexpr double kMinVariance = 1e-6;
 
 // Keeps the reduced scatter invertible when the points lie on the ellipse exactly.
 constexpr double kRegularization = 1e-13;
+
+constexpr int kMostNewtonSteps = 40;
 
 constexpr int kBinomial[5][5] = {
     {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
@@ -45,28 +48,49 @@ ReducedScatter reduced_scatter(const Moments& m) {
   return {s1 + s2 * linear, linear};
 }
 
-// Minimizes a^T M a under a^T C a = 1, C = [0 0 2; 0 -1 0; 2 0 0] (4 a c - b^2 = 1), as the
-// symmetric problem C a = mu M a: M is positive definite and C has one positive eigenvalue, so
-// that the answer is the largest one. [Fitzgibbon1999] Lemma 1.
+// The polynomial det(M - lambda C), from the highest power down.
+using Cubic = std::array<double, 4>;
+
+Cubic characteristic(const Eigen::Matrix3d& m) {
+  // M - lambda C = [p q r - 2l; q t + l v; r - 2l v w], M symmetric.
+  const double p = m(0, 0), q = m(0, 1), r = m(0, 2), t = m(1, 1), v = m(1, 2), w = m(2, 2);
+  return {-4.0, 4.0 * (r - t), p * w - r * r + 4.0 * (r * t - q * v), m.determinant()};
+}
+
+// Its largest root, by Newton's method from above: beyond the largest of three real roots a cubic
+// has all its derivatives of one sign, so that the steps never leave that side.
+double largest_root(const Cubic& c, double above) {
+  double x = above;
+  for (int step = 0; step < kMostNewtonSteps; ++step) {
+    const double value = ((c[0] * x + c[1]) * x + c[2]) * x + c[3];
+    const double slope = (3.0 * c[0] * x + 2.0 * c[1]) * x + c[2];
+    const double next = x - value / slope;
+    if (!(next < x)) break;
+    x = next;
+  }
+  return x;
+}
+
+// Minimizes a^T M a under a^T C a = 1, C = [0 0 2; 0 -1 0; 2 0 0] (4 a c - b^2 = 1): M a = lambda C
+// a with the only positive lambda [Fitzgibbon1999] Lemma 1. It is at most the value for a circle,
+// a = (1/2, 0, 1/2). The answer is orthogonal to all rows of M - lambda C, two of which say it.
 Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
-  Eigen::Matrix3d constraint = Eigen::Matrix3d::Zero();
-  constraint(0, 2) = constraint(2, 0) = 2.0;
-  constraint(1, 1) = -1.0;
-  const Eigen::Matrix3d symmetric = 0.5 * (scatter + scatter.transpose()) +
-                                    kRegularization * scatter.trace() * Eigen::Matrix3d::Identity();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(constraint, symmetric);
-  if (solver.info() != Eigen::Success) return Eigen::Vector3d::Zero();
-  return solver.eigenvectors().col(2);
+  Eigen::Matrix3d m = 0.5 * (scatter + scatter.transpose());
+  m.diagonal().array() += kRegularization * m.trace();
+  const double of_circle = 0.25 * (m(0, 0) + 2.0 * m(0, 2) + m(2, 2));
+  const double lambda = largest_root(characteristic(m), of_circle);
+  m(0, 2) -= 2.0 * lambda;
+  m(2, 0) -= 2.0 * lambda;
+  m(1, 1) += lambda;
+  const std::array<Eigen::Vector3d, 3> candidates = {
+      m.col(0).cross(m.col(1)), m.col(0).cross(m.col(2)), m.col(1).cross(m.col(2))};
+  return *std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return a.squaredNorm() < b.squaredNorm();
+  });
 }
 
 // A Gauss-Newton step changes no semi-axis by more than this share.
 constexpr double kLongestStep = 0.3;
-
-Eigen::Matrix2d square_root_of_shape(const Ellipse& e) {
-  const Eigen::Vector2d major(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d minor(-major.y(), major.x());
-  return e.semi_major * major * major.transpose() + e.semi_minor * minor * minor.transpose();
-}
 
 bool is_collinear(const Moments& standardized) {
   const double n = standardized.count();
@@ -129,7 +153,7 @@ Eigen::Vector2d Moments::mean() const {
 double Moments::spread_px() const {
   const double n = count();
   const double variance =
-      (at(2, 0) + at(0, 2)) / n - std::pow(at(1, 0) / n, 2) - std::pow(at(0, 1) / n, 2);
+      (at(2, 0) + at(0, 2)) / n - Eigen::Vector2d(at(1, 0) / n, at(0, 1) / n).squaredNorm();
   return variance > 0.0 ? std::sqrt(variance) : 0.0;
 }
 
@@ -140,9 +164,11 @@ Moments Moments::standardized() const {
   const double inverse_scale = 1.0 / spread_px();
   double powers_x[5] = {1};
   double powers_y[5] = {1};
+  double scales[5] = {1};
   for (int k = 1; k < 5; ++k) {
     powers_x[k] = powers_x[k - 1] * shift_x;
     powers_y[k] = powers_y[k - 1] * shift_y;
+    scales[k] = scales[k - 1] * inverse_scale;
   }
   // (x + s)^i (y + t)^j by the binomial theorem, term by term.
   for (int i = 0; i < 5; ++i) {
@@ -153,7 +179,7 @@ Moments Moments::standardized() const {
           sum += kBinomial[i][p] * kBinomial[j][q] * powers_x[i - p] * powers_y[j - q] * at(p, q);
         }
       }
-      result.sums_[index(i, j)] = sum * std::pow(inverse_scale, i + j);
+      result.sums_[index(i, j)] = sum * scales[i + j];
     }
   }
   return result;
@@ -194,42 +220,52 @@ std::optional<MomentFit> fit_with_residual(const Moments& moments) {
 
 GeometricFit::GeometricFit(const Ellipse& start)
     : center_(start.center()),
-      stretch_(square_root_of_shape(start)),
-      inverse_stretch_(stretch_.inverse()) {}
+      rotation_(Eigen::Rotation2Dd(start.angle_rad).toRotationMatrix()),
+      axes_(start.semi_major, start.semi_minor),
+      inverse_axes_(axes_.cwiseInverse()) {}
 
-double GeometricFit::distance_px(const Eigen::Vector2d& point_px) const {
-  const Eigen::Vector2d w = inverse_stretch_ * (point_px - center_);
-  const double r = w.norm();
-  return (r - 1.0) * r / (inverse_stretch_ * w).norm();
+PerimeterOffset GeometricFit::offset_of(const Eigen::Vector2d& point_px) const {
+  const Eigen::Vector2d whitened =
+      (rotation_.transpose() * (point_px - center_)).cwiseProduct(inverse_axes_);
+  const double r = whitened.norm();
+  const Eigen::Vector2d anomaly = r > 0.0 ? Eigen::Vector2d(whitened / r) : Eigen::Vector2d(1, 0);
+  const double px_per_unit = 1.0 / anomaly.cwiseProduct(inverse_axes_).norm();
+  return {anomaly, px_per_unit, (r - 1.0) * px_per_unit};
 }
 
-void GeometricFit::add(const Eigen::Vector2d& point_px, double weight) {
-  const Eigen::Vector2d w = inverse_stretch_ * (point_px - center_);
-  const double r = w.norm();
-  if (!(r > 0.0)) return;
-  const Eigen::Vector2d u = w / r;
-  const double slope = 1.0 / (inverse_stretch_ * u).norm();  // px per unit of r
-  // r - 1 = u . t + s + e1 cos 2 phi + e2 sin 2 phi for c + M t and M (I + [s+e1 e2; e2 s-e1]).
-  Vector5d row;
-  row << u.x(), u.y(), 1.0, u.x() * u.x() - u.y() * u.y(), 2.0 * u.x() * u.y();
-  row *= slope;
-  normal_.noalias() += weight * row * row.transpose();
-  right_side_ += weight * row * ((r - 1.0) * slope);
+// r - 1 = u . t + s + e1 cos 2 phi + e2 sin 2 phi for c + M t and M (I + [s+e1 e2; e2 s-e1]).
+void GeometricFit::add(const PerimeterOffset& offset, double weight) {
+  const double px = offset.px_per_unit;
+  const double x = offset.anomaly.x();
+  const double y = offset.anomaly.y();
+  const std::array<double, 5> row = {px * x, px * y, px, px * (x * x - y * y), px * 2.0 * x * y};
+  std::size_t term = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double weighted = weight * row[i];
+    for (std::size_t k = i; k < row.size(); ++k) normal_[term++] += weighted * row[k];
+    right_side_[i] += weighted * offset.distance_px;
+  }
   ++points_;
 }
 
 std::optional<Ellipse> GeometricFit::solve() const {
   if (points_ < kMinPoints) return std::nullopt;
-  Matrix5d damped = normal_;
-  damped.diagonal() *= 1.0 + 1e-9;
-  const Eigen::LDLT<Matrix5d> factors(damped);
-  Vector5d step = factors.solve(right_side_);
+  Eigen::Matrix<double, 5, 5> normal;
+  std::size_t term = 0;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = i; k < 5; ++k) normal(k, i) = normal(i, k) = normal_[term++];
+    normal(i, i) *= 1.0 + 1e-9;
+  }
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> factors(normal);
+  Vector5d step = factors.solve(Vector5d::Map(right_side_.data()));
   if (factors.info() != Eigen::Success || !step.allFinite()) return std::nullopt;
   step *= std::min(1.0, kLongestStep / step.norm());
   Eigen::Matrix2d change;
   change << 1.0 + step(2) + step(3), step(4), step(4), 1.0 + step(2) - step(3);
-  const Eigen::Matrix2d stretched = stretch_ * change;
-  return from_shape(center_ + stretch_ * step.head<2>(), stretched * stretched.transpose());
+  const Eigen::Matrix2d axes = rotation_ * axes_.asDiagonal();
+  const Eigen::Matrix2d stretched = axes * change;
+  return from_shape(center_ + axes * step.head<2>(), stretched * stretched.transpose());
 }
 
 }  // namespace ellipse

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -57,33 +58,47 @@ struct MomentFit {
 /// The same with the residual, which the moments tell too: O(1).
 [[nodiscard]] std::optional<MomentFit> fit_with_residual(const Moments& moments);
 
+/// Where a point lies, seen from an ellipse's perimeter.
+struct PerimeterOffset {
+  Eigen::Vector2d anomaly;   ///< Cosine and sine of the eccentric anomaly.
+  double px_per_unit = 0.0;  ///< How far the perimeter moves if the axes grow by their own length.
+  double distance_px = 0.0;  ///< From the perimeter, above 0 outside; as sampson_distance().
+};
+
+/// Tukey's biweight [BeatonTukey1974]: 1 for no distance, 0 from `reach` on.
+[[nodiscard]] inline double tukey_weight(double distance, double reach) {
+  const double r = distance / reach;
+  return std::abs(r) < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
+}
+
 /// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
 /// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
 /// not.
 ///
-/// The ellipse is {c + M u, |u| = 1}, M symmetric: its five parameters move c within M and stretch
-/// M, so that no direction is singular, at a circle neither. Allocates nothing; O(1) a point.
+/// The ellipse is {c + M u, |u| = 1}, M its axes: five parameters move c within M and stretch M
+/// symmetrically, so that no direction is singular, at a circle neither. Allocates nothing; O(1) a
+/// point.
 class GeometricFit {
  public:
   explicit GeometricFit(const Ellipse& start);
 
-  void add(const Eigen::Vector2d& point_px, double weight = 1.0);
+  [[nodiscard]] PerimeterOffset offset_of(const Eigen::Vector2d& point_px) const;
 
-  /// Distance of a point to the starting ellipse [px], as sampson_distance().
-  [[nodiscard]] double distance_px(const Eigen::Vector2d& point_px) const;
+  void add(const PerimeterOffset& offset, double weight = 1.0);
+  void add(const Eigen::Vector2d& point_px, double weight = 1.0) {
+    add(offset_of(point_px), weight);
+  }
 
   /// The ellipse after the step; nullopt for fewer than 5 points or a singular system.
   [[nodiscard]] std::optional<Ellipse> solve() const;
 
  private:
-  using Vector5d = Eigen::Matrix<double, 5, 1>;
-  using Matrix5d = Eigen::Matrix<double, 5, 5>;
-
   Eigen::Vector2d center_;
-  Eigen::Matrix2d stretch_;          // M
-  Eigen::Matrix2d inverse_stretch_;  // M^-1
-  Matrix5d normal_ = Matrix5d::Zero();
-  Vector5d right_side_ = Vector5d::Zero();
+  Eigen::Matrix2d rotation_;  // M = rotation x axes
+  Eigen::Vector2d axes_;      // semi-major, semi-minor
+  Eigen::Vector2d inverse_axes_;
+  std::array<double, 15> normal_{};  // the upper triangle, row by row
+  std::array<double, 5> right_side_{};
   int points_ = 0;
 };
 

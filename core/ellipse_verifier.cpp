@@ -30,7 +30,7 @@ constexpr int kSmoothingDegrees = 8;
 
 int samples_for(const Ellipse& e) {
   const double length = std::numbers::pi * (e.semi_major + e.semi_minor);
-  return length < 100.0 ? 32 : length < 300.0 ? 64 : 128;
+  return length < 100.0 ? 32 : length < 600.0 ? 64 : 128;
 }
 
 // The mean of chance agreement is p, the observed share s, of n independent samples: n times the
@@ -125,15 +125,13 @@ bool EllipseVerifier::is_reasonable(const Ellipse& e,
          e.cy < 2 * map.height();
 }
 
-// One Gauss-Newton step with Tukey's weights [BeatonTukey1974] over the hits of the last probe.
+// One Gauss-Newton step with Tukey's weights over the hits of the last probe.
 bool EllipseVerifier::improve(const Request& request, Ellipse& e, double reach_px) const {
   if (probe_.hits().size() < 8) return false;
   GeometricFit fit(e);
   for (const EdgeHit& hit : probe_.hits()) {
-    const double r = hit.residual_px / reach_px;
-    if (std::abs(r) >= 1.0) continue;
-    const double tukey = (1.0 - r * r) * (1.0 - r * r);
-    fit.add(hit.point, tukey * hit.weight);
+    const double weight = hit.weight * tukey_weight(hit.offset.distance_px, reach_px);
+    if (weight > 0.0) fit.add(hit.offset, weight);
   }
   const auto better = fit.solve();
   if (!better || !is_reasonable(*better, request.map, request.thresholds)) return false;
@@ -145,26 +143,24 @@ bool EllipseVerifier::improve(const Request& request, Ellipse& e, double reach_p
 bool EllipseVerifier::approach(const Request& request, Ellipse& e) {
   const int samples = samples_for(e);
   const double wanted = request.thresholds.ellipse_overlap;
-  const auto probe = [&](int n, int tolerance_px) {
-    return probe_.probe(request.map, e, request.polarity, n, tolerance_px);
+  const auto probe = [&](int tolerance_px) {
+    return probe_.probe(request.map, e, request.polarity, samples, tolerance_px);
   };
-  (void)probe(std::max(32, samples / 2), 3);
+  if (probe(3).support < kSecondSupport * wanted) return false;
   if (!improve(request, e, 4.0)) return false;
-  if (probe(samples, 3).support < kSecondSupport * wanted) return false;
-  if (!improve(request, e, 3.0)) return false;
-  const PerimeterEvidence evidence = probe(samples, 2);
+  const PerimeterEvidence evidence = probe(2);
   if (evidence.support < wanted) return false;
-  if (!improve(request, e, 2.0)) return false;
+  if (!improve(request, e, 2.5)) return false;
   const double score =
       best_significance(evidence.levels, evidence.inside_px, request.edge_density, 0.0, 0.5);
   if (score < 0.7 * kLeastScore) return false;
-  (void)probe(128, 2);
+  (void)probe(2);
   return improve(request, e, 2.0);
 }
 
 double EllipseVerifier::median_residual() {
   values_.clear();
-  for (const EdgeHit& hit : probe_.hits()) values_.push_back(std::abs(hit.residual_px));
+  for (const EdgeHit& hit : probe_.hits()) values_.push_back(std::abs(hit.offset.distance_px));
   return median(values_);
 }
 
@@ -221,20 +217,21 @@ EllipseVerifier::Smoothness EllipseVerifier::smoothness(int samples,
           hit_of_sample_[static_cast<std::size_t>((hit.sample + k + samples) % samples)];
       if (other < 0) continue;
       const EdgeHit& near = hits[static_cast<std::size_t>(other)];
-      const Eigen::Vector2d tangent(-hit.normal.y(), hit.normal.x());
+      const Eigen::Vector2f tangent(-hit.normal.y(), hit.normal.x());
       const double t = tangent.dot(near.foot - hit.foot);
-      if (std::abs(near.residual_px - hit.residual_px) > 1.0 + 0.35 * std::abs(t)) continue;
+      if (std::abs(near.offset.distance_px - hit.offset.distance_px) > 1.0 + 0.35 * std::abs(t))
+        continue;
       n += 1.0;
       t1 += t;
       t2 += t * t;
-      r1 += near.residual_px;
-      rt += near.residual_px * t;
+      r1 += near.offset.distance_px;
+      rt += near.offset.distance_px * t;
     }
     const double determinant = n * t2 - t1 * t1;
     if (n < half_width || determinant < 1e-9) continue;
     const double curve = (t2 * r1 - t1 * rt) / determinant;
     const double slope = (n * rt - t1 * r1) / determinant;
-    const double left_over = std::abs(hit.residual_px - curve);
+    const double left_over = std::abs(hit.offset.distance_px - curve);
     const double direction_error = std::abs(hit.direction_error_rad + std::atan(slope));
     squares += curve * curve;
     slopes_.push_back(direction_error);
@@ -297,11 +294,12 @@ bool EllipseVerifier::is_promising(const GradientMap& map,
                                    const Thresholds& thresholds) {
   const double wanted = thresholds.ellipse_overlap;
   const int samples = std::max(32, samples_for(guess) / 2);
-  if (perimeter_support(map, guess, polarity, samples, 2) >= kFirstSupport * wanted) return true;
+  const double first = kFirstSupport * wanted;
+  if (perimeter_support(map, guess, polarity, samples, 2, first) >= first) return true;
   const double reach_px = crumple_px(guess);
   if (reach_px < 2.2) return false;
   const int tolerance_px = static_cast<int>(std::lround(reach_px));
-  return perimeter_support(map, guess, polarity, 32, tolerance_px) >= wanted;
+  return perimeter_support(map, guess, polarity, 32, tolerance_px, wanted) >= wanted;
 }
 
 std::optional<VerifiedEllipse> EllipseVerifier::verify(const GradientMap& map,

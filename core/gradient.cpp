@@ -22,10 +22,10 @@ using Int = std::int16_t;
 
 constexpr int kPadLeft = 16;   // buffers begin before the first pixel,
 constexpr int kPadRight = 64;  // and go on behind the last one, so that blocks may overrun
-constexpr int kBlock = 32;     // pixels that are looked at together
+constexpr int kBlock = GradientMap::kBlock;
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kNoiseRowStep = 12;
+constexpr int kNoiseRows = 16;  // about
 constexpr double kNoiseQuantile = 0.3;
 constexpr double kThresholdOverNoise = 4.0;
 constexpr double kLeastNoise = 20.0;  // rounding to grey levels alone makes as much
@@ -57,6 +57,7 @@ ELLIPSE_INLINE void filter_rows_body(const Int* __restrict smooth,
                                      Int* __restrict gx,
                                      Int* __restrict gy,
                                      Int* __restrict magnitude,
+                                     Gradient* __restrict both,
                                      int n) {
   for (int i = 0; i < n; ++i) {
     const Int* s = smooth + i;
@@ -71,6 +72,7 @@ ELLIPSE_INLINE void filter_rows_body(const Int* __restrict smooth,
     magnitude[i] = larger > mixed ? larger : mixed;
     gx[i] = x;
     gy[i] = y;
+    both[i] = {x, y};
   }
 }
 
@@ -83,7 +85,10 @@ struct CrestRows {
   const Int* below;
 };
 
-ELLIPSE_INLINE void mark_crests_body(const CrestRows& rows, std::uint8_t* codes, Int least, int n) {
+// Also lists the blocks that have crests, as distances from the first pixel; returns how many.
+ELLIPSE_INLINE int mark_crests_body(
+    const CrestRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  int count = 0;
   for (int begin = 0; begin < n; begin += kBlock) {
     const Int* __restrict m = rows.here + begin;
     std::uint8_t* __restrict out = codes + begin;
@@ -93,6 +98,7 @@ ELLIPSE_INLINE void mark_crests_body(const CrestRows& rows, std::uint8_t* codes,
       std::memset(out, 0, kBlock);
       continue;
     }
+    blocks[count++] = begin;
     const Int* __restrict gx = rows.gx + begin;
     const Int* __restrict gy = rows.gy + begin;
     const Int* __restrict up = rows.above + begin;
@@ -107,34 +113,42 @@ ELLIPSE_INLINE void mark_crests_body(const CrestRows& rows, std::uint8_t* codes,
       const Int smaller = ax > ay ? ay : ax;
       // tan(22.5 degrees) = 0.414; 1/2 - 1/16 - 1/64 = 0.422
       const Int diagonal = static_cast<Int>((larger >> 1) - (larger >> 4) - (larger >> 6));
-      const Int code =
-          static_cast<Int>(crest::kFree | ((gy[i] > 0 ? -1 : 0) & 1) | ((gx[i] < 0 ? -1 : 0) & 2) |
-                           (is_flat & 4) | ((smaller > diagonal ? -1 : 0) & 8));
+      const Int is_diagonal = static_cast<Int>(smaller > diagonal ? -1 : 0);
+      const Int is_left = static_cast<Int>(gx[i] < 0 ? -1 : 0);
+      const Int is_down = static_cast<Int>(gy[i] > 0 ? -1 : 0);
+      const Int slanted = static_cast<Int>(((is_left & 6) ^ (is_down & 2)) + 1);
+      const Int straight =
+          static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
+      const Int octant = static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
       const Int is_crest = static_cast<Int>((m[i] > least ? -1 : 0) & (m[i] >= before ? -1 : 0) &
                                             (m[i] > after ? -1 : 0));
-      out[i] = static_cast<std::uint8_t>(is_crest & code);
+      out[i] = static_cast<std::uint8_t>(is_crest & (octant | crest::kFree));
     }
   }
+  return count;
 }
 
 void filter_columns(const std::uint8_t* const* rows, Int* smooth, Int* difference, int n) {
   filter_columns_body(rows, smooth, difference, n);
 }
-void filter_rows(const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, int n) {
-  filter_rows_body(smooth, difference, gx, gy, m, n);
+void filter_rows(
+    const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, Gradient* both, int n) {
+  filter_rows_body(smooth, difference, gx, gy, m, both, n);
 }
-void mark_crests(const CrestRows& rows, std::uint8_t* codes, Int least, int n) {
-  mark_crests_body(rows, codes, least, n);
+int mark_crests(
+    const CrestRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  return mark_crests_body(rows, codes, least, n, blocks);
 }
 ELLIPSE_AVX2 void filter_columns_avx2(const std::uint8_t* const* rows, Int* s, Int* d, int n) {
   filter_columns_body(rows, s, d, n);
 }
 ELLIPSE_AVX2 void filter_rows_avx2(
-    const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, int n) {
-  filter_rows_body(smooth, difference, gx, gy, m, n);
+    const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, Gradient* both, int n) {
+  filter_rows_body(smooth, difference, gx, gy, m, both, n);
 }
-ELLIPSE_AVX2 void mark_crests_avx2(const CrestRows& rows, std::uint8_t* codes, Int least, int n) {
-  mark_crests_body(rows, codes, least, n);
+ELLIPSE_AVX2 int mark_crests_avx2(
+    const CrestRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  return mark_crests_body(rows, codes, least, n, blocks);
 }
 
 struct Kernels {
@@ -153,23 +167,36 @@ bool is_saturated(std::uint8_t level) {
   return level < 2 || level > 253;
 }
 
+// Pictures of two sizes may take turns: what is too long stays so.
+template <class T>
+void grow(std::vector<T>& values, std::size_t size) {
+  values.resize(std::max(values.size(), size));
+}
+
 }  // namespace
 
-Gradient gradient_at(const ImageView& luma, int x, int y) {
-  std::array<int, 5> smooth{};
-  std::array<int, 5> difference{};
-  const std::uint8_t* a = luma.row(y - 2) + x - 2;
-  const std::uint8_t* b = luma.row(y - 1) + x - 2;
-  const std::uint8_t* c = luma.row(y) + x - 2;
-  const std::uint8_t* d = luma.row(y + 1) + x - 2;
-  const std::uint8_t* e = luma.row(y + 2) + x - 2;
-  for (std::size_t i = 0; i < 5; ++i) {
-    smooth[i] = a[i] + e[i] + 4 * (b[i] + d[i]) + 6 * c[i];
-    difference[i] = (e[i] - a[i]) + 2 * (d[i] - b[i]);
+void gradients_along(
+    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients) {
+  const std::ptrdiff_t along = is_row ? 1 : luma.stride;
+  const std::ptrdiff_t across = is_row ? luma.stride : 1;
+  std::array<int, kLongestLine + 4> smooth{};
+  std::array<int, kLongestLine + 4> difference{};
+  const std::uint8_t* c = luma.row(y) + x - 2 * along;
+  for (std::size_t i = 0; i < gradients.size() + 4; ++i, c += along) {
+    const int a = c[-2 * across];
+    const int b = c[-across];
+    const int d = c[across];
+    const int e = c[2 * across];
+    smooth[i] = a + e + 4 * (b + d) + 6 * *c;
+    difference[i] = (e - a) + 2 * (d - b);
   }
-  return {static_cast<Int>(smooth[4] - smooth[0] + 2 * (smooth[3] - smooth[1])),
-          static_cast<Int>(difference[0] + difference[4] + 4 * (difference[1] + difference[3]) +
-                           6 * difference[2])};
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const int* s = smooth.data() + i;
+    const int* t = difference.data() + i;
+    const auto in_line = static_cast<Int>(s[4] - s[0] + 2 * (s[3] - s[1]));
+    const auto athwart = static_cast<Int>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
+    gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
+  }
 }
 
 Simd best_simd() {
@@ -191,13 +218,14 @@ void GradientMap::resize(const ImageView& luma) {
   stride_ = (width_ + kPadRight) / kBlock * kBlock;
   const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
   const auto length = static_cast<std::size_t>(width_) + kPadLeft + kPadRight;
-  gradients_.resize(pixels);
-  crests_.resize(pixels + kPadRight);
-  smooth_.resize(length);
-  difference_.resize(length);
-  x_.resize(kRows * length);
-  y_.resize(kRows * length);
-  magnitude_.resize(kRows * length);
+  grow(gradients_, pixels);
+  grow(crests_, pixels + kPadRight);
+  grow(blocks_, pixels / kBlock);
+  grow(smooth_, length);
+  grow(difference_, length);
+  grow(x_, kRows * length);
+  grow(y_, kRows * length);
+  grow(magnitude_, kRows * length);
   histogram_.resize(kHistogramBins);
 }
 
@@ -216,11 +244,9 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
     smooth[width_ - 1 + k] = smooth[width_ - 1];
     difference[width_ - 1 + k] = difference[width_ - 1];
   }
-  Int* gx = row_of(x_, y);
-  Int* gy = row_of(y_, y);
-  kernels.rows(smooth, difference, gx, gy, row_of(magnitude_, y), width_);
   Gradient* out = gradients_.data() + static_cast<std::ptrdiff_t>(y) * stride_;
-  for (int i = 0; i < width_; ++i) out[i] = {gx[i], gy[i]};
+  kernels.rows(
+      smooth, difference, row_of(x_, y), row_of(y_, y), row_of(magnitude_, y), out, width_);
 }
 
 // The gradient of noise is Rayleigh distributed, whose quantile q is sigma sqrt(-2 ln(1 - q))
@@ -228,7 +254,8 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
 void GradientMap::measure_noise(const ImageView& luma, double floor) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
-  for (int y = kBorder; y < height_ - kBorder; y += kNoiseRowStep) {
+  const int step = std::max(1, height_ / kNoiseRows);
+  for (int y = kBorder; y < height_ - kBorder; y += step) {
     compute_row(luma, y);
     const Int* m = row_of(magnitude_, y);
     const std::uint8_t* levels = luma.row(y);
@@ -254,24 +281,36 @@ void GradientMap::compute(const ImageView& luma, double threshold, double floor)
   if (luma.empty()) return;
   measure_noise(luma, floor);
   if (threshold > 0.0) threshold_ = std::min(kGradientGain * threshold, 32767.0);
-  std::fill(crests_.begin(), crests_.end(), std::uint8_t{0});
-  const auto least = static_cast<Int>(threshold_);
-  const int inside = width_ - 2 * kBorder;
+  block_count_ = 0;
   for (int y = 1; y < height_ - 1; ++y) {
     compute_row(luma, y);
-    const int row = y - 1;
-    if (inside <= 0 || row < kBorder || row >= height_ - kBorder) continue;
-    std::uint8_t* codes = crests_.data() + static_cast<std::ptrdiff_t>(row) * stride_;
-    const CrestRows rows{row_of(x_, row) + kBorder,
-                         row_of(y_, row) + kBorder,
-                         row_of(magnitude_, row - 1) + kBorder,
-                         row_of(magnitude_, row) + kBorder,
-                         row_of(magnitude_, row + 1) + kBorder};
-    kernels_of(simd_).crests(rows, codes + kBorder, least, inside);
-    std::memset(codes + width_ - kBorder,
-                0,
-                static_cast<std::size_t>(stride_) - static_cast<std::size_t>(width_) + kBorder);
+    mark_row(y - 1);
   }
+  for (int y = std::max(0, height_ - 2); y < height_; ++y) mark_row(y);
+}
+
+void GradientMap::mark_row(int y) {
+  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(y) * stride_;
+  std::uint8_t* codes = crests_.data() + begin;
+  const int inside = width_ - 2 * kBorder;
+  if (inside <= 0 || y < kBorder || y >= height_ - kBorder) {
+    std::memset(codes, 0, static_cast<std::size_t>(stride_));
+    return;
+  }
+  const CrestRows rows{row_of(x_, y) + kBorder,
+                       row_of(y_, y) + kBorder,
+                       row_of(magnitude_, y - 1) + kBorder,
+                       row_of(magnitude_, y) + kBorder,
+                       row_of(magnitude_, y + 1) + kBorder};
+  std::int32_t* blocks = blocks_.data() + block_count_;
+  std::memset(codes, 0, kBorder);
+  const int count =
+      kernels_of(simd_).crests(rows, codes + kBorder, static_cast<Int>(threshold_), inside, blocks);
+  for (int i = 0; i < count; ++i) blocks[i] += static_cast<std::int32_t>(begin) + kBorder;
+  block_count_ += static_cast<std::size_t>(count);
+  // The last block may have overrun.
+  const int end = width_ - kBorder;
+  std::memset(codes + end, 0, static_cast<std::size_t>(stride_ - end));
 }
 
 }  // namespace ellipse

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/image_view.hpp"
@@ -18,23 +19,20 @@ struct Gradient {
 /// What the 5 x 5 kernels make of a slope of one grey level per pixel.
 inline constexpr double kGradientGain = 128.0;
 
-/// Pixels where the gradient has its crest: one byte a pixel, 0 where there is none. The low four
-/// bits tell the direction of the edge, which is the gradient turned by 90 degrees from x to y.
+/// Pixels where the gradient has its crest: one byte a pixel, 0 where there is none. The low three
+/// bits tell the direction of the edge, which is the gradient turned by 90 degrees from x to y, in
+/// eighths of a turn from +x to +y.
 namespace crest {
-inline constexpr std::uint8_t kDirection = 0x0f;
-inline constexpr std::uint8_t kFree = 0x10;     ///< In no chain yet.
-inline constexpr std::uint8_t kVisited = 0x20;  ///< A walk has been here.
+inline constexpr std::uint8_t kOctant = 0x07;
+inline constexpr std::uint8_t kFree = 0x08;     ///< No walk has been here yet.
 inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
-
-/// The edge's direction in eighths of a turn from +x to +y.
-[[nodiscard]] constexpr int octant_of(std::uint8_t code) {
-  constexpr std::uint8_t kOctants[16] = {0, 4, 0, 4, 2, 2, 6, 6, 1, 3, 7, 5, 1, 3, 7, 5};
-  return kOctants[code & kDirection];
-}
 }  // namespace crest
 
-/// The gradient of one pixel, as GradientMap computes it. At least two pixels from the border.
-[[nodiscard]] Gradient gradient_at(const ImageView& luma, int x, int y);
+/// The gradients of some pixels, at most kLongestLine, as GradientMap computes them: from (x, y) on
+/// to the right, or down. All at least two pixels from the border.
+void gradients_along(
+    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
+inline constexpr std::size_t kLongestLine = 16;
 
 /// Which instructions the hot loops use. All give the same integers.
 enum class Simd { kBaseline, kAvx2 };
@@ -64,6 +62,10 @@ class GradientMap {
   [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }
   [[nodiscard]] const std::uint8_t* crests() const { return crests_.data(); }
   [[nodiscard]] std::uint8_t* crests() { return crests_.data(); }
+  /// Where the runs of kBlock pixels begin that have crests: indices into the maps, ascending.
+  [[nodiscard]] std::span<const std::int32_t> blocks() const {
+    return {blocks_.data(), block_count_};
+  }
 
   /// Standard deviation of the gradient's noise in one direction [units of Gradient].
   [[nodiscard]] double noise() const { return noise_; }
@@ -71,12 +73,14 @@ class GradientMap {
 
   /// No crest is nearer to the border: the kernels reach beyond it [pixels].
   static constexpr int kBorder = 3;
+  static constexpr int kBlock = 32;  // pixels
 
  private:
   static constexpr int kRows = 3;  // of magnitudes that a crest is judged by
 
   void resize(const ImageView& luma);
   void compute_row(const ImageView& luma, int y);
+  void mark_row(int y);
   void measure_noise(const ImageView& luma, double floor);
   [[nodiscard]] std::int16_t* row_of(std::vector<std::int16_t>& rows, int y);
 
@@ -88,6 +92,8 @@ class GradientMap {
   double threshold_ = 0.0;
   std::vector<Gradient> gradients_;
   std::vector<std::uint8_t> crests_;
+  std::vector<std::int32_t> blocks_;
+  std::size_t block_count_ = 0;
   std::vector<std::int16_t> smooth_;      // one row, smoothed down the columns
   std::vector<std::int16_t> difference_;  // one row, differences down the columns
   std::vector<std::int16_t> x_;           // kRows rows each

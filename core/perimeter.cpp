@@ -1,166 +1,238 @@
 // SPDX-License-Identifier: MIT
 #include "core/perimeter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace ellipse {
 namespace {
 
-constexpr double kLeastSquaredCosine = 0.75;  // 30 degrees
+constexpr float kLeastSquaredCosine = 0.75F;  // 30 degrees
+constexpr auto kShift = static_cast<float>(kCrestShift);
 
-// Cosine and sine of evenly spaced eccentric anomalies.
-const std::array<Eigen::Vector2d, PerimeterProbe::kMostSamples>& circle_points() {
-  static const auto kPoints = [] {
-    std::array<Eigen::Vector2d, PerimeterProbe::kMostSamples> points;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / points.size();
-      points[i] = {std::cos(t), std::sin(t)};
-    }
-    return points;
-  }();
-  return kPoints;
-}
+template <class T>
+using PerSample = std::array<T, PerimeterProbe::kMostSamples>;
 
-// The pixel nearest to a place on the perimeter, and the way across the perimeter.
-struct Crossing {
-  std::int32_t pixel;
-  int step;
+// Cosines and sines of evenly spaced eccentric anomalies.
+struct Circle {
+  PerSample<float> x;
+  PerSample<float> y;
 };
 
-// A chained crest near the crossing whose gradient agrees with the normal; -1 where none is.
-std::int32_t nearest_edge(const GradientMap& map,
-                          const Crossing& at,
-                          const Eigen::Vector2d& inward_to_bright,
-                          int tolerance_px) {
+Circle make_circle(std::size_t samples) {
+  Circle circle{};
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / double(samples);
+    circle.x[i] = static_cast<float>(std::cos(t));
+    circle.y[i] = static_cast<float>(std::sin(t));
+  }
+  return circle;
+}
+
+const Circle& circle_of(int samples) {
+  static const std::array<Circle, 4> kCircles = {
+      make_circle(32), make_circle(64), make_circle(128), make_circle(256)};
+  return kCircles[samples <= 32 ? 0 : samples <= 64 ? 1 : samples <= 128 ? 2 : 3];
+}
+
+// Places around a perimeter. Where they are is told from the pixel next to the ellipse's centre.
+class Places {
+ public:
+  Places(const GradientMap& map, const Ellipse& e, int samples, int tolerance_px)
+      : circle_(circle_of(samples)),
+        origin_x_(static_cast<int>(std::lround(e.cx))),
+        origin_y_(static_cast<int>(std::lround(e.cy))),
+        stride_(map.stride()) {
+    const auto ux = static_cast<float>(std::cos(e.angle_rad));
+    const auto uy = static_cast<float>(std::sin(e.angle_rad));
+    const auto a = static_cast<float>(e.semi_major);
+    const auto b = static_cast<float>(e.semi_minor);
+    const auto cx = static_cast<float>(e.cx - origin_x_);
+    const auto cy = static_cast<float>(e.cy - origin_y_);
+    for (int i = 0; i < samples; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const float c = circle_.x[k];
+      const float s = circle_.y[k];
+      x[k] = cx + a * c * ux - b * s * uy;
+      y[k] = cy + a * c * uy + b * s * ux;
+      const float normal_x = b * c * ux - a * s * uy;
+      const float normal_y = b * c * uy + a * s * ux;
+      speed[k] = std::sqrt(normal_x * normal_x + normal_y * normal_y);
+      nx[k] = normal_x / speed[k];
+      ny[k] = normal_y / speed[k];
+    }
+    const int margin = GradientMap::kBorder + tolerance_px;
+    left_ = margin - origin_x_;
+    top_ = margin - origin_y_;
+    inside_width_ = static_cast<unsigned>(std::max(0, map.width() - 2 * margin));
+    inside_height_ = static_cast<unsigned>(std::max(0, map.height() - 2 * margin));
+  }
+
+  // The pixel nearest to a place, from the origin.
+  [[nodiscard]] Eigen::Vector2i nearest(std::size_t k) const {
+    return {static_cast<int>(std::lrint(x[k])), static_cast<int>(std::lrint(y[k]))};
+  }
+  [[nodiscard]] bool is_inside(const Eigen::Vector2i& pixel) const {
+    return static_cast<unsigned>(pixel.x() - left_) < inside_width_ &&
+           static_cast<unsigned>(pixel.y() - top_) < inside_height_;
+  }
+  [[nodiscard]] std::int32_t index_of(const Eigen::Vector2i& pixel) const {
+    return (pixel.y() + origin_y_) * stride_ + pixel.x() + origin_x_;
+  }
+  // Whether the normal is closer to the row than to the column.
+  [[nodiscard]] bool is_flat(std::size_t k) const { return std::abs(nx[k]) > std::abs(ny[k]); }
+  [[nodiscard]] Eigen::Vector2d anomaly(std::size_t k) const {
+    return {circle_.x[k], circle_.y[k]};
+  }
+
+  PerSample<float> x;
+  PerSample<float> y;
+  PerSample<float> nx;  // the normal, outwards
+  PerSample<float> ny;
+  PerSample<float> speed;  // length per eccentric anomaly
+
+ private:
+  const Circle& circle_;
+  int origin_x_;
+  int origin_y_;
+  int stride_;
+  int left_ = 0;
+  int top_ = 0;
+  unsigned inside_width_ = 0;
+  unsigned inside_height_ = 0;
+};
+
+constexpr int kNone = 1000;
+
+// How many steps away from a pixel the nearest chained crest is whose gradient agrees with the
+// normal (nx, ny) from dark to bright; kNone where none is.
+int nearest_edge(const std::uint8_t* crests,
+                 const Gradient* gradients,
+                 int step,
+                 float nx,
+                 float ny,
+                 int tolerance_px) {
   for (int k = 0; k <= 2 * tolerance_px; ++k) {
     const int offset = (k & 1) != 0 ? (k + 1) / 2 : -(k / 2);
-    const std::int32_t pixel = at.pixel + offset * at.step;
-    if ((map.crests()[pixel] & crest::kChained) == 0) continue;
-    const Gradient& g = map.gradients()[pixel];
-    const double along = g.x * inward_to_bright.x() + g.y * inward_to_bright.y();
-    const double squared = static_cast<double>(g.x) * g.x + static_cast<double>(g.y) * g.y;
-    if (along > 0.0 && along * along >= kLeastSquaredCosine * squared) return pixel;
+    if ((crests[offset * step] & crest::kChained) == 0) continue;
+    const Gradient& g = gradients[offset * step];
+    const float gx = g.x;
+    const float gy = g.y;
+    const float along = gx * nx + gy * ny;
+    if (along > 0.0F && along * along >= kLeastSquaredCosine * (gx * gx + gy * gy)) return offset;
   }
-  return -1;
-}
-
-// One place on the perimeter, and the edge that was met there.
-struct Place {
-  Eigen::Vector2d foot;
-  Eigen::Vector2d normal;
-  double speed;        // length per eccentric anomaly
-  bool is_inside;      // the picture
-  std::int32_t pixel;  // of the edge; -1 where none was met
-};
-
-// Calls use(place, sample) all around an ellipse.
-template <class Use>
-void for_each_place(const GradientMap& map,
-                    const Ellipse& e,
-                    Polarity polarity,
-                    int samples,
-                    int tolerance_px,
-                    const Use& use) {
-  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d across(-axis.y(), axis.x());
-  const Eigen::Vector2d major = e.semi_major * axis;
-  const Eigen::Vector2d minor = e.semi_minor * across;
-  const Eigen::Vector2d slope_u = e.semi_minor * axis;
-  const Eigen::Vector2d slope_v = e.semi_major * across;
-  const double sign = static_cast<int>(polarity);  // dark inside: the gradient points outwards
-  const int margin = GradientMap::kBorder + tolerance_px;
-  const auto stride = static_cast<std::size_t>(PerimeterProbe::kMostSamples / samples);
-  for (int i = 0; i < samples; ++i) {
-    const Eigen::Vector2d& u = circle_points()[static_cast<std::size_t>(i) * stride];
-    Place place{e.center() + u.x() * major + u.y() * minor,
-                u.x() * slope_u + u.y() * slope_v,
-                0.0,
-                false,
-                -1};
-    place.speed = place.normal.norm();
-    place.normal /= place.speed;
-    const double x = place.foot.x() + 0.5;
-    const double y = place.foot.y() + 0.5;
-    place.is_inside =
-        x >= margin && y >= margin && x < map.width() - margin && y < map.height() - margin;
-    if (place.is_inside) {
-      const bool is_flat = std::abs(place.normal.x()) > std::abs(place.normal.y());
-      const Crossing crossing{static_cast<int>(y) * map.stride() + static_cast<int>(x),
-                              is_flat ? 1 : map.stride()};
-      place.pixel = nearest_edge(map, crossing, sign * place.normal, tolerance_px);
-    }
-    use(place, i);
-  }
+  return kNone;
 }
 
 }  // namespace
 
-double perimeter_support(
-    const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
-  double inside = 0.0;
-  double met = 0.0;
-  for_each_place(map, e, polarity, samples, tolerance_px, [&](const Place& place, int /*sample*/) {
-    inside += place.is_inside ? place.speed : 0.0;
-    met += place.pixel >= 0 ? place.speed : 0.0;
-  });
-  return inside > 0.0 ? met / inside : 0.0;
+double perimeter_support(const GradientMap& map,
+                         const Ellipse& e,
+                         Polarity polarity,
+                         int samples,
+                         int tolerance_px,
+                         double least) {
+  const Places places(map, e, samples, tolerance_px);
+  const auto sign = static_cast<float>(polarity);  // dark inside: the gradient points outwards
+  float inside = 0.0F;
+  float met = 0.0F;
+  // Every other place first; where half of what is wanted is not met there, the rest is spared.
+  for (const std::size_t first : {0U, 1U}) {
+    for (std::size_t k = first; k < static_cast<std::size_t>(samples); k += 2) {
+      const Eigen::Vector2i pixel = places.nearest(k);
+      if (!places.is_inside(pixel)) continue;
+      inside += places.speed[k];
+      const std::int32_t at = places.index_of(pixel);
+      const int step = places.is_flat(k) ? 1 : map.stride();
+      const int offset = nearest_edge(map.crests() + at,
+                                      map.gradients() + at,
+                                      step,
+                                      sign * places.nx[k],
+                                      sign * places.ny[k],
+                                      tolerance_px);
+      if (offset != kNone) met += places.speed[k];
+    }
+    if (met < 0.5F * static_cast<float>(least) * inside) break;
+  }
+  return inside > 0.0F ? static_cast<double>(met / inside) : 0.0;
 }
 
 PerimeterEvidence PerimeterProbe::probe(
     const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
   hits_.clear();
   PerimeterEvidence evidence;
-  const double sign = static_cast<int>(polarity);
-  const double spacing = 2.0 * std::numbers::pi / samples;
-  double total_px = 0.0;
-  double hit_px = 0.0;
-  double inside_turn = 0.0;
-  double hit_turn = 0.0;
-  double gradients = 0.0;
-  const auto use = [&](const Place& place, int sample) {
-    const double length = place.speed * spacing;
-    const double turn = 1.0 / (place.speed * place.speed);  // curvature x length, but for a factor
-    total_px += length;
-    if (!place.is_inside) return;
-    evidence.inside_px += length;
+  const Places places(map, e, samples, tolerance_px);
+  const auto sign = static_cast<float>(polarity);
+  const auto spacing = static_cast<float>(2.0 * std::numbers::pi / samples);
+  const auto axes_product = static_cast<float>(e.semi_major * e.semi_minor);
+  const auto cx = static_cast<float>(e.cx - std::round(e.cx));
+  const auto cy = static_cast<float>(e.cy - std::round(e.cy));
+  float total = 0.0F;
+  float inside = 0.0F;
+  float met = 0.0F;
+  float inside_turn = 0.0F;
+  float met_turn = 0.0F;
+  float gradients = 0.0F;
+  float sharpness = 0.0F;
+  std::array<float, 4> levels{};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k) {
+    const float speed = places.speed[k];
+    total += speed;
+    const Eigen::Vector2i pixel = places.nearest(k);
+    if (!places.is_inside(pixel)) continue;
+    const float turn = 1.0F / (speed * speed);  // curvature x length, but for a factor
+    inside += speed;
     inside_turn += turn;
-    if (place.pixel < 0) return;
+    const float nx = places.nx[k];
+    const float ny = places.ny[k];
+    const bool is_flat = places.is_flat(k);
+    const int step = is_flat ? 1 : map.stride();
+    const Gradient* here = map.gradients() + places.index_of(pixel);
+    const int offset = nearest_edge(
+        map.crests() + places.index_of(pixel), here, step, sign * nx, sign * ny, tolerance_px);
+    if (offset == kNone) continue;
+    here += offset * step;
+    met += speed;
+    met_turn += turn;
 
-    const Gradient& g = map.gradients()[place.pixel];
-    const Eigen::Vector2d& normal = place.normal;
-    const CrestPoint crest = crest_point(map, place.pixel);
-    const double curvature =
-        e.semi_major * e.semi_minor / (place.speed * place.speed * place.speed);
-    const Eigen::Vector2d edge = crest.point + kCrestShift * curvature * normal;
-    EdgeHit hit{edge, place.foot, normal, 0.0, 0.0, length, sample};
-    hit.residual_px = normal.dot(edge - place.foot);
-    const double strength =
-        std::sqrt(static_cast<double>(g.x) * g.x + static_cast<double>(g.y) * g.y);
-    const double sine = sign * (g.y * normal.x() - g.x * normal.y()) / strength;
-    hit.direction_error_rad = sine * (1.0 + sine * sine / 6.0);  // below 30 degrees within .003
-    hits_.push_back(hit);
-    hit_px += length;
-    hit_turn += turn;
+    const CrestVertex vertex = crest_vertex(here, step);
+    const float along = static_cast<float>(offset) + vertex.offset_px;
+    const float dx = static_cast<float>(pixel.x()) + (is_flat ? along : 0.0F) - places.x[k];
+    const float dy = static_cast<float>(pixel.y()) + (is_flat ? 0.0F : along) - places.y[k];
+    const float gx = here->x;
+    const float gy = here->y;
+    const float strength = std::sqrt(gx * gx + gy * gy);
+    const float sine = sign * (gy * nx - gx * ny) / strength;
+    const float curvature = axes_product * turn / speed;
+    // Beside its foot the perimeter falls back behind its tangent.
+    const float aside = dy * nx - dx * ny;
+    const float residual = dx * nx + dy * ny + curvature * (0.5F * aside * aside + kShift);
+    const float error = sine * (1.0F + sine * sine / 6.0F);  // below 30 degrees within .003
+    hits_.push_back({static_cast<int>(k),
+                     {places.x[k] - cx, places.y[k] - cy},
+                     {nx, ny},
+                     {places.anomaly(k), axes_product / speed, residual},
+                     error,
+                     speed * spacing});
     gradients += strength;
-    evidence.sharpness += crest.sharpness;
-    for (std::size_t k = 0; k < kDistanceLevels.size(); ++k) {
-      if (std::abs(hit.residual_px) < kDistanceLevels[k] &&
-          std::abs(hit.direction_error_rad) < kDirectionLevels[k]) {
-        evidence.levels[k] += length;
-      }
+    sharpness += vertex.sharpness;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      const bool is_within = std::abs(residual) < static_cast<float>(kDistanceLevels[l]) &&
+                             std::abs(error) < static_cast<float>(kDirectionLevels[l]);
+      levels[l] += is_within ? speed : 0.0F;
     }
-  };
-  for_each_place(map, e, polarity, samples, tolerance_px, use);
-  if (!(evidence.inside_px > 0.0)) return evidence;
-  evidence.inside_fraction = evidence.inside_px / total_px;
-  evidence.support = hit_px / evidence.inside_px;
-  evidence.turn_support = hit_turn / inside_turn;
-  for (double& level : evidence.levels) level /= evidence.inside_px;
+  }
+  if (!(inside > 0.0F)) return evidence;
+  evidence.inside_px = inside * spacing;
+  evidence.inside_fraction = inside / total;
+  evidence.support = met / inside;
+  evidence.turn_support = met_turn / inside_turn;
+  for (std::size_t l = 0; l < levels.size(); ++l) evidence.levels[l] = levels[l] / inside;
   if (hits_.empty()) return evidence;
   const auto hits = static_cast<double>(hits_.size());
   evidence.signal_to_noise = gradients / hits / map.noise();
-  evidence.sharpness /= hits;
+  evidence.sharpness = sharpness / hits;
   return evidence;
 }
 

@@ -7,19 +7,19 @@
 
 #include "core/arcs.hpp"
 #include "core/ellipse.hpp"
+#include "core/ellipse_fit.hpp"
 #include "core/gradient.hpp"
 
 namespace ellipse {
 
 /// Where an edge was met, searching from the perimeter along its normal.
 struct EdgeHit {
-  Eigen::Vector2d point;             ///< On the edge [px], finer than pixels.
-  Eigen::Vector2d foot;              ///< On the perimeter [px].
-  Eigen::Vector2d normal;            ///< Of the perimeter there, outwards.
-  double residual_px = 0.0;          ///< Of the point along the normal, above 0 outside.
-  double direction_error_rad = 0.0;  ///< From the normal to the gradient.
-  double weight = 0.0;               ///< Length of the perimeter that it stands for [px].
   int sample = 0;                    ///< Its number around the perimeter.
+  Eigen::Vector2f foot;              ///< On the perimeter, from the ellipse's centre [px].
+  Eigen::Vector2f normal;            ///< Of the perimeter there, outwards.
+  PerimeterOffset offset;            ///< Of the edge.
+  float direction_error_rad = 0.0F;  ///< From the normal to the gradient.
+  float weight = 0.0F;               ///< Length of the perimeter that it stands for [px].
 };
 
 /// Tolerances of distance [px] and direction [rad], from strict to lax.
@@ -37,11 +37,18 @@ struct PerimeterEvidence {
   double sharpness = 0.0;          ///< Mean of CrestPoint::sharpness.
 };
 
-/// The same as PerimeterEvidence::support of PerimeterProbe::probe(), and no more.
-[[nodiscard]] double perimeter_support(
-    const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px);
+/// The same as PerimeterEvidence::support of PerimeterProbe::probe(), and no more: less than
+/// `least` where it becomes plain on the way that it will not reach it.
+[[nodiscard]] double perimeter_support(const GradientMap& map,
+                                       const Ellipse& e,
+                                       Polarity polarity,
+                                       int samples,
+                                       int tolerance_px,
+                                       double least);
 
 /// Walks around ellipses and looks for chained edges along the normals.
+///
+/// Single precision, from the ellipse's centre: 6e-8 of its axes.
 class PerimeterProbe {
  public:
   /// @param samples       Around the whole perimeter: 32, 64, 128 or 256.

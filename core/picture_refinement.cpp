@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/picture_refinement.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,22 +31,21 @@ std::optional<Eigen::Vector2d> crest_across(const ImageView& luma,
   if (x < margin || y < margin || x >= luma.width - margin || y >= luma.height - margin) {
     return std::nullopt;
   }
+  const int first = -kReach - 1;
   std::array<Gradient, 2 * kReach + 3> gradients;
+  gradients_along(luma, x + (is_flat ? first : 0), y + (is_flat ? 0 : first), is_flat, gradients);
   std::array<double, 2 * kReach + 3> heights{};
-  for (int k = 0; k < 2 * kReach + 3; ++k) {
-    const int offset = k - kReach - 1;
-    const auto i = static_cast<std::size_t>(k);
-    gradients[i] = gradient_at(luma, x + (is_flat ? offset : 0), y + (is_flat ? 0 : offset));
+  for (std::size_t i = 0; i < heights.size(); ++i) {
     heights[i] = gradients[i].x * to_bright.x() + gradients[i].y * to_bright.y();
   }
   const auto top = std::max_element(heights.begin() + 1, heights.end() - 1);
   const auto i = static_cast<std::size_t>(top - heights.begin());
-  const double strength = std::hypot(gradients[i].x, gradients[i].y);
+  const double strength = Eigen::Vector2d(gradients[i].x, gradients[i].y).norm();
   if (*top < least_gradient || *top < kLeastCosine * strength) return std::nullopt;
   const double curvature = heights[i - 1] - 2.0 * heights[i] + heights[i + 1];
   if (!(curvature < 0.0)) return std::nullopt;
   const double offset = std::clamp(0.5 * (heights[i - 1] - heights[i + 1]) / curvature, -0.7, 0.7);
-  const double along = static_cast<double>(i) - kReach - 1 + offset;
+  const double along = static_cast<double>(i) + first + offset;
   return Eigen::Vector2d(x + (is_flat ? along : 0.0), y + (is_flat ? 0.0 : along));
 }
 
@@ -62,9 +62,11 @@ std::optional<Ellipse> refined_on_picture(const ImageView& luma,
   std::array<double, kSamples> lengths{};
   std::size_t count = 0;
   const double step = 2.0 * std::numbers::pi / kSamples;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const double u = std::cos(step * static_cast<double>(i));
-    const double v = std::sin(step * static_cast<double>(i));
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(step).toRotationMatrix();
+  Eigen::Vector2d anomaly(1.0, 0.0);
+  for (std::size_t i = 0; i < kSamples; ++i, anomaly = turn * anomaly) {
+    const double u = anomaly.x();
+    const double v = anomaly.y();
     const Eigen::Vector2d foot = e.center() + e.semi_major * u * axis + e.semi_minor * v * across;
     const Eigen::Vector2d slope = e.semi_minor * u * axis + e.semi_major * v * across;
     const double speed = slope.norm();
@@ -81,8 +83,9 @@ std::optional<Ellipse> refined_on_picture(const ImageView& luma,
   for (const double reach : kTukeyReach) {
     GeometricFit fit(refined);
     for (std::size_t i = 0; i < count; ++i) {
-      const double r = fit.distance_px(points[i]) / reach;
-      if (std::abs(r) < 1.0) fit.add(points[i], (1.0 - r * r) * (1.0 - r * r) * lengths[i]);
+      const PerimeterOffset offset = fit.offset_of(points[i]);
+      const double weight = lengths[i] * tukey_weight(offset.distance_px, reach);
+      if (weight > 0.0) fit.add(offset, weight);
     }
     const auto better = fit.solve();
     if (!better) return std::nullopt;

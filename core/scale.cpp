@@ -2,6 +2,7 @@
 #include "core/scale.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace ellipse {
 namespace {
@@ -20,17 +21,26 @@ void average(const std::uint16_t* __restrict sums,
              int scale,
              int width,
              std::uint8_t* __restrict out) {
-  if (scale == 2) {  // the one that is used most, as vectors
-    for (int x = 0; x < width; ++x, sums += 2) {
-      out[x] = static_cast<std::uint8_t>((sums[0] + sums[1] + 2) >> 2);
-    }
-    return;
-  }
   const int pixels = scale * scale;
   for (int x = 0; x < width; ++x, sums += scale) {
     int sum = pixels / 2;
     for (int k = 0; k < scale; ++k) sum += sums[k];
     out[x] = static_cast<std::uint8_t>(sum / pixels);
+  }
+}
+
+// The scale that is used most.
+void halve(const std::uint8_t* __restrict upper,
+           const std::uint8_t* __restrict lower,
+           int width,
+           std::uint8_t* __restrict out) {
+  for (int x = 0; x < width; ++x) {
+    std::uint16_t a = 0;  // two pixels
+    std::uint16_t b = 0;
+    std::memcpy(&a, upper + 2 * x, sizeof a);
+    std::memcpy(&b, lower + 2 * x, sizeof b);
+    const auto sum = static_cast<std::uint16_t>((a & 0xff) + (a >> 8) + (b & 0xff) + (b >> 8) + 2);
+    out[x] = static_cast<std::uint8_t>(sum >> 2);
   }
 }
 
@@ -44,8 +54,13 @@ ImageView Scaler::reduce(const ImageView& luma, int scale) {
   reduced_.resize(std::max(reduced_.size(), static_cast<std::size_t>(width) * height));
   sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(luma.width)));
   for (int y = 0; y < height; ++y) {
-    add_rows(luma, y * scale, scale, sums_.data());
-    average(sums_.data(), scale, width, reduced_.data() + static_cast<std::ptrdiff_t>(y) * width);
+    std::uint8_t* out = reduced_.data() + static_cast<std::ptrdiff_t>(y) * width;
+    if (scale == 2) {
+      halve(luma.row(2 * y), luma.row(2 * y + 1), width, out);
+    } else {
+      add_rows(luma, y * scale, scale, sums_.data());
+      average(sums_.data(), scale, width, out);
+    }
   }
   return {reduced_.data(), width, height, width};
 }

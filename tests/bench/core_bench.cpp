@@ -133,7 +133,7 @@ std::optional<ellipse::Ellipse> fit(const TargetEdge& edge) {
 std::optional<ellipse::Ellipse> step_geometric_fit(const TargetEdge& edge) {
   ellipse::GeometricFit fit(edge.ellipse);
   for (const Eigen::Vector2d& point : edge.points) {
-    if (std::abs(fit.distance_px(point)) <= ellipse::kOverlapTolerancePx) fit.add(point);
+    if (std::abs(fit.offset_of(point).distance_px) <= ellipse::kOverlapTolerancePx) fit.add(point);
   }
   return fit.solve();
 }

@@ -104,7 +104,7 @@ TEST(GeometricFit, StaysOnTheExactEllipse) {
   const Ellipse truth{33.0, 44.0, 25.0, 12.0, -0.9};
   GeometricFit step(truth);
   for (const auto& p : arc(truth, 0.0, kTurn, 50)) {
-    EXPECT_NEAR(step.distance_px(p), 0.0, 1e-9);
+    EXPECT_NEAR(step.offset_of(p).distance_px, 0.0, 1e-9);
     step.add(p);
   }
   const auto fit = step.solve();
