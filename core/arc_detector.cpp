@@ -17,11 +17,15 @@ constexpr double kLeastSingleTurn = 0.8;   // of an arc that is tried alone [rad
 constexpr double kFitRms = 0.8;            // [px], and
 constexpr double kFitRmsRelative = 0.012;  // of the radius, or of a third of the arc
 constexpr int kMostPairs = 400;
+constexpr double kConvexSlackPx = 2.0;  // by which one arc may lie outside the other, and
+constexpr double kConvexSlack = 0.1;    // of their distance
 constexpr double kSameExact = 0.05;
 constexpr double kSameCrumpled = 0.08;
 constexpr double kSameRefused = 0.1;
+constexpr double kMuchLonger = 1.4;
 constexpr double kOnEllipsePx = 2.5;
-constexpr double kEnoughScore = 110.0;  // at half size [nats], and
+constexpr double kEnoughScore = 150.0;  // at half size [nats], and
+constexpr double kEnoughScoreAlone = 75.0;
 constexpr double kEnoughSupport = 0.85;
 constexpr double kFullSizeGradient = 0.4;  // of the threshold at half size, where edges are steeper
 constexpr double kLeastTurnSupport = 0.5;
@@ -53,7 +57,7 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2d apart = b.points[k] - a.points[i];
-      const double slack = 2.0 + 0.06 * apart.lpNorm<1>();
+      const double slack = kConvexSlackPx + kConvexSlack * apart.lpNorm<1>();
       if (apart.dot(a.inwards[i]) < -slack) return false;
     }
   }
@@ -78,14 +82,20 @@ Thresholds halved(const Thresholds& thresholds) {
   return half;
 }
 
-// The evidence for an ellipse and for all that are concentric with it.
-double set_score(const Detection& target, std::span<const Detection> detections) {
-  double sum = 0.0;
+// Whether the target, with all that are concentric with it, is beyond doubt: by much evidence, or
+// by less where nothing else is there.
+bool is_beyond_doubt(const Detection& target, std::span<const Detection> detections) {
+  if (target.ellipse_overlap < kEnoughSupport) return false;
+  double score = 0.0;
+  bool is_alone = true;
   for (const Detection& other : detections) {
-    const bool is_itself = other.ellipse == target.ellipse;
-    if (is_itself || are_partners(target.ellipse, other.ellipse)) sum += other.score;
+    if (other.ellipse == target.ellipse || are_partners(target.ellipse, other.ellipse)) {
+      score += other.score;
+    } else {
+      is_alone = false;
+    }
   }
-  return sum;
+  return score >= (is_alone ? kEnoughScoreAlone : kEnoughScore);
 }
 
 }  // namespace
@@ -101,8 +111,7 @@ bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& t
   const ImageView half = scaler_.reduce(luma, 2);
   detect_all(half, halved(thresholds));
   const auto target = select_target(detections_);
-  if (!target || target->ellipse_overlap < kEnoughSupport) return false;
-  if (set_score(*target, detections_) < kEnoughScore) return false;
+  if (!target || !is_beyond_doubt(*target, detections_)) return false;
   refine_at_full_size(luma, thresholds);
   return true;
 }
@@ -171,26 +180,29 @@ void ArcDetector::try_fit(const Moments& moments,
                           const Thresholds& thresholds) {
   const auto fit = fit_with_residual(moments);
   if (!fit || fit->rms_px > fit_limit(fit->ellipse, length_px)) return;
-  try_ellipse(fit->ellipse, polarity, thresholds);
+  try_ellipse({fit->ellipse, polarity, length_px}, thresholds);
 }
 
-void ArcDetector::try_ellipse(const Ellipse& guess,
-                              Polarity polarity,
-                              const Thresholds& thresholds) {
-  if (!EllipseVerifier::is_reasonable(guess, map_, thresholds)) return;
+void ArcDetector::try_ellipse(const Guess& guess, const Thresholds& thresholds) {
+  const auto& [ellipse, polarity, length_px] = guess;
+  if (!EllipseVerifier::is_reasonable(ellipse, map_, thresholds)) return;
   for (const VerifiedEllipse& known : found_) {
     const double tolerance = known.is_crumpled ? kSameCrumpled : kSameExact;
-    if (known.polarity == polarity && are_same(known.ellipse, guess, tolerance)) return;
+    if (known.polarity == polarity && are_same(known.ellipse, ellipse, tolerance)) return;
   }
-  for (const Refused& known : refused_) {
-    if (known.polarity == polarity && are_same(known.ellipse, guess, kSameRefused)) return;
+  // One from much more of its edge may do better than the one that was refused.
+  for (const Guess& known : refused_) {
+    if (known.polarity == polarity && are_same(known.ellipse, ellipse, kSameRefused) &&
+        length_px < kMuchLonger * known.length_px) {
+      return;
+    }
   }
-  if (!EllipseVerifier::is_promising(map_, guess, polarity, thresholds)) return;
-  const auto verified = verifier_.verify(map_, edge_density_, guess, polarity, thresholds);
+  if (!EllipseVerifier::is_promising(map_, ellipse, polarity, thresholds)) return;
+  const auto verified = verifier_.verify(map_, edge_density_, ellipse, polarity, thresholds);
   if (verified) {
     add(*verified);
   } else {
-    refused_.push_back({guess, polarity});
+    refused_.push_back(guess);
   }
 }
 

@@ -32,9 +32,10 @@ class ArcDetector final : public Detector {
   static constexpr int kHalfSizeContourPx = 50;
 
  private:
-  struct Refused {
+  struct Guess {
     Ellipse ellipse;
     Polarity polarity;
+    double length_px;  // of the arcs that it comes from
   };
 
   void detect_all(const ImageView& luma, const Thresholds& thresholds);
@@ -46,7 +47,7 @@ class ArcDetector final : public Detector {
                double length_px,
                Polarity polarity,
                const Thresholds& thresholds);
-  void try_ellipse(const Ellipse& guess, Polarity polarity, const Thresholds& thresholds);
+  void try_ellipse(const Guess& guess, const Thresholds& thresholds);
   void add(const VerifiedEllipse& found);
   void use_arcs_on(const VerifiedEllipse& found);
   [[nodiscard]] bool has_partner(std::size_t i, double largest_ratio) const;
@@ -63,7 +64,7 @@ class ArcDetector final : public Detector {
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // by an ellipse that was found
   std::vector<VerifiedEllipse> found_;
-  std::vector<Refused> refused_;
+  std::vector<Guess> refused_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
   double edge_density_ = 0.0;

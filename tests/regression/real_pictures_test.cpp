@@ -34,7 +34,7 @@ struct Limits {
 
 constexpr Limits kLimits[] = {
     {"contours", 38, 24},
-    {"arcs", 43, 0},
+    {"arcs", 42, 0},
 };
 
 void PrintTo(const Limits& limits, std::ostream* out) {
