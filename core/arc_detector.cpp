@@ -16,6 +16,7 @@ constexpr double kEdgeFloor = 1.25;        // least threshold [grey levels / px]
 constexpr double kLeastSingleTurn = 0.8;   // of an arc that is tried alone [rad]
 constexpr double kFitRms = 0.8;            // [px], and
 constexpr double kFitRmsRelative = 0.012;  // of the radius, or of a third of the arc
+constexpr double kLeastScore = 62.0;       // [nats]
 constexpr int kMostPairs = 400;
 constexpr double kConvexSlackPx = 2.0;  // by which one arc may lie outside the other, and
 constexpr double kConvexSlack = 0.1;    // of their distance
@@ -102,14 +103,17 @@ bool is_beyond_doubt(const Detection& target, std::span<const Detection> detecti
 
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
                                                const Thresholds& thresholds) {
-  if (!detect_at_half_size(luma, thresholds)) detect_all(luma, thresholds);
+  if (detect_at_half_size(luma, thresholds)) return detections_;
+  // Who asks for short contours takes less evidence for enough.
+  const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
+  detect_all(luma, thresholds, share * kLeastScore);
   return detections_;
 }
 
 bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& thresholds) {
   if (thresholds.min_contour_size < kHalfSizeContourPx) return false;
   const ImageView half = scaler_.reduce(luma, 2);
-  detect_all(half, halved(thresholds));
+  detect_all(half, halved(thresholds), kLeastScore);
   const auto target = select_target(detections_);
   if (!target || !is_beyond_doubt(*target, detections_)) return false;
   refine_at_full_size(luma, thresholds);
@@ -130,7 +134,9 @@ void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& t
   detections_.resize(kept);
 }
 
-void ArcDetector::detect_all(const ImageView& luma, const Thresholds& thresholds) {
+void ArcDetector::detect_all(const ImageView& luma,
+                             const Thresholds& thresholds,
+                             double least_score) {
   detections_.clear();
   polarities_.clear();
   found_.clear();
@@ -140,7 +146,8 @@ void ArcDetector::detect_all(const ImageView& luma, const Thresholds& thresholds
   map_.compute(luma, thresholds.edge_high, floor);
   chains_.trace(map_);
   arcs_ = splitter_.split(map_, chains_);
-  edge_density_ = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
+  caution_.edge_density = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
+  caution_.least_score = least_score;
   is_used_.assign(arcs_.size(), 0);
   try_single_arcs(thresholds);
   try_pairs(thresholds);
@@ -198,7 +205,7 @@ void ArcDetector::try_ellipse(const Guess& guess, const Thresholds& thresholds) 
     }
   }
   if (!EllipseVerifier::is_promising(map_, ellipse, polarity, thresholds)) return;
-  const auto verified = verifier_.verify(map_, edge_density_, ellipse, polarity, thresholds);
+  const auto verified = verifier_.verify(map_, caution_, ellipse, polarity, thresholds);
   if (verified) {
     add(*verified);
   } else {

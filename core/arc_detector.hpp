@@ -38,7 +38,7 @@ class ArcDetector final : public Detector {
     double length_px;  // of the arcs that it comes from
   };
 
-  void detect_all(const ImageView& luma, const Thresholds& thresholds);
+  void detect_all(const ImageView& luma, const Thresholds& thresholds, double least_score);
   [[nodiscard]] bool detect_at_half_size(const ImageView& luma, const Thresholds& thresholds);
   void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
   void try_single_arcs(const Thresholds& thresholds);
@@ -67,7 +67,7 @@ class ArcDetector final : public Detector {
   std::vector<Guess> refused_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
-  double edge_density_ = 0.0;
+  Caution caution_;
 };
 
 }  // namespace ellipse

@@ -17,8 +17,8 @@ using Levels = std::array<double, 4>;
 constexpr double kFirstSupport = 0.76;   // of the wanted support, before the first step
 constexpr double kSecondSupport = 0.91;  // after the first step
 constexpr std::size_t kLeastHits = 16;
-constexpr double kLeastScore = 62.0;          // [nats]
-constexpr double kLeastScoreOfPart = 120.0;   // where little of it is inside
+constexpr double kFirstScore = 0.7;           // of the least, on the way
+constexpr double kScoreOfPart = 1.94;         // of the least, where little of it is inside
 constexpr double kPart = 0.35;                // of the perimeter
 constexpr double kContourSizeOfLength = 0.9;  // pixels of a contour per pixel of length
 
@@ -100,7 +100,7 @@ bool is_long_enough(const PerimeterEvidence& evidence, const Thresholds& thresho
 
 struct EllipseVerifier::Request {
   const GradientMap& map;
-  double edge_density;
+  Caution caution;
   Ellipse guess;
   Polarity polarity;
   const Thresholds& thresholds;
@@ -151,9 +151,9 @@ bool EllipseVerifier::approach(const Request& request, Ellipse& e) {
   const PerimeterEvidence evidence = probe(2);
   if (evidence.support < wanted) return false;
   if (!improve(request, e, 2.5)) return false;
-  const double score =
-      best_significance(evidence.levels, evidence.inside_px, request.edge_density, 0.0, 0.5);
-  if (score < 0.7 * kLeastScore) return false;
+  const double score = best_significance(
+      evidence.levels, evidence.inside_px, request.caution.edge_density, 0.0, 0.5);
+  if (score < kFirstScore * request.caution.least_score) return false;
   (void)probe(2);
   return improve(request, e, 2.0);
 }
@@ -179,10 +179,9 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_exact(const Request& requ
     return std::nullopt;
   }
   const double score =
-      best_significance(found.levels, found.inside_px, request.edge_density, 0.0, 0.5);
-  if (score < (found.inside_fraction < kPart ? kLeastScoreOfPart : kLeastScore)) {
-    return std::nullopt;
-  }
+      best_significance(found.levels, found.inside_px, request.caution.edge_density, 0.0, 0.5);
+  const double part = found.inside_fraction < kPart ? kScoreOfPart : 1.0;
+  if (score < part * request.caution.least_score) return std::nullopt;
   if (median_direction_error() > direction_limit(0.055, 0.55, found.signal_to_noise)) {
     return std::nullopt;
   }
@@ -271,8 +270,8 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& r
     return std::nullopt;
   }
   const Smoothness smooth = smoothness(fine, found);
-  const double score =
-      best_significance(smooth.levels, found.inside_px, request.edge_density, 0.5 * reach_px, 0.6);
+  const double score = best_significance(
+      smooth.levels, found.inside_px, request.caution.edge_density, 0.5 * reach_px, 0.6);
   VerifiedEllipse result = described(e, request.polarity, found, smooth.levels, score);
   result.is_crumpled = true;
   const double deviation = smooth.deviation_px / radius_of(e);
@@ -303,11 +302,11 @@ bool EllipseVerifier::is_promising(const GradientMap& map,
 }
 
 std::optional<VerifiedEllipse> EllipseVerifier::verify(const GradientMap& map,
-                                                       double edge_density,
+                                                       const Caution& caution,
                                                        const Ellipse& guess,
                                                        Polarity polarity,
                                                        const Thresholds& thresholds) {
-  const Request request{map, edge_density, guess, polarity, thresholds};
+  const Request request{map, caution, guess, polarity, thresholds};
   if (auto exact = verify_exact(request)) return exact;
   return verify_crumpled(request);
 }

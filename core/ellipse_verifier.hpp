@@ -24,6 +24,12 @@ struct VerifiedEllipse {
   bool needs_partner = false;    ///< Too little by itself: counts beside a concentric one only.
 };
 
+/// What it takes to tell an ellipse from chance in a picture.
+struct Caution {
+  double edge_density = 0.0;  ///< Share of the picture's pixels that are chained crests.
+  double least_score = 62.0;  ///< Of an ellipse [nats].
+};
+
 /// Fits a guessed ellipse to the edges around it, and decides whether they make one.
 ///
 /// The evidence is weighed a contrario [Desolneux2000]: by how unlikely it is that edges which lie
@@ -38,10 +44,9 @@ class EllipseVerifier {
                                          Polarity polarity,
                                          const Thresholds& thresholds);
 
-  /// @param edge_density  Share of the picture's pixels that are chained crests.
   /// @param thresholds    Axes, ratio, overlaps and contour size.
   [[nodiscard]] std::optional<VerifiedEllipse> verify(const GradientMap& map,
-                                                      double edge_density,
+                                                      const Caution& caution,
                                                       const Ellipse& guess,
                                                       Polarity polarity,
                                                       const Thresholds& thresholds);
