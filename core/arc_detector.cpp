@@ -6,6 +6,7 @@
 
 #include "core/ellipse_fit.hpp"
 #include "core/picture_refinement.hpp"
+#include "core/ring_edges.hpp"
 #include "core/target_selection.hpp"
 
 namespace ellipse {
@@ -36,7 +37,6 @@ constexpr double kLoneSupport = 0.25;      // above the wanted one
 constexpr double kLoneCut = 0.75;          // of the perimeter; with less of it the frame cuts it
 constexpr double kLoneRatio = 2.2;         // of the axes
 constexpr double kThickRing = 0.9;         // inner over outer radius
-constexpr double kThinnestRing = 0.97;
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
@@ -63,15 +63,6 @@ bool is_inside_of(const Arc& b, const Arc& a) {
     }
   }
   return true;
-}
-
-// Same centre and shape, another radius, as the two edges of a ring at least this thick.
-bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio = kThinnestRing) {
-  const double larger = std::max(a.semi_major, b.semi_major);
-  const double ratio = std::min(a.semi_major, b.semi_major) / larger;
-  if (ratio < 0.25 || ratio > largest_ratio) return false;
-  return (a.center() - b.center()).norm() < 0.06 * larger + 1.5 &&
-         std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
 }
 
 // Lengths for a picture of half the size.
@@ -103,10 +94,13 @@ bool is_beyond_doubt(const Detection& target, std::span<const Detection> detecti
 
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
                                                const Thresholds& thresholds) {
-  if (detect_at_half_size(luma, thresholds)) return detections_;
-  // Who asks for short contours takes less evidence for enough.
-  const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
-  detect_all(luma, thresholds, share * kLeastScore);
+  if (!detect_at_half_size(luma, thresholds)) {
+    // Who asks for short contours takes less evidence for enough.
+    const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
+    detect_all(luma, thresholds, share * kLeastScore);
+    least_gradient_ = kFullSizeGradient * map_.threshold();
+  }
+  ring_corrector_.correct(luma, least_gradient_, polarities_, detections_);
   return detections_;
 }
 
@@ -122,14 +116,17 @@ bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& t
 
 // What the exact axes show to be beyond the limits is left out.
 void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
-  const double least_gradient = kFullSizeGradient * map_.threshold();
+  least_gradient_ = kFullSizeGradient * map_.threshold();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < detections_.size(); ++i) {
     Detection detection = detections_[i];
     detection.ellipse = scaled(detection.ellipse, 2.0);
-    detection.ellipse = refined_on_picture(luma, detection.ellipse, polarities_[i], least_gradient)
-                            .value_or(detection.ellipse);
-    if (thresholds.admit_axes_of(detection.ellipse)) detections_[kept++] = detection;
+    const auto refined =
+        refined_on_picture(luma, detection.ellipse, polarities_[i], least_gradient_);
+    if (refined) detection.ellipse = refined->ellipse;
+    if (!thresholds.admit_axes_of(detection.ellipse)) continue;
+    polarities_[kept] = polarities_[i];
+    detections_[kept++] = detection;
   }
   detections_.resize(kept);
 }

@@ -8,6 +8,7 @@
 #include "core/detector.hpp"
 #include "core/ellipse_verifier.hpp"
 #include "core/gradient.hpp"
+#include "core/ring_edges.hpp"
 #include "core/scale.hpp"
 
 namespace ellipse {
@@ -24,6 +25,8 @@ namespace ellipse {
 /// arcs, and so many pairs of them.
 class ArcDetector final : public Detector {
  public:
+  explicit ArcDetector(Simd simd = best_simd()) : map_(simd) {}
+
   [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.7, 0.55}; }
@@ -61,12 +64,14 @@ class ArcDetector final : public Detector {
   ChainTracer chains_;
   ArcSplitter splitter_;
   EllipseVerifier verifier_;
+  RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // by an ellipse that was found
   std::vector<VerifiedEllipse> found_;
   std::vector<Guess> refused_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
+  double least_gradient_ = 0.0;       // of an edge on the full picture
   Caution caution_;
 };
 

@@ -16,6 +16,10 @@ namespace ellipse {
 /// Which side of an edge is dark.
 enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
 
+[[nodiscard]] constexpr Polarity opposite(Polarity polarity) {
+  return polarity == Polarity::kDarkInside ? Polarity::kBrightInside : Polarity::kDarkInside;
+}
+
 /// A piece of a chain that turns to one side only, as an ellipse's edge does.
 struct Arc {
   std::size_t begin = 0;  ///< Of all chains' pixels.

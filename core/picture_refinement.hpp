@@ -8,14 +8,21 @@
 
 namespace ellipse {
 
+/// An ellipse on the picture.
+struct RefinedEllipse {
+  Ellipse ellipse;
+  double support = 0.0;   ///< Share of the places inside the picture with a crest near.
+  double gradient = 0.0;  ///< Mean of these crests [units of Gradient].
+};
+
 /// Refines an ellipse that is known within a pixel or two, on the picture itself: looks for the
 /// crest of the gradient across its perimeter at some places, and computes no gradient elsewhere.
 ///
 /// @param least_gradient  Weaker crests do not count [units of Gradient].
 /// @return nullopt where too few crests are near. Allocates nothing; the time depends on no size.
-[[nodiscard]] std::optional<Ellipse> refined_on_picture(const ImageView& luma,
-                                                        const Ellipse& e,
-                                                        Polarity polarity,
-                                                        double least_gradient);
+[[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
+                                                               const Ellipse& e,
+                                                               Polarity polarity,
+                                                               double least_gradient);
 
 }  // namespace ellipse

@@ -86,6 +86,31 @@ TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
   EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
 }
 
+TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
+  Random random(11);
+  Thresholds thresholds = detecting();
+  thresholds.min_contour_size = 20;
+  for (const Pattern pattern : {Pattern::kDisc, Pattern::kRing}) {
+    int found = 0;
+    for (std::uint64_t i = 0; i < 50; ++i) {
+      Scene scene = plain_ring();
+      scene.pad.pattern = pattern;
+      scene.pad.paint_level = 110.0;
+      scene.ground.level = 170.0;
+      scene.sensor.read_noise = 3.0;
+      scene.seed = i;
+      const double flat = std::sqrt(random.between(1.0, 2.0));
+      const Ellipse truth{60.0 + random.unit(),
+                          50.0 + random.unit(),
+                          6.0 * flat,
+                          6.0 / flat,
+                          random.between(-1.5, 1.5)};
+      found += best_iou(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8 ? 1 : 0;
+    }
+    EXPECT_GE(found, 42) << static_cast<int>(pattern);
+  }
+}
+
 TEST(ArcDetector, RejectsByEachThreshold) {
   const Ellipse truth{160.0, 120.0, 60.0, 30.0, 0.2};
   const Picture picture = rendered(disc(), truth);
@@ -193,6 +218,23 @@ TEST(ArcDetector, GivesTheSameForTheSame) {
   const auto first = fresh.detect(picture.view(), detecting());
   ASSERT_EQ(first.size(), again.size());
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].ellipse, again[i].ellipse);
+}
+
+TEST(ArcDetector, GivesTheSameWithAllInstructions) {
+  if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
+  for (const double radius : {9.0, 30.0, 90.0}) {
+    const Ellipse truth{160.0, 120.0, radius * 1.2, radius / 1.2, 0.6};
+    const Picture picture = rendered(plain_ring(), truth);
+    ArcDetector baseline(Simd::kBaseline);
+    ArcDetector best(best_simd());
+    const auto a = baseline.detect(picture.view(), detecting());
+    const auto b = best.detect(picture.view(), detecting());
+    ASSERT_EQ(a.size(), b.size());
+    ASSERT_FALSE(a.empty()) << radius;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_LT(max_difference_px(a[i].ellipse, b[i].ellipse), 0.001) << radius;
+    }
+  }
 }
 
 }  // namespace

@@ -256,7 +256,7 @@ TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
   start.semi_major += 0.8;
   const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined);
-  EXPECT_LT(max_difference_px(*refined, truth), 0.03);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
   EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, 200.0));
 }
 
