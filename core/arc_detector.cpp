@@ -98,7 +98,6 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
     // Who asks for short contours takes less evidence for enough.
     const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
     detect_all(luma, thresholds, share * kLeastScore);
-    least_gradient_ = kFullSizeGradient * map_.threshold();
   }
   ring_corrector_.correct(luma, least_gradient_, polarities_, detections_);
   return detections_;
@@ -116,7 +115,6 @@ bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& t
 
 // What the exact axes show to be beyond the limits is left out.
 void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
-  least_gradient_ = kFullSizeGradient * map_.threshold();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < detections_.size(); ++i) {
     Detection detection = detections_[i];
@@ -141,6 +139,7 @@ void ArcDetector::detect_all(const ImageView& luma,
   if (luma.empty()) return;
   const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
   map_.compute(luma, thresholds.edge_high, floor);
+  least_gradient_ = kFullSizeGradient * map_.threshold();
   chains_.trace(map_);
   arcs_ = splitter_.split(map_, chains_);
   caution_.edge_density = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
