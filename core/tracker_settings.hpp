@@ -15,7 +15,7 @@ enum class TrackingMode {
 
 /// Every tunable of a tracker. A value: copy it, change it, hand it over.
 struct TrackerSettings {
-  DetectorKind detector = DetectorKind::kContours;
+  DetectorKind detector = DetectorKind::kArcs;
   TrackingMode tracking = TrackingMode::kRedetect;
   Overlaps detect_overlaps = {};      ///< Each 0 = the detector's own.
   Overlaps track_overlaps = {};       ///< Each 0 = the detector's own.

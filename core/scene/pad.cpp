@@ -52,25 +52,6 @@ Radii radii_of(const Pad& pad) {
 
 }  // namespace
 
-Matrix3d image_from_pad(const Ellipse& outer_edge) {
-  const double c = std::cos(outer_edge.angle_rad);
-  const double s = std::sin(outer_edge.angle_rad);
-  Matrix3d affine;
-  affine << outer_edge.semi_major * c, -outer_edge.semi_minor * s, outer_edge.cx,
-      outer_edge.semi_major * s, outer_edge.semi_minor * c, outer_edge.cy, 0.0, 0.0, 1.0;
-  return affine;
-}
-
-std::optional<Ellipse> project_circle(const Matrix3d& image_from_pad, double radius) {
-  // The circle is in front of the camera where the third row is positive all along it.
-  const Eigen::RowVector3d depth = image_from_pad.row(2);
-  if (!(depth(2) > radius * depth.head<2>().norm())) return std::nullopt;
-  const Matrix3d pad_from_image = image_from_pad.inverse();
-  const Vector3d circle(1.0, 1.0, -radius * radius);
-  // Conics map as C' = H^-T C H^-1 [HartleyZisserman2004] 2.3.
-  return from_conic(pad_from_image.transpose() * circle.asDiagonal() * pad_from_image);
-}
-
 std::optional<double> inner_radius(const Pad& pad) {
   const Radii radii = radii_of(pad);
   return radii.count > 1 ? std::optional(radii.values[1]) : std::nullopt;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/ellipse.hpp"
+#include "core/homography.hpp"
 #include "core/scene/edge.hpp"
 
 namespace ellipse {
@@ -36,14 +36,6 @@ struct Pad {
   std::vector<double> gaps_rad;  ///< Places where the ring is broken, by angle on the pad.
   double gap_width_rad = 0.1;
 };
-
-/// The affine view in which the painted circle is exactly this ellipse.
-[[nodiscard]] Eigen::Matrix3d image_from_pad(const Ellipse& outer_edge);
-
-/// The exact picture of a circle about the pad's centre. nullopt where it is not an ellipse, such
-/// as when part of it is behind the camera.
-[[nodiscard]] std::optional<Ellipse> project_circle(const Eigen::Matrix3d& image_from_pad,
-                                                    double radius);
 
 /// Radius of the edge next inside the painted circle; nullopt where the pattern has none.
 [[nodiscard]] std::optional<double> inner_radius(const Pad& pad);

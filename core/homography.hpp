@@ -1,0 +1,55 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/ellipse.hpp"
+
+namespace ellipse {
+
+// A pad's plane seen by a camera: (u, v, 1) ~ H (x, y, 1). On the pad the unit is the radius of its
+// outer circle, whose centre is the origin; in the picture it is the pixel.
+
+/// The affine view in which the outer circle is exactly this ellipse.
+[[nodiscard]] Eigen::Matrix3d image_from_pad(const Ellipse& outer_edge);
+
+/// The exact picture of a circle about the pad's centre. nullopt where it is not an ellipse, such
+/// as when part of it is behind the camera.
+[[nodiscard]] std::optional<Ellipse> project_circle(const Eigen::Matrix3d& image_from_pad,
+                                                    double radius);
+
+/// A small change of a view, in the pad's own measure: H becomes H exp(A) with
+/// A = [S+E1, E2-R, T1+B1; E2+R, S-E1, T2+B2; B1, B2, 0].
+/// T (0, 1) shifts, S (2) grows, E (3, 4) stretches the outer circle; R (5) turns and B (6, 7)
+/// tilts the pad within it. Without a singularity at a circle.
+using PoseChange = Eigen::Matrix<double, 8, 1>;
+using PoseCovariance = Eigen::Matrix<double, 8, 8>;
+
+[[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
+                                    const PoseChange& change);
+
+/// The change whose A this is, but for a multiple of the unit matrix.
+[[nodiscard]] PoseChange change_of(const Eigen::Matrix3d& generator);
+
+/// How a camera's own motion changes a view, to first order: columns are turns about its axes x, y,
+/// z [rad] and shifts along them [radii of the pad].
+/// @param focal_px  Principal point in the picture's middle.
+[[nodiscard]] Eigen::Matrix<double, 8, 6> change_by_camera(const Eigen::Matrix3d& image_from_pad,
+                                                           double focal_px,
+                                                           const Eigen::Vector2d& middle_px);
+
+/// A place on an edge of the pad, in the picture.
+struct EdgeView {
+  Eigen::Vector2d point;   ///< [px]
+  Eigen::Vector2d normal;  ///< Unit, of the edge.
+  double px_per_unit;      ///< By which the edge moves along it, per unit along the pad's normal.
+  PoseChange row;          ///< And per PoseChange [px].
+};
+
+/// @param normal  Of the edge on the pad, unit.
+/// nullopt where the place is behind the camera.
+[[nodiscard]] std::optional<EdgeView> view_of(const Eigen::Matrix3d& image_from_pad,
+                                              const Eigen::Vector2d& place,
+                                              const Eigen::Vector2d& normal);
+
+}  // namespace ellipse
