@@ -17,6 +17,7 @@ constexpr std::size_t kEnoughPoints = 48;  // of an arc
 constexpr double kLeastTurn = 0.25;        // [rad]
 constexpr std::size_t kCornerReach = 3;    // [px] before and after
 constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
+constexpr std::size_t kSmoothing = 2;      // [px] before and after, of directions
 constexpr double kLeastRetreat = 0.2;      // [rad], that ends an arc; or
 constexpr double kRetreatOverNoise = 5.0;  // so many of the noise's
 constexpr double kWholeTurnLeast = 5.2;    // [rad], of a chain that is a whole ellipse
@@ -196,8 +197,7 @@ void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t
   const double length = static_cast<double>(end - begin);
   // The mean of |x| + |y| is 1.27 times that of the norm.
   const double angle_noise = 1.27 * noise * length / strength;
-  std::size_t half_width = angle_noise < 0.03 ? 2 : angle_noise < 0.08 ? 4 : 6;
-  half_width = std::min(half_width, (end - begin) / 4);
+  const std::size_t half_width = std::min(kSmoothing, (end - begin) / 4);
   // Gradients of neighbours share their pixels: three of them are as good as one.
   const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
   const auto retreat =
