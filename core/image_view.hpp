@@ -33,6 +33,19 @@ struct ImageView {
   [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
   [[nodiscard]] Rect bounds() const { return {0, 0, width, height}; }
 
+  /// Brightness between pixels: bilinear. 0 <= x < width - 1 and 0 <= y < height - 1.
+  [[nodiscard]] float at(float x, float y) const {
+    const int column = static_cast<int>(x);
+    const int line = static_cast<int>(y);
+    const float fx = x - static_cast<float>(column);
+    const float fy = y - static_cast<float>(line);
+    const std::uint8_t* upper = row(line) + column;
+    const std::uint8_t* lower = upper + stride;
+    const float above = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
+    const float below = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
+    return above + fy * (below - above);
+  }
+
   /// The part of the picture inside `rect`, clipped to the picture.
   [[nodiscard]] ImageView region(const Rect& rect) const;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracker.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/roi.hpp"
@@ -8,6 +9,10 @@
 
 namespace ellipse {
 namespace {
+
+constexpr double kFrameNs = 1e9 / 30.0;  // by which the edge tracker counts time
+constexpr double kLongestGap = 30.0;     // of these
+constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
 
 double or_own(double setting, double own) {
   return setting > 0.0 ? setting : own;
@@ -26,11 +31,57 @@ Tracker::Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> dete
 
 Tracker::~Tracker() = default;
 
-// [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.
 std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_ns) {
   start_over_if_resized(frame);
-  search_region_ = is_tracking_ ? roi_ : frame_bounds_;
+  std::optional<Target> target;
+  if (edge_tracker_.is_locked()) target = follow_edges(frame, pts_ns);
+  if (!target || target->state == TargetState::kPredicted) {
+    const std::optional<Target> detected = search_target(frame);
+    if (detected) {
+      target = detected;
+      if (settings_.tracking == TrackingMode::kEdges) lock_edges(frame, *target);
+    }
+  }
+  if (target) target->pts_ns = pts_ns;
+  last_pts_ns_ = pts_ns;
+  prepare_next_frame(target);
+  return target;
+}
 
+// From its edges alone: nothing else of the frame is read.
+std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t pts_ns) {
+  const double frames =
+      std::clamp(static_cast<double>(pts_ns - last_pts_ns_) / kFrameNs, 0.2, kLongestGap);
+  search_region_ = edge_tracker_.region_after(frames, frame.width, frame.height);
+  candidates_.clear();
+  const LumaWindow window{luma_reader_.read(frame, search_region_),
+                          Eigen::Vector2d(search_region_.x, search_region_.y),
+                          Eigen::Vector2d(frame.width, frame.height)};
+  const auto track = edge_tracker_.track(window, frames);
+  if (!track) return std::nullopt;
+  const double visible = visible_fraction(track->ellipse, frame.width, frame.height);
+  if (!track->is_seen && visible < kLeastPredicted) return std::nullopt;
+  Target target;
+  target.ellipse = track->ellipse;
+  target.state = track->is_seen ? TargetState::kTracked : TargetState::kPredicted;
+  target.id = last_id_;
+  target.contour_overlap = track->coverage;
+  target.ellipse_overlap = track->coverage;
+  target.visible_fraction = visible;
+  target.search_region = search_region_;
+  return target;
+}
+
+void Tracker::lock_edges(const PixelView& frame, const Target& target) {
+  const LumaWindow window{luma_reader_.read(frame, frame_bounds_),
+                          Eigen::Vector2d::Zero(),
+                          Eigen::Vector2d(frame.width, frame.height)};
+  if (!edge_tracker_.lock(window, target.ellipse)) edge_tracker_.release();
+}
+
+// [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.
+std::optional<Target> Tracker::search_target(const PixelView& frame) {
+  search_region_ = is_tracking_ ? roi_ : frame_bounds_;
   std::optional<Target> target = detect_target(frame, is_tracking_);
   if (!target && scale_ > 1) {
     scale_ /= 2;
@@ -42,9 +93,6 @@ std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_
                         settings_.min_target_size_px,
                         settings_.max_target_size_px);
   }
-
-  if (target) target->pts_ns = pts_ns;
-  prepare_next_frame(target);
   return target;
 }
 
@@ -110,6 +158,7 @@ void Tracker::reset() {
   had_target_ = false;
   scale_ = 1;
   roi_ = {};
+  edge_tracker_.release();
 }
 
 void Tracker::configure(const TrackerSettings& settings) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/edge_tracker.hpp"
 #include "core/luma.hpp"
 #include "core/scale.hpp"
 #include "core/tracker_settings.hpp"
@@ -60,6 +61,9 @@ class Tracker {
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
  private:
+  [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);
+  void lock_edges(const PixelView& frame, const Target& target);
+  [[nodiscard]] std::optional<Target> search_target(const PixelView& frame);
   [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
   [[nodiscard]] Thresholds determine_thresholds(bool is_tracking) const;
   void start_over_if_resized(const PixelView& frame);
@@ -71,6 +75,7 @@ class Tracker {
   std::vector<Detection> candidates_;
   LumaReader luma_reader_;
   Scaler scaler_;
+  EdgeTracker edge_tracker_;
 
   bool is_tracking_ = false;
   int scale_ = 1;
@@ -80,6 +85,7 @@ class Tracker {
   bool had_target_ = false;
   Ellipse last_ellipse_;
   std::uint64_t last_id_ = 0;
+  std::int64_t last_pts_ns_ = 0;
 };
 
 }  // namespace ellipse

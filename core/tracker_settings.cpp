@@ -103,7 +103,7 @@ const std::array kSettings = {
         "Upper edge threshold in grey levels per px; 0 = adapts to the picture"),
 };
 
-constexpr const char* kTrackingNicks[] = {"none", "redetect"};
+constexpr const char* kTrackingNicks[] = {"none", "redetect", "edges"};
 
 template <class Enum>
 Enum from_nick(std::string_view name, std::string_view nick, std::span<const char* const> nicks) {

@@ -11,6 +11,7 @@ namespace ellipse {
 enum class TrackingMode {
   kNone,      ///< Every frame by itself, the whole of it, at scale 1.
   kRedetect,  ///< [Keipour2021] Algorithm 2: lowered thresholds, region of interest, frame scale.
+  kEdges,     ///< The learned edges of the pad, along their normals from the predicted view.
 };
 
 /// Every tunable of a tracker. A value: copy it, change it, hand it over.

@@ -33,6 +33,9 @@ GType gst_ellipse_tracking_get_type(void) {
       {int(ellipse::TrackingMode::kRedetect),
        "Detect again around the last place: Keipour et al. 2021",
        "redetect"},
+      {int(ellipse::TrackingMode::kEdges),
+       "Follow the learned edges of the pad from its predicted place",
+       "edges"},
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseTracking", kValues);

@@ -1,0 +1,21 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/image_view.hpp"
+#include "core/pad_model.hpp"
+
+namespace ellipse {
+
+/// Looks for a pad's circles in a coarse picture of what surrounds its expected place: 64 x 64
+/// cells in which the pad is round, moved over all shifts and three sizes.
+///
+/// @param image_from_pad  Where it is expected.
+/// @return The view in which its circles agree best; nullopt where they agree nowhere.
+/// Allocates nothing; the time depends on no size.
+[[nodiscard]] std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
+                                                           const PadModel& model,
+                                                           const Eigen::Matrix3d& image_from_pad);
+
+}  // namespace ellipse

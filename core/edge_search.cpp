@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "core/edge_search.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr int kCircleSteps = 128;       // by which the visible part of a circle is told
+constexpr double kMarginPx = 3.0;       // from the border
+constexpr double kLeastContrast = 4.0;  // [grey levels]
+constexpr double kContrastShare = 0.25;
+constexpr int kMostSteps = 24;  // to each side of the expected place
+constexpr int kMostBox = 3;     // samples that are averaged on each side of an edge
+constexpr int kLongestProfile = 2 * (kMostSteps + kMostBox) + 3;
+
+struct Turn {
+  std::array<Eigen::Vector2d, kCircleSteps> directions;
+};
+
+const Turn& turn() {
+  static const Turn kTurn = [] {
+    Turn turn;
+    for (int i = 0; i < kCircleSteps; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kCircleSteps;
+      turn.directions[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+    }
+    return turn;
+  }();
+  return kTurn;
+}
+
+// The picture's border, seen on the pad: inside where a . (x, y, 1) >= 0 for all four.
+class VisiblePart {
+ public:
+  VisiblePart(const Eigen::Matrix3d& view, const ImageView& luma) {
+    const double right = luma.width - 1 - kMarginPx;
+    const double bottom = luma.height - 1 - kMarginPx;
+    borders_.row(0) = view.row(0) - kMarginPx * view.row(2);
+    borders_.row(1) = right * view.row(2) - view.row(0);
+    borders_.row(2) = view.row(1) - kMarginPx * view.row(2);
+    borders_.row(3) = bottom * view.row(2) - view.row(1);
+  }
+
+  [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
+    return ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
+  }
+
+  // The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
+  [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
+    Interval part{0.0, 1.0};
+    for (int i = 0; i < 4; ++i) {
+      const double begin = borders_.row(i).head<2>().dot(from) + borders_(i, 2);
+      const double end = borders_.row(i).head<2>().dot(to) + borders_(i, 2);
+      if (begin < 0.0 && end < 0.0) return {0.0, 0.0};
+      if (begin < 0.0) part.begin = std::max(part.begin, begin / (begin - end));
+      if (end < 0.0) part.end = std::min(part.end, begin / (begin - end));
+    }
+    return part;
+  }
+
+ private:
+  Eigen::Matrix<double, 4, 3> borders_;
+};
+
+}  // namespace
+
+void EdgeSearch::add(const Eigen::Matrix3d& image_from_pad,
+                     const Eigen::Vector2d& place,
+                     const Eigen::Vector2d& to_bright,
+                     double contrast,
+                     int feature) {
+  const auto view = view_of(image_from_pad, place, to_bright);
+  if (!view || samples_.size() >= kMostSamples) return;
+  EdgeSample& sample = samples_.emplace_back();
+  sample.view = *view;
+  sample.contrast = static_cast<float>(contrast);
+  sample.feature = feature;
+}
+
+void EdgeSearch::place(const PadModel& model,
+                       const Eigen::Matrix3d& image_from_pad,
+                       const ImageView& luma,
+                       int samples) {
+  samples_.clear();
+  samples_.reserve(kMostSamples);
+  const VisiblePart visible(image_from_pad, luma);
+  const double px_per_radius =
+      std::sqrt(std::abs(image_from_pad.topLeftCorner<2, 2>().determinant()));
+  std::array<std::array<bool, kCircleSteps>, 8> seen{};
+  double total_px = 0.0;
+  const std::size_t circles = std::min(model.circles.size(), seen.size());
+  narrowest_ = 1e9;
+  for (std::size_t c = 0; c < circles; ++c) {
+    const double radius = model.circles[c].radius;
+    int count = 0;
+    for (std::size_t i = 0; i < kCircleSteps; ++i) {
+      seen[c][i] = visible.has(radius * turn().directions[i]);
+      count += seen[c][i] ? 1 : 0;
+    }
+    if (c == 0) visible_fraction_ = static_cast<double>(count) / kCircleSteps;
+    if (c > 0) {
+      narrowest_ = std::min(narrowest_, std::abs(model.circles[c - 1].radius - radius));
+    }
+    total_px += 2.0 * std::numbers::pi * radius * px_per_radius * count / kCircleSteps;
+  }
+  for (const PadLine& line : model.lines) {
+    total_px +=
+        visible.clip(line.from, line.to).length() * (line.to - line.from).norm() * px_per_radius;
+  }
+  if (!(total_px > 0.0)) return;
+
+  const double spacing_px = std::max(2.0, total_px / samples);
+  for (std::size_t c = 0; c < circles; ++c) {
+    const PadCircle& circle = model.circles[c];
+    const double step_px = 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
+    double since_px = 0.5 * spacing_px;
+    for (std::size_t i = 0; i < kCircleSteps; ++i) {
+      if (!seen[c][i]) continue;
+      since_px += step_px;
+      if (since_px < spacing_px) continue;
+      since_px = std::min(since_px - spacing_px, spacing_px);
+      const Eigen::Vector2d& outwards = turn().directions[i];
+      const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+      add(image_from_pad, circle.radius * outwards, sign * outwards, circle.contrast, int(c));
+    }
+  }
+  for (std::size_t l = 0; l < model.lines.size(); ++l) {
+    const PadLine& line = model.lines[l];
+    const Interval part = visible.clip(line.from, line.to);
+    const double length_px = part.length() * (line.to - line.from).norm() * px_per_radius;
+    const int count = static_cast<int>(length_px / spacing_px);
+    for (int i = 0; i < count; ++i) {
+      const double at = part.begin + part.length() * (i + 0.5) / count;
+      add(image_from_pad,
+          line.from + at * (line.to - line.from),
+          line.to_bright,
+          line.contrast,
+          static_cast<int>(circles + l));
+    }
+  }
+}
+
+void EdgeSearch::look(const ImageView& luma,
+                      double gain,
+                      double reach_px,
+                      const PoseCovariance* covariance,
+                      double most_px) {
+  for (EdgeSample& sample : samples_) {
+    double reach = reach_px;
+    if (covariance != nullptr) {
+      const double variance = sample.view.row.dot(*covariance * sample.view.row);
+      reach = std::clamp(3.0 * std::sqrt(variance) + 2.0, reach_px, most_px);
+    }
+    look_along(luma, gain, reach, sample);
+  }
+}
+
+// Differences of box averages along the normal: from dark to bright they are above 0.
+void EdgeSearch::look_along(const ImageView& luma,
+                            double gain,
+                            double reach_px,
+                            EdgeSample& sample) const {
+  sample.count = 0;
+  const double step = std::max(1.0, reach_px / kMostSteps);
+  const int steps = static_cast<int>(std::ceil(reach_px / step));
+  const double gap_px = narrowest_ * sample.view.px_per_unit;
+  const int box = std::clamp(static_cast<int>(0.6 * gap_px / step), 1, kMostBox);
+  // As much of the normal as is inside the picture.
+  const Eigen::Vector2d across = step * sample.view.normal;
+  int first = -steps - box;
+  int last = steps + box;
+  const Eigen::Vector2d high(luma.width - 1.01, luma.height - 1.01);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double at = sample.view.point[axis];
+    const double slope = across[axis];
+    if (std::abs(slope) < 1e-6) continue;
+    const double to_low = (0.0 - at) / slope;
+    const double to_high = (high[axis] - at) / slope;
+    first = std::max(first, static_cast<int>(std::ceil(std::min(to_low, to_high))));
+    last = std::min(last, static_cast<int>(std::floor(std::max(to_low, to_high))));
+  }
+  sample.is_seen = first <= -box && last >= box;
+  if (!sample.is_seen) return;
+
+  const auto n = static_cast<std::size_t>(last - first + 1);
+  std::array<float, kLongestProfile + 1> sums;  // of all levels before
+  sums[0] = 0.0F;
+  auto x = static_cast<float>(sample.view.point.x() + first * across.x());
+  auto y = static_cast<float>(sample.view.point.y() + first * across.y());
+  for (std::size_t i = 0; i < n; ++i) {
+    sums[i + 1] = sums[i] + luma.at(x, y);
+    x += static_cast<float>(across.x());
+    y += static_cast<float>(across.y());
+  }
+  const auto half = static_cast<std::size_t>(box);
+  const float scale = 1.0F / static_cast<float>(box);
+  std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
+  for (std::size_t i = half; i + half <= n; ++i) {
+    rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
+  }
+  const auto least =
+      static_cast<float>(std::max(kLeastContrast, kContrastShare * gain * sample.contrast));
+  for (std::size_t i = half + 1; i + half < n; ++i) {
+    const float here = rises[i];
+    if (here < least || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
+    const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
+    const float at = static_cast<float>(first) + static_cast<float>(i) - 0.5F + vertex;
+    EdgeCandidate candidate{at * static_cast<float>(step), here};
+    if (std::abs(candidate.distance_px) > reach_px) continue;
+    for (int k = 0; k < sample.count; ++k) {  // the strongest first
+      EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
+      if (candidate.contrast > other.contrast) std::swap(candidate, other);
+    }
+    if (sample.count < 3) {
+      sample.candidates[static_cast<std::size_t>(sample.count++)] = candidate;
+    }
+  }
+}
+
+}  // namespace ellipse

@@ -1,0 +1,69 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/homography.hpp"
+#include "core/image_view.hpp"
+#include "core/pad_model.hpp"
+
+namespace ellipse {
+
+/// An edge met on a normal.
+struct EdgeCandidate {
+  float distance_px = 0.0F;  ///< Along the normal, from where it was expected.
+  float contrast = 0.0F;     ///< [grey levels], above 0.
+};
+
+/// One place on an edge of the pad, and what was met around it.
+struct EdgeSample {
+  EdgeView view;
+  float contrast = 0.0F;  ///< That it has on the pad [grey levels].
+  int feature = 0;        ///< Number of the circle; or of the line, behind all circles.
+  bool is_seen = false;   ///< Its normal is inside the picture.
+  int count = 0;          ///< Of candidates.
+  std::array<EdgeCandidate, 3> candidates;  ///< The strongest first.
+
+  [[nodiscard]] double predicted_px(const PoseChange& change) const { return view.row.dot(change); }
+};
+
+/// Looks for the edges of a pad along their normals, in a picture.
+class EdgeSearch {
+ public:
+  /// Spreads places over all edges inside the picture, evenly by their length there.
+  void place(const PadModel& model,
+             const Eigen::Matrix3d& image_from_pad,
+             const ImageView& luma,
+             int samples);
+
+  /// Looks at each place for edges of the right sign.
+  /// @param gain       Of the picture's contrast over the model's.
+  /// @param reach_px   How far; where a covariance is given, three of its standard deviations and
+  ///                   2 px at each place, at least that and at most `most_px`.
+  void look(const ImageView& luma,
+            double gain,
+            double reach_px,
+            const PoseCovariance* covariance = nullptr,
+            double most_px = 0.0);
+
+  [[nodiscard]] std::span<const EdgeSample> samples() const { return samples_; }
+  /// Share of the outer circle inside the picture, of the last place().
+  [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
+
+  static constexpr int kMostSamples = 256;
+
+ private:
+  void add(const Eigen::Matrix3d& image_from_pad,
+           const Eigen::Vector2d& place,
+           const Eigen::Vector2d& to_bright,
+           double contrast,
+           int feature);
+  void look_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
+
+  std::vector<EdgeSample> samples_;
+  double visible_fraction_ = 0.0;
+  double narrowest_ = 0.0;  // between neighbouring circles [radii of the outer one]
+};
+
+}  // namespace ellipse

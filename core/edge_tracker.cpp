@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+#include "core/edge_tracker.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/coarse_search.hpp"
+#include "core/ellipse_fit.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kFocalOverWidth = 0.8;  // where no camera is known
+constexpr double kTurnNoise = 0.002;     // of the camera, per frame [rad]
+constexpr double kShiftNoise = 0.0015;   // [radii]
+constexpr double kAlongNoise = 0.7;      // of it, along the optical axis
+constexpr double kFirstTurn = 0.03;      // a velocity that is not known yet
+constexpr double kFirstShift = 0.05;
+constexpr double kSlack = 0.0015;   // of the shape, for all that is not modelled
+constexpr double kMostTurn = 0.05;  // that rings alone leave unknown [rad]
+constexpr double kEdgeSigmaPx = 0.6;
+constexpr int kNearSamples = 64;
+constexpr int kFineSamples = 96;
+constexpr int kWideSamples = 128;
+constexpr double kNearReachPx = 4.0;
+constexpr double kNearMostPx = 12.0;
+constexpr double kFineReachPx = 3.5;
+constexpr double kTolerancePx = 1.2;
+constexpr double kToleranceRelative = 0.012;  // of the radius: crumpled pads
+constexpr double kNearCoverage = 0.7;
+constexpr double kWideCoverage = 0.6;
+constexpr double kWeakestCircle = 0.5;
+constexpr int kLeastMet = 10;
+constexpr double kLockCoverage = 0.7;
+constexpr int kMostMisses = 12;
+constexpr int kHypotheses = 40;
+constexpr int kLockSteps = 3;
+constexpr double kLearningShare = 0.2;  // of what a frame tells of the radii
+constexpr double kLeastVisibleToLearn = 0.4;
+
+Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
+  Eigen::Matrix3d result = view;
+  result.topRows<2>() += by_px * view.row(2);
+  return result;
+}
+
+PoseCovariance inverse_of(const PoseCovariance& m) {
+  return m.ldlt().solve(PoseCovariance::Identity());
+}
+
+double tolerance_px(double radius_px) {
+  return kTolerancePx + kToleranceRelative * radius_px;
+}
+
+}  // namespace
+
+double EdgeTracker::radius_px() const {
+  return std::sqrt(std::abs(view_.topLeftCorner<2, 2>().determinant()));
+}
+
+bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
+  is_locked_ = false;
+  frame_px_ = window.frame_px;
+  view_ = image_from_pad(outer_edge);
+  const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
+  auto model = learn_circles(window.luma, local);
+  if (!model) return false;
+  model_ = std::move(*model);
+  gain_ = 1.0;
+  surprise_ = 1.0;
+  misses_ = 0;
+  motion_ = {};
+  motion_.pose.diagonal() << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6, 1e-4, 1e-4;
+  std::optional<Attempt> attempt;
+  for (int step = 0; step < kLockSteps; ++step) {
+    attempt = look_near(window, view_, motion_.pose);
+    if (!attempt) return false;
+    view_ = attempt->view;
+    learn_radii(attempt->last, 1.0);
+  }
+  if (attempt->support.coverage < kLockCoverage) return false;
+  motion_.pose = inverse_of(attempt->estimate.information);
+  motion_.velocity_variance = noise_of_camera(kFirstTurn, kFirstShift);
+  is_locked_ = true;
+  return true;
+}
+
+PoseCovariance EdgeTracker::noise_of_camera(double turn_rad, double shift) const {
+  const auto changes =
+      change_by_camera(view_, kFocalOverWidth * frame_px_.x(), 0.5 * (frame_px_.array() - 1.0));
+  Eigen::Matrix<double, 6, 1> sigmas;
+  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongNoise * shift;
+  return changes * sigmas.cwiseAbs2().asDiagonal() * changes.transpose();
+}
+
+// Constant velocity, whose change is the noise.
+EdgeTracker::Motion EdgeTracker::predicted(double frames, double looseness) const {
+  const PoseCovariance noise =
+      frames * surprise_ * looseness * noise_of_camera(kTurnNoise, kShiftNoise);
+  Motion next;
+  next.velocity = motion_.velocity;
+  next.pose = motion_.pose + frames * (motion_.pose_velocity + motion_.pose_velocity.transpose()) +
+              frames * frames * (motion_.velocity_variance + 0.5 * noise);
+  next.pose_velocity =
+      motion_.pose_velocity + frames * motion_.velocity_variance + 0.5 * frames * noise;
+  next.velocity_variance = motion_.velocity_variance + noise;
+  const double slack = kSlack * kSlack;
+  next.pose.diagonal() +=
+      (PoseChange() << 1e-9, 1e-9, 0.05 * slack, slack, slack, 0.05 * slack, slack, slack)
+          .finished();
+  next.pose.diagonal().array() += 1e-9;
+  return next;
+}
+
+// From a change that is about right: all edges again, near it.
+std::optional<EdgeTracker::Attempt> EdgeTracker::finish(const LumaWindow& window,
+                                                        const Eigen::Matrix3d& start,
+                                                        const PosePrior& prior,
+                                                        const PoseChange& change,
+                                                        double reach_px) {
+  Attempt attempt;
+  attempt.view = moved(start, change);
+  const Eigen::Matrix3d local = shifted(attempt.view, -window.origin_px);
+  search_.place(model_, local, window.luma, kFineSamples);
+  if (search_.samples().size() < kLeastMet) return std::nullopt;
+  search_.look(window.luma, gain_, reach_px);
+  const PosePrior here{prior.mean - change, prior.information};
+  const auto estimate =
+      solve_pose(search_.samples(), here, PoseChange::Zero(), reach_px, kEdgeSigmaPx, 3);
+  if (!estimate) return std::nullopt;
+  attempt.view = moved(attempt.view, estimate->change);
+  attempt.support = support_of(search_.samples(),
+                               estimate->change,
+                               tolerance_px(radius_px()),
+                               static_cast<int>(model_.circles.size()));
+  attempt.last = estimate->change;
+  attempt.estimate = {change + estimate->change, estimate->information};
+  attempt.visible = search_.visible_fraction();
+  return attempt;
+}
+
+std::optional<EdgeTracker::Attempt> EdgeTracker::look_near(const LumaWindow& window,
+                                                           const Eigen::Matrix3d& start,
+                                                           const PoseCovariance& covariance) {
+  const PosePrior prior{PoseChange::Zero(), inverse_of(covariance)};
+  search_.place(model_, shifted(start, -window.origin_px), window.luma, kNearSamples);
+  if (search_.samples().size() < kLeastMet) return std::nullopt;
+  search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMostPx);
+  auto estimate =
+      solve_pose(search_.samples(), prior, PoseChange::Zero(), kNearMostPx, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  estimate =
+      solve_pose(search_.samples(), prior, estimate->change, 0.4 * kNearMostPx, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  auto attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+  const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
+                       attempt->support.weakest >= kWeakestCircle &&
+                       attempt->support.met >= kLeastMet;
+  return is_good ? attempt : std::nullopt;
+}
+
+// Edges of other things are in reach as well: several hypotheses, each from four edges and what is
+// known of the motion, the best of which is refined.
+std::optional<EdgeTracker::Attempt> EdgeTracker::look_wide(const LumaWindow& window,
+                                                           const Eigen::Matrix3d& start,
+                                                           const PoseCovariance& covariance,
+                                                           double reach_px) {
+  const PosePrior prior{PoseChange::Zero(), inverse_of(covariance)};
+  search_.place(model_, shifted(start, -window.origin_px), window.luma, kWideSamples);
+  const auto samples = search_.samples();
+  if (samples.size() < kLeastMet) return std::nullopt;
+  search_.look(window.luma, gain_, reach_px);
+  const double fit_px = std::max(3.0, 0.06 * radius_px());
+
+  PoseChange best = PoseChange::Zero();
+  double most = explained(samples, best, fit_px);
+  const auto consider = [&](const std::optional<PoseEstimate>& estimate) {
+    if (!estimate) return;
+    const double score = explained(samples, estimate->change, fit_px);
+    if (score <= most) return;
+    most = score;
+    best = estimate->change;
+  };
+  consider(solve_pose(samples, prior, PoseChange::Zero(), reach_px, kEdgeSigmaPx, 3));
+  std::uint32_t state = 12345;  // the same hypotheses for the same frame
+  const auto random = [&](std::size_t n) {
+    state ^= state << 13;
+    state ^= state >> 17;
+    state ^= state << 5;
+    return static_cast<std::size_t>(state >> 8) % n;
+  };
+  std::array<EdgeSample, 4> few;
+  const std::size_t n = samples.size();
+  for (int i = 0; i < kHypotheses; ++i) {
+    const std::size_t first = random(n);
+    for (std::size_t k = 0; k < few.size(); ++k) {
+      few[k] = samples[(first + k * n / few.size() + random(n / few.size() + 1)) % n];
+      if (few[k].count == 0) continue;
+      few[k].candidates[0] = few[k].candidates[random(static_cast<std::size_t>(few[k].count))];
+      few[k].count = 1;
+    }
+    consider(solve_pose(few, prior, best, 3.0 * reach_px, 2.0 * kEdgeSigmaPx, 1));
+  }
+  auto estimate = solve_pose(samples, prior, best, 2.0 * fit_px, kEdgeSigmaPx, 2);
+  if (estimate) estimate = solve_pose(samples, prior, estimate->change, fit_px, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  auto attempt = finish(window, start, prior, estimate->change, std::max(4.0, 0.03 * radius_px()));
+  if (attempt) {
+    attempt = finish(window, start, prior, attempt->estimate.change, kFineReachPx);
+  }
+  const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
+                       attempt->support.weakest >= kWeakestCircle &&
+                       attempt->support.met >= kLeastMet;
+  return is_good ? attempt : std::nullopt;
+}
+
+std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double frames) {
+  if (!is_locked_) return std::nullopt;
+  frame_px_ = window.frame_px;
+  const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
+  Motion before = predicted(frames, 1.0 + 0.5 * misses_);
+  auto attempt = look_near(window, prediction, before.pose);
+  if (!attempt) {
+    before = predicted(frames, 400.0);
+    const double reach_px = std::max(8.0, 0.16 * radius_px());
+    attempt = look_wide(window, prediction, before.pose, reach_px);
+    if (!attempt) {
+      const auto coarse =
+          coarse_search(window.luma, model_, shifted(prediction, -window.origin_px));
+      if (coarse) {
+        PoseCovariance loose = PoseCovariance::Zero();
+        loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
+        attempt = look_wide(
+            window, shifted(*coarse, window.origin_px), loose, std::max(8.0, 0.12 * radius_px()));
+        if (attempt) {
+          // The whole change, from the prediction.
+          const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
+          attempt->estimate.change = change_of(between / std::cbrt(between.determinant()));
+          before.pose += loose;
+          before.pose_velocity += loose;
+          before.velocity_variance += loose;
+        }
+      }
+    }
+  }
+  if (!attempt) {
+    miss(prediction, before);
+    return is_locked_ ? told(nullptr) : std::nullopt;
+  }
+  accept(*attempt, before);
+  return told(&*attempt);
+}
+
+// The Kalman filter's step: what the pose was told tells the velocity as well.
+void EdgeTracker::accept(const Attempt& attempt, const Motion& before) {
+  const PoseChange& change = attempt.estimate.change;
+  const PoseCovariance after = inverse_of(attempt.estimate.information);
+  const PoseCovariance prior_information = inverse_of(before.pose);
+  const PoseCovariance gain = before.pose_velocity.transpose() * prior_information;
+  motion_.velocity = before.velocity + gain * change;
+  motion_.pose = after;
+  motion_.pose_velocity = after * gain.transpose();
+  const PoseCovariance reduced =
+      before.velocity_variance - gain * (before.pose - after) * gain.transpose();
+  motion_.velocity_variance = 0.5 * (reduced + reduced.transpose());
+  motion_.velocity_variance.diagonal().array() += 1e-12;
+  if (model_.lines.empty()) {
+    // Rings look the same from all sides.
+    motion_.velocity(5) = 0.0;
+    const double most = kMostTurn * kMostTurn;
+    const double factor = std::min(1.0, std::sqrt(most / motion_.pose(5, 5)));
+    motion_.pose.row(5) *= factor;
+    motion_.pose.col(5) *= factor;
+  }
+  // How far the edges moved, over how far they were expected to.
+  double moved_px = 0.0;
+  double expected_px = 0.0;
+  for (const EdgeSample& sample : search_.samples()) {
+    moved_px += std::pow(sample.predicted_px(change), 2);
+    expected_px += sample.view.row.dot(before.pose * sample.view.row);
+  }
+  if (expected_px > 0.0) {
+    const double ratio = std::clamp(moved_px / expected_px / 0.35, 0.5, 64.0);
+    surprise_ = std::clamp(surprise_ * std::pow(ratio, 0.25), 0.25, 64.0);
+  }
+  gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
+  if (attempt.visible >= kLeastVisibleToLearn) learn_radii(attempt.last, kLearningShare);
+  view_ = attempt.view;
+  misses_ = 0;
+}
+
+// The outer circle is the unit; where the others are met tells their radii.
+void EdgeTracker::learn_radii(const PoseChange& change, double share) {
+  for (std::size_t i = 1; i < model_.circles.size(); ++i) {
+    PadCircle& circle = model_.circles[i];
+    const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+    double sum = 0.0;
+    double weights = 0.0;
+    for (const EdgeSample& sample : search_.samples()) {
+      if (sample.feature != static_cast<int>(i)) continue;
+      const EdgeCandidate* edge = nearest_candidate(sample, sample.predicted_px(change));
+      if (edge == nullptr) continue;
+      const double beside_px = edge->distance_px - sample.predicted_px(change);
+      const double px = sample.view.px_per_unit;
+      const double weight = tukey_weight(beside_px, kFineReachPx) * px * px;
+      sum += weight * sign * beside_px / px;
+      weights += weight;
+    }
+    if (weights > 0.0) circle.radius += share * sum / weights;
+  }
+}
+
+void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const Motion& before) {
+  view_ = prediction;
+  motion_ = before;
+  motion_.velocity *= 0.8;
+  if (++misses_ > kMostMisses) is_locked_ = false;
+}
+
+std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
+  const auto ellipse = project_circle(view_, 1.0);
+  if (!ellipse) return std::nullopt;
+  EdgeTrack track;
+  track.ellipse = *ellipse;
+  track.is_seen = attempt != nullptr;
+  if (attempt != nullptr) {
+    track.coverage = attempt->support.coverage;
+    track.visible = attempt->visible;
+  }
+  return track;
+}
+
+Rect EdgeTracker::region_after(double frames, int width, int height) const {
+  const Rect frame{0, 0, width, height};
+  const auto ellipse = project_circle(moved(view_, frames * motion_.velocity), 1.0);
+  if (!ellipse) return frame;
+  const Eigen::Vector2d half = half_extent(*ellipse);
+  const double margin = 1.3 * ellipse->semi_major + 16.0;
+  const double left = std::floor(ellipse->cx - half.x() - margin);
+  const double top = std::floor(ellipse->cy - half.y() - margin);
+  const double right = std::ceil(ellipse->cx + half.x() + margin);
+  const double bottom = std::ceil(ellipse->cy + half.y() + margin);
+  const auto clamped = [](double v, int high) {
+    return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(high)));
+  };
+  const int x = clamped(left, width);
+  const int y = clamped(top, height);
+  return intersect({x, y, clamped(right, width) - x, clamped(bottom, height) - y}, frame);
+}
+
+}  // namespace ellipse

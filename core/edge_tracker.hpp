@@ -1,0 +1,100 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/edge_search.hpp"
+#include "core/homography.hpp"
+#include "core/image_view.hpp"
+#include "core/pad_model.hpp"
+#include "core/pose_solver.hpp"
+
+namespace ellipse {
+
+/// The luma of a part of a frame.
+struct LumaWindow {
+  ImageView luma;
+  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
+  Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
+};
+
+/// What one frame told.
+struct EdgeTrack {
+  Ellipse ellipse;        ///< The outer circle [px of the frame].
+  double coverage = 0.0;  ///< Share of the edges in view that were met.
+  double visible = 0.0;   ///< Share of the outer circle inside the frame.
+  bool is_seen = false;   ///< Else its motion was continued.
+};
+
+/// Follows a pad by its edges: predicts its view, looks for each edge along its normal, and solves
+/// for the change of the view that explains them best, given what is known of its motion.
+///
+/// First near the prediction; if that fails, farther away, with several hypotheses; then on a
+/// coarse picture of the surroundings. One object follows one pad, on one thread. Deterministic.
+/// Allocates only while it locks.
+class EdgeTracker {
+ public:
+  /// Learns a pad from its outer edge. Whether its own edges confirm it.
+  [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
+
+  /// @param frames  Time since the last call, in thirtieths of a second.
+  /// nullopt where the pad is lost.
+  [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
+
+  [[nodiscard]] bool is_locked() const { return is_locked_; }
+  void release() { is_locked_ = false; }
+
+  /// What the next frame must show for track() to look everywhere it may want to [px].
+  [[nodiscard]] Rect region_after(double frames, int width, int height) const;
+
+ private:
+  struct Attempt {
+    Eigen::Matrix3d view;
+    PoseEstimate estimate;  // of the whole change from the prediction
+    PoseChange last;        // change, since the samples were placed
+    PoseSupport support;
+    double visible = 0.0;
+  };
+
+  /// A view that moves: what is known of it and of its velocity.
+  struct Motion {
+    PoseChange velocity = PoseChange::Zero();  // per frame
+    PoseCovariance pose = PoseCovariance::Zero();
+    PoseCovariance pose_velocity = PoseCovariance::Zero();
+    PoseCovariance velocity_variance = PoseCovariance::Zero();
+  };
+
+  [[nodiscard]] Motion predicted(double frames, double looseness) const;
+  [[nodiscard]] PoseCovariance noise_of_camera(double turn_rad, double shift) const;
+  [[nodiscard]] std::optional<Attempt> look_near(const LumaWindow& window,
+                                                 const Eigen::Matrix3d& start,
+                                                 const PoseCovariance& covariance);
+  [[nodiscard]] std::optional<Attempt> look_wide(const LumaWindow& window,
+                                                 const Eigen::Matrix3d& start,
+                                                 const PoseCovariance& covariance,
+                                                 double reach_px);
+  [[nodiscard]] std::optional<Attempt> finish(const LumaWindow& window,
+                                              const Eigen::Matrix3d& start,
+                                              const PosePrior& prior,
+                                              const PoseChange& change,
+                                              double reach_px);
+  void accept(const Attempt& attempt, const Motion& before);
+  void learn_radii(const PoseChange& change, double share);
+  void miss(const Eigen::Matrix3d& prediction, const Motion& before);
+  [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
+  [[nodiscard]] double radius_px() const;
+
+  PadModel model_;
+  EdgeSearch search_;
+  Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
+  Motion motion_;
+  Eigen::Vector2d frame_px_{0.0, 0.0};
+  double surprise_ = 1.0;  // of the motion, against its noise
+  double gain_ = 1.0;      // of the picture's contrast over the model's
+  int misses_ = 0;
+  bool is_locked_ = false;
+};
+
+}  // namespace ellipse

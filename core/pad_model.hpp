@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/image_view.hpp"
+
+namespace ellipse {
+
+/// A circle about the pad's centre where its brightness changes.
+struct PadCircle {
+  double radius = 1.0;  ///< [radii of the outer circle]
+  bool is_bright_outside = true;
+  double contrast = 0.0;  ///< [grey levels]
+};
+
+/// A straight edge on the pad.
+struct PadLine {
+  Eigen::Vector2d from;  ///< [radii of the outer circle]
+  Eigen::Vector2d to;
+  Eigen::Vector2d to_bright;  ///< Unit normal.
+  double contrast = 0.0;      ///< [grey levels]
+};
+
+/// What a pad shows: the edges by which it is followed.
+struct PadModel {
+  std::vector<PadCircle> circles;  ///< The outer one first.
+  std::vector<PadLine> lines;
+};
+
+/// Learns the circles of a pad from a picture: the median brightness over the angles, as a function
+/// of the radius, has a step at each.
+///
+/// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
+/// nullopt where there is no step at the outer circle. Allocates.
+[[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
+                                                    const Eigen::Matrix3d& image_from_pad);
+
+}  // namespace ellipse

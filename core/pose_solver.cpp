@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "core/pose_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/ellipse_fit.hpp"
+
+namespace ellipse {
+const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px) {
+  const EdgeCandidate* best = nullptr;
+  for (int k = 0; k < sample.count; ++k) {
+    const EdgeCandidate& candidate = sample.candidates[static_cast<std::size_t>(k)];
+    if (best == nullptr || std::abs(candidate.distance_px - predicted_px) <
+                               std::abs(best->distance_px - predicted_px)) {
+      best = &candidate;
+    }
+  }
+  return best;
+}
+
+std::optional<PoseEstimate> solve_pose(std::span<const EdgeSample> samples,
+                                       const PosePrior& prior,
+                                       const PoseChange& start,
+                                       double reach_px,
+                                       double sigma_px,
+                                       int iterations) {
+  PoseEstimate estimate{start, {}};
+  for (int step = 0; step < iterations; ++step) {
+    PoseCovariance& normal = estimate.information;
+    normal = prior.information;
+    PoseChange right = prior.information * prior.mean;
+    for (const EdgeSample& sample : samples) {
+      const double predicted = sample.predicted_px(estimate.change);
+      const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+      if (edge == nullptr) continue;
+      const double weight =
+          tukey_weight(edge->distance_px - predicted, reach_px) / (sigma_px * sigma_px);
+      if (!(weight > 0.0)) continue;
+      const PoseChange& row = sample.view.row;
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+      right += weight * edge->distance_px * row;
+    }
+    const Eigen::LLT<PoseCovariance, Eigen::Lower> factors(normal);
+    if (factors.info() != Eigen::Success) return std::nullopt;
+    estimate.change = factors.solve(right);
+    if (!estimate.change.allFinite()) return std::nullopt;
+  }
+  estimate.information = estimate.information.selfadjointView<Eigen::Lower>();
+  return estimate;
+}
+
+double explained(std::span<const EdgeSample> samples, const PoseChange& change, double reach_px) {
+  double sum = 0.0;
+  for (const EdgeSample& sample : samples) {
+    const double predicted = sample.predicted_px(change);
+    const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+    if (edge != nullptr) sum += tukey_weight(edge->distance_px - predicted, reach_px);
+  }
+  return sum;
+}
+
+PoseSupport support_of(std::span<const EdgeSample> samples,
+                       const PoseChange& change,
+                       double tolerance_px,
+                       int circles) {
+  PoseSupport support;
+  std::array<int, 8> seen{};
+  std::array<int, 8> met{};
+  std::array<float, EdgeSearch::kMostSamples> gains;
+  for (const EdgeSample& sample : samples) {
+    if (!sample.is_seen) continue;
+    const double predicted = sample.predicted_px(change);
+    const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+    const bool is_met = edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
+    if (is_met) gains[static_cast<std::size_t>(support.met)] = edge->contrast / sample.contrast;
+    ++support.seen;
+    support.met += is_met ? 1 : 0;
+    if (sample.feature >= circles) continue;
+    const auto circle = static_cast<std::size_t>(sample.feature);
+    ++seen[circle];
+    met[circle] += is_met ? 1 : 0;
+  }
+  if (support.seen == 0) return support;
+  support.coverage = static_cast<double>(support.met) / support.seen;
+  support.weakest = 1.0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] >= 4) {
+      support.weakest = std::min(support.weakest, static_cast<double>(met[i]) / seen[i]);
+    }
+  }
+  if (support.met > 0) {
+    const auto middle = gains.begin() + support.met / 2;
+    std::nth_element(gains.begin(), middle, gains.begin() + support.met);
+    support.gain = *middle;
+  }
+  return support;
+}
+
+}  // namespace ellipse
