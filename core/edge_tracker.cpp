@@ -42,6 +42,13 @@ constexpr int kHypotheses = 40;
 constexpr int kLockSteps = 3;
 constexpr double kLearningShare = 0.2;  // of what a frame tells of the radii
 constexpr double kLeastVisibleToLearn = 0.4;
+constexpr double kLeastRadiusToLearnPx = 24.0;
+constexpr double kGrowthToLearn = 1.4;
+constexpr double kVisibleToLearnLines = 0.6;
+constexpr double kCoverageToLearn = 0.8;
+constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
+constexpr int kTrialsOfLine = 6;
+constexpr double kLeastMetOfLine = 0.5;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
   Eigen::Matrix3d result = view;
@@ -74,6 +81,7 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   gain_ = 1.0;
   surprise_ = 1.0;
   misses_ = 0;
+  learned_radius_px_ = 0.0;
   motion_ = {};
   motion_.pose.diagonal() << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6, 1e-4, 1e-4;
   std::optional<Attempt> attempt;
@@ -253,6 +261,7 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
     return is_locked_ ? told(nullptr) : std::nullopt;
   }
   accept(*attempt, before);
+  learn_lines(window, *attempt);
   return told(&*attempt);
 }
 
@@ -289,6 +298,7 @@ void EdgeTracker::accept(const Attempt& attempt, const Motion& before) {
     surprise_ = std::clamp(surprise_ * std::pow(ratio, 0.25), 0.25, 64.0);
   }
   gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
+  judge_lines(attempt.last);
   if (attempt.visible >= kLeastVisibleToLearn) learn_radii(attempt.last, kLearningShare);
   view_ = attempt.view;
   misses_ = 0;
@@ -313,6 +323,46 @@ void EdgeTracker::learn_radii(const PoseChange& change, double share) {
     }
     if (weights > 0.0) circle.radius += share * sum / weights;
   }
+}
+
+// The larger the pad, the finer its lines: they are learned anew as it grows.
+void EdgeTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
+  const double radius = radius_px();
+  const bool is_time =
+      radius >= kLeastRadiusToLearnPx && radius >= kGrowthToLearn * learned_radius_px_;
+  if (!is_time || attempt.visible < kVisibleToLearnLines ||
+      attempt.support.coverage < kCoverageToLearn) {
+    return;
+  }
+  line_learner_.learn(window.luma, shifted(view_, -window.origin_px), model_);
+  learned_radius_px_ = radius;
+  motion_.pose(5, 5) += kTurnOfLearnedLines * kTurnOfLearnedLines;
+}
+
+// A line that is often missed is none of the pad's: a shadow, an occluder.
+void EdgeTracker::judge_lines(const PoseChange& change) {
+  const auto circles = static_cast<int>(model_.circles.size());
+  const auto samples = search_.samples();
+  for (std::size_t begin = 0; begin < samples.size();) {
+    const int feature = samples[begin].feature;
+    std::size_t end = begin;
+    int seen = 0;
+    int met = 0;
+    for (; end < samples.size() && samples[end].feature == feature; ++end) {
+      const double predicted = samples[end].predicted_px(change);
+      const EdgeCandidate* edge = nearest_candidate(samples[end], predicted);
+      seen += samples[end].is_seen ? 1 : 0;
+      met += edge != nullptr && std::abs(edge->distance_px - predicted) <= kTolerancePx ? 1 : 0;
+    }
+    begin = end;
+    if (feature < circles || seen < 2) continue;
+    PadLine& line = model_.lines[static_cast<std::size_t>(feature - circles)];
+    ++line.seen;
+    line.met += 2 * met >= seen ? 1 : 0;
+  }
+  std::erase_if(model_.lines, [](const PadLine& line) {
+    return line.seen >= kTrialsOfLine && line.met < kLeastMetOfLine * line.seen;
+  });
 }
 
 void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const Motion& before) {

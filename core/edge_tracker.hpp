@@ -8,6 +8,7 @@
 #include "core/edge_search.hpp"
 #include "core/homography.hpp"
 #include "core/image_view.hpp"
+#include "core/line_learner.hpp"
 #include "core/pad_model.hpp"
 #include "core/pose_solver.hpp"
 
@@ -82,12 +83,16 @@ class EdgeTracker {
                                               double reach_px);
   void accept(const Attempt& attempt, const Motion& before);
   void learn_radii(const PoseChange& change, double share);
+  void learn_lines(const LumaWindow& window, const Attempt& attempt);
+  void judge_lines(const PoseChange& change);
   void miss(const Eigen::Matrix3d& prediction, const Motion& before);
   [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
   PadModel model_;
   EdgeSearch search_;
+  LineLearner line_learner_;
+  double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
   Motion motion_;
   Eigen::Vector2d frame_px_{0.0, 0.0};

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "core/line_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr int kSize = 208;       // of the pad from above [px]
+constexpr double kExtent = 1.0;  // radii from its middle to its border
+constexpr double kPixel = 2.0 * kExtent / kSize;
+constexpr double kStraightPx = 1.2;     // most that a line leaves its chord
+constexpr double kLeastLength = 0.1;    // [radii]
+constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, all along it
+constexpr double kLargestRadius = 0.97;
+constexpr double kShortened = 0.02;  // at both ends, where the direction turns
+constexpr double kContrastShare = 0.3;
+constexpr double kGradientOfStep = 48.0;  // the crest of GradientMap's gradient, per grey level
+
+}  // namespace
+
+// Pixels that the picture does not show are of one level, whose border is no line of the pad.
+void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
+  pixels_.resize(static_cast<std::size_t>(kSize) * kSize);
+  for (int j = 0; j < kSize; ++j) {
+    const double y = -kExtent + (j + 0.5) * kPixel;
+    Eigen::Vector3d at = image_from_pad * Eigen::Vector3d(-kExtent + 0.5 * kPixel, y, 1.0);
+    const Eigen::Vector3d step = kPixel * image_from_pad.col(0);
+    for (int i = 0; i < kSize; ++i, at += step) {
+      const double u = at.x() / at.z();
+      const double v = at.y() / at.z();
+      const bool is_inside =
+          at.z() > 0.0 && u >= 0.0 && v >= 0.0 && u < luma.width - 1 && v < luma.height - 1;
+      const float level =
+          is_inside ? luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F : 0.0F;
+      pixels_[static_cast<std::size_t>(j * kSize + i)] = static_cast<std::uint8_t>(level);
+    }
+  }
+}
+
+Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
+  const Eigen::Vector2i at(pixel % map_.stride(), pixel / map_.stride());
+  return kPixel * (at.cast<double>().array() + 0.5) - kExtent;
+}
+
+void LineLearner::learn(const ImageView& luma,
+                        const Eigen::Matrix3d& image_from_pad,
+                        PadModel& model) {
+  rectify(luma, image_from_pad);
+  const ImageView above{pixels_.data(), kSize, kSize, kSize};
+  const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
+  map_.compute(above, least / kGradientGain, 0.0);
+  chains_.trace(map_);
+  lines_.clear();
+  for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);
+  std::sort(lines_.begin(), lines_.end(), [](const PadLine& a, const PadLine& b) {
+    return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
+  });
+  lines_.resize(std::min(lines_.size(), kMostLines));
+  model.lines = lines_;
+}
+
+// At the pixel that is farthest from the chord, until all are near it [DouglasPeucker1973].
+void LineLearner::split(std::span<const std::int32_t> pixels, const PadModel& model) {
+  const auto shortest = static_cast<std::size_t>(0.7 * kLeastLength / kPixel);
+  if (pixels.size() < shortest) return;
+  const Eigen::Vector2d from = place_of(pixels.front());
+  const Eigen::Vector2d chord = place_of(pixels.back()) - from;
+  const Eigen::Vector2d across = Eigen::Vector2d(-chord.y(), chord.x()).normalized();
+  double farthest = kStraightPx * kPixel;
+  std::size_t corner = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector2d beside = place_of(pixels[i]) - from;
+    const double distance = chord.norm() > kPixel ? std::abs(across.dot(beside)) : beside.norm();
+    if (distance <= farthest) continue;
+    farthest = distance;
+    corner = i;
+  }
+  if (corner == 0) {
+    add(pixels, model);
+    return;
+  }
+  split(pixels.first(corner), model);
+  split(pixels.subspan(corner), model);
+}
+
+void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& model) {
+  Eigen::Vector2d from = place_of(pixels.front());
+  Eigen::Vector2d to = place_of(pixels.back());
+  const double length = (to - from).norm();
+  if (length < kLeastLength) return;
+  const Eigen::Vector2d middle = 0.5 * (from + to);
+  for (const PadCircle& circle : model.circles) {
+    const auto is_beside = [&](const Eigen::Vector2d& place) {
+      return std::abs(place.norm() - circle.radius) < kBesideCircle;
+    };
+    if (is_beside(from) && is_beside(middle) && is_beside(to)) return;
+  }
+  if (middle.norm() > kLargestRadius) return;
+
+  // The line through the crests, finer than pixels; and the mean gradient on it.
+  const Eigen::Vector2d along = (to - from) / length;
+  PadLine line;
+  line.to_bright = Eigen::Vector2d(along.y(), -along.x());
+  double offset = 0.0;
+  double contrast = 0.0;
+  for (const std::int32_t pixel : pixels) {
+    const Gradient* here = map_.gradients() + pixel;
+    const bool is_flat = std::abs(here->x) > std::abs(here->y);
+    const CrestVertex vertex = crest_vertex(here, is_flat ? 1 : map_.stride());
+    Eigen::Vector2d place = place_of(pixel);
+    place[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
+    offset += line.to_bright.dot(place - from);
+    contrast += line.to_bright.dot(Eigen::Vector2d(here->x, here->y));
+  }
+  const auto count = static_cast<double>(pixels.size());
+  if (contrast < 0.0) {
+    line.to_bright = -line.to_bright;
+    offset = -offset;
+    contrast = -contrast;
+  }
+  const Eigen::Vector2d shift = offset / count * line.to_bright;
+  from += shift + kShortened * along;
+  to += shift - kShortened * along;
+  line.from = from;
+  line.to = to;
+  line.contrast = contrast / count / kGradientOfStep;
+  if (line.contrast < kContrastShare * model.circles.front().contrast) return;
+  lines_.push_back(line);
+}
+
+}  // namespace ellipse

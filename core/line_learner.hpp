@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/arcs.hpp"
+#include "core/chains.hpp"
+#include "core/gradient.hpp"
+#include "core/image_view.hpp"
+#include "core/pad_model.hpp"
+
+namespace ellipse {
+
+/// Learns the straight edges inside a pad's outer circle: what its pattern, a cross or a letter, is
+/// made of. The pad is seen from above, its edges are traced, and cut into straight parts.
+class LineLearner {
+ public:
+  /// @param image_from_pad  Exact to about a pixel.
+  /// @param model  Its circles tell what is no line, and what contrast to expect; its lines are
+  ///               replaced. At most kMostLines, the longest.
+  /// Allocates only on its first use.
+  void learn(const ImageView& luma, const Eigen::Matrix3d& image_from_pad, PadModel& model);
+
+  static constexpr std::size_t kMostLines = 24;
+
+ private:
+  void rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  void split(std::span<const std::int32_t> pixels, const PadModel& model);
+  void add(std::span<const std::int32_t> pixels, const PadModel& model);
+  [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
+
+  std::vector<std::uint8_t> pixels_;  // the pad from above
+  GradientMap map_;
+  ChainTracer chains_;
+  std::vector<PadLine> lines_;
+};
+
+}  // namespace ellipse
