@@ -10,6 +10,8 @@
 
 #include "core/coarse_search.hpp"
 #include "core/ellipse_fit.hpp"
+#include "core/picture_refinement.hpp"
+#include "core/ring_edges.hpp"
 
 namespace ellipse {
 namespace {
@@ -24,8 +26,8 @@ constexpr double kFirstShift = 0.05;
 constexpr double kSlack = 0.0015;   // of the shape, for all that is not modelled
 constexpr double kMostTurn = 0.05;  // that rings alone leave unknown [rad]
 constexpr double kEdgeSigmaPx = 0.6;
-constexpr int kNearSamples = 64;
-constexpr int kFineSamples = 96;
+constexpr int kNearSamples = 48;
+constexpr int kFineSamples = 72;
 constexpr int kWideSamples = 128;
 constexpr double kNearReachPx = 4.0;
 constexpr double kNearMostPx = 12.0;
@@ -49,6 +51,14 @@ constexpr double kCoverageToLearn = 0.8;
 constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kLeastMetOfLine = 0.5;
+constexpr double kEnoughVisible = 0.15;     // of the outer circle, to tell the centre
+constexpr double kMostCentreSigma = 0.005;  // [radii], where less is visible
+constexpr double kLeastVisibleToRefine = 0.3;
+constexpr double kLeastCrest = 0.3;    // of the expected one
+constexpr double kCrestOfStep = 48.0;  // of GradientMap's gradient, per grey level
+constexpr double kLeastRefined = 0.5;  // share of the perimeter with a crest
+constexpr double kThinRingPx = 6.0;
+constexpr double kNearRelative = 0.03;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
   Eigen::Matrix3d result = view;
@@ -258,11 +268,11 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   }
   if (!attempt) {
     miss(prediction, before);
-    return is_locked_ ? told(nullptr) : std::nullopt;
+    return is_locked_ ? told(window, nullptr) : std::nullopt;
   }
   accept(*attempt, before);
   learn_lines(window, *attempt);
-  return told(&*attempt);
+  return told(window, &*attempt);
 }
 
 // The Kalman filter's step: what the pose was told tells the velocity as well.
@@ -372,17 +382,50 @@ void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const Motion& before) 
   if (++misses_ > kMostMisses) is_locked_ = false;
 }
 
-std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
+// Standard deviation of the pad's centre, as far as the edges tell it [radii].
+double EdgeTracker::centre_sigma() const {
+  const PoseCovariance& p = motion_.pose;
+  return std::sqrt(p(0, 0) + p(1, 1) + p(6, 6) + p(7, 7) + 2.0 * (p(0, 6) + p(1, 7)));
+}
+
+std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attempt* attempt) const {
   const auto ellipse = project_circle(view_, 1.0);
   if (!ellipse) return std::nullopt;
   EdgeTrack track;
   track.ellipse = *ellipse;
-  track.is_seen = attempt != nullptr;
-  if (attempt != nullptr) {
-    track.coverage = attempt->support.coverage;
-    track.visible = attempt->visible;
-  }
+  if (attempt == nullptr) return track;
+  track.coverage = attempt->support.coverage;
+  track.visible = attempt->visible;
+  track.is_seen = track.visible >= kEnoughVisible || centre_sigma() <= kMostCentreSigma;
+  if (track.visible >= kLeastVisibleToRefine) track.ellipse = refined(window, *ellipse);
   return track;
+}
+
+// The outer edge on the gradient's crests: exact, where the search along the normals is robust.
+Ellipse EdgeTracker::refined(const LumaWindow& window, const Ellipse& outer) const {
+  const PadCircle& circle = model_.circles.front();
+  const double least = kLeastCrest * kCrestOfStep * circle.contrast * gain_;
+  const auto on_picture = [&](const Ellipse& e, bool is_bright_outside) {
+    const Polarity polarity = is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
+    const Ellipse local = translated(e, -window.origin_px.x(), -window.origin_px.y());
+    return refined_on_picture(window.luma, local, polarity, least);
+  };
+  const auto edge = on_picture(outer, circle.is_bright_outside);
+  if (!edge || edge->support < kLeastRefined) return outer;
+  Ellipse exact = edge->ellipse;
+  const bool has_inner =
+      model_.circles.size() > 1 && model_.circles[1].is_bright_outside != circle.is_bright_outside;
+  if (has_inner && (1.0 - model_.circles[1].radius) * outer.semi_minor < kThinRingPx) {
+    if (const auto inner = project_circle(view_, model_.circles[1].radius)) {
+      const auto next = on_picture(*inner, !circle.is_bright_outside);
+      if (next && next->support >= kLeastRefined) {
+        exact = without_repulsion({exact, next->ellipse}).outer;
+      }
+    }
+  }
+  exact = translated(exact, window.origin_px.x(), window.origin_px.y());
+  const bool is_near = max_difference_px(exact, outer) <= 1.0 + kNearRelative * outer.semi_major;
+  return is_near ? exact : outer;
 }
 
 Rect EdgeTracker::region_after(double frames, int width, int height) const {

@@ -86,7 +86,10 @@ class EdgeTracker {
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const PoseChange& change);
   void miss(const Eigen::Matrix3d& prediction, const Motion& before);
-  [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
+  [[nodiscard]] std::optional<EdgeTrack> told(const LumaWindow& window,
+                                              const Attempt* attempt) const;
+  [[nodiscard]] Ellipse refined(const LumaWindow& window, const Ellipse& outer) const;
+  [[nodiscard]] double centre_sigma() const;
   [[nodiscard]] double radius_px() const;
 
   PadModel model_;

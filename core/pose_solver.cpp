@@ -40,7 +40,7 @@ std::optional<PoseEstimate> solve_pose(std::span<const EdgeSample> samples,
           tukey_weight(edge->distance_px - predicted, reach_px) / (sigma_px * sigma_px);
       if (!(weight > 0.0)) continue;
       const PoseChange& row = sample.view.row;
-      normal.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+      for (int i = 0; i < 8; ++i) normal.col(i) += weight * row(i) * row;
       right += weight * edge->distance_px * row;
     }
     const Eigen::LLT<PoseCovariance, Eigen::Lower> factors(normal);
@@ -48,7 +48,6 @@ std::optional<PoseEstimate> solve_pose(std::span<const EdgeSample> samples,
     estimate.change = factors.solve(right);
     if (!estimate.change.allFinite()) return std::nullopt;
   }
-  estimate.information = estimate.information.selfadjointView<Eigen::Lower>();
   return estimate;
 }
 

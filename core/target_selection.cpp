@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace ellipse {
 namespace {
@@ -41,28 +40,6 @@ bool can_be_same_target(const Ellipse& candidate, const Ellipse& last) {
          candidate.semi_major <= last.semi_major * kLargestGrowth;
 }
 
-// What is known of the set of all ellipses concentric with one of them.
-struct ConcentricSet {
-  bool has_two_edges = false;
-  double score = 0.0;
-  double best_score = 0.0;
-
-  bool operator<(const ConcentricSet& other) const {
-    return std::tie(has_two_edges, score) < std::tie(other.has_two_edges, other.score);
-  }
-};
-
-ConcentricSet set_around(const Detection& seed, std::span<const Detection> detections) {
-  ConcentricSet set;
-  for (const Detection& other : detections) {
-    if (!are_concentric(seed.ellipse, other.ellipse)) continue;
-    set.has_two_edges = set.has_two_edges || !are_one_edge(seed.ellipse, other.ellipse);
-    set.score += other.score;
-    set.best_score = std::max(set.best_score, other.score);
-  }
-  return set;
-}
-
 // Better than another member of the same set, both with enough of the set's best score.
 bool is_better(const Detection& a, const Detection& b) {
   return are_one_edge(a.ellipse, b.ellipse) ? a.score > b.score
@@ -70,6 +47,17 @@ bool is_better(const Detection& a, const Detection& b) {
 }
 
 }  // namespace
+
+ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
+  ConcentricSet set;
+  for (const Detection& other : detections) {
+    if (!are_concentric(ellipse, other.ellipse)) continue;
+    set.has_two_edges = set.has_two_edges || !are_one_edge(ellipse, other.ellipse);
+    set.score += other.score;
+    set.best_score = std::max(set.best_score, other.score);
+  }
+  return set;
+}
 
 std::optional<Detection> select_target(std::span<const Detection> detections,
                                        const std::optional<Ellipse>& last_target) {
@@ -80,7 +68,7 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
   ConcentricSet best;
   for (const Detection& detection : detections) {
     if (!is_possible(detection)) continue;
-    const ConcentricSet set = set_around(detection, detections);
+    const ConcentricSet set = set_around(detection.ellipse, detections);
     if (seed == nullptr || best < set) {
       seed = &detection;
       best = set;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "core/detector.hpp"
 #include "core/ellipse.hpp"
@@ -22,5 +23,20 @@ namespace ellipse {
 /// Deterministic, thread-safe, allocates nothing; O(N^2).
 [[nodiscard]] std::optional<Detection> select_target(
     std::span<const Detection> detections, const std::optional<Ellipse>& last_target = {});
+
+/// What is known of the set of all ellipses that are concentric with one.
+struct ConcentricSet {
+  bool has_two_edges = false;
+  double score = 0.0;
+  double best_score = 0.0;
+
+  bool operator<(const ConcentricSet& other) const {
+    return std::tie(has_two_edges, score) < std::tie(other.has_two_edges, other.score);
+  }
+};
+
+/// The set around an ellipse, which need not be one of the detections.
+[[nodiscard]] ConcentricSet set_around(const Ellipse& ellipse,
+                                       std::span<const Detection> detections);
 
 }  // namespace ellipse

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kFrameNs = 1e9 / 30.0;  // by which the edge tracker counts time
 constexpr double kLongestGap = 30.0;     // of these
+constexpr int kLookInterval = 8;         // frames between the detector's looks while following
+constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
 constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
 
 double or_own(double setting, double own) {
@@ -35,13 +37,8 @@ std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_
   start_over_if_resized(frame);
   std::optional<Target> target;
   if (edge_tracker_.is_locked()) target = follow_edges(frame, pts_ns);
-  if (!target || target->state == TargetState::kPredicted) {
-    const std::optional<Target> detected = search_target(frame);
-    if (detected) {
-      target = detected;
-      if (settings_.tracking == TrackingMode::kEdges) lock_edges(frame, *target);
-    }
-  }
+  const bool is_seen = target && target->state == TargetState::kTracked;
+  if (!is_seen || ++frames_since_look_ >= next_look_) target = look_at_all(frame, target);
   if (target) target->pts_ns = pts_ns;
   last_pts_ns_ = pts_ns;
   prepare_next_frame(target);
@@ -69,6 +66,38 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   target.ellipse_overlap = track->coverage;
   target.visible_fraction = visible;
   target.search_region = search_region_;
+  return target;
+}
+
+// What is followed may have been the wrong thing, or there may be something better by now: the
+// detector is asked what it would choose.
+std::optional<Target> Tracker::look_at_all(const PixelView& frame,
+                                           const std::optional<Target>& followed) {
+  const std::optional<Target> chosen = search_target(frame);
+  if (settings_.tracking != TrackingMode::kEdges) return chosen;
+  frames_since_look_ = 0;
+  next_look_ = kLookInterval;
+  const bool is_followed = followed && followed->state == TargetState::kTracked;
+  if (!chosen) {
+    if (is_followed && is_confirmed_) return followed;
+    if (is_followed) edge_tracker_.release();
+    return is_followed ? std::nullopt : followed;
+  }
+  if (is_followed) {
+    const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
+    const ConcentricSet new_set = set_around(chosen->ellipse, candidates_);
+    const bool is_better = old_set < new_set && (new_set.has_two_edges != old_set.has_two_edges ||
+                                                 new_set.score > kMuchBetter * old_set.score);
+    if (!is_better || old_set.score == new_set.score) {
+      is_confirmed_ = is_confirmed_ || old_set.score > 0.0;
+      return followed;
+    }
+  }
+  Target target = *chosen;
+  if (is_followed) target.id = last_id_ + 1;
+  lock_edges(frame, target);
+  is_confirmed_ = false;
+  next_look_ = 1;
   return target;
 }
 
@@ -135,7 +164,7 @@ Thresholds Tracker::determine_thresholds(bool is_tracking) const {
 
 // [Keipour2021] Algorithm 2, its end: the tracking status and the region for the next frame.
 void Tracker::prepare_next_frame(const std::optional<Target>& target) {
-  had_target_ = target.has_value();
+  had_target_ = target.has_value() || edge_tracker_.is_locked();
   if (target) {
     last_id_ = target->id;
     last_ellipse_ = target->ellipse;

@@ -62,6 +62,8 @@ class Tracker {
 
  private:
   [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);
+  [[nodiscard]] std::optional<Target> look_at_all(const PixelView& frame,
+                                                  const std::optional<Target>& followed);
   void lock_edges(const PixelView& frame, const Target& target);
   [[nodiscard]] std::optional<Target> search_target(const PixelView& frame);
   [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
@@ -86,6 +88,9 @@ class Tracker {
   Ellipse last_ellipse_;
   std::uint64_t last_id_ = 0;
   std::int64_t last_pts_ns_ = 0;
+  int frames_since_look_ = 0;  // of the detector, while following by edges
+  int next_look_ = 1;
+  bool is_confirmed_ = false;  // by a second look
 };
 
 }  // namespace ellipse
