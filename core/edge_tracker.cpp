@@ -85,9 +85,7 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   frame_px_ = window.frame_px;
   view_ = image_from_pad(outer_edge);
   const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
-  auto model = learn_circles(window.luma, local);
-  if (!model) return false;
-  model_ = std::move(*model);
+  if (!circle_learner_.learn(window.luma, local, model_)) return false;
   gain_ = 1.0;
   surprise_ = 1.0;
   misses_ = 0;
@@ -176,6 +174,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_near(const LumaWindow& win
       solve_pose(search_.samples(), prior, estimate->change, 0.4 * kNearMostPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
   auto attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+  if (attempt) last_coverage_ = attempt->support.coverage;
   const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&
                        attempt->support.met >= kLeastMet;
@@ -241,6 +240,7 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   if (!is_locked_) return std::nullopt;
   frame_px_ = window.frame_px;
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
+  last_coverage_ = 0.0;
   Motion before = predicted(frames, 1.0 + 0.5 * misses_);
   auto attempt = look_near(window, prediction, before.pose);
   if (!attempt) {
@@ -393,6 +393,7 @@ std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attem
   if (!ellipse) return std::nullopt;
   EdgeTrack track;
   track.ellipse = *ellipse;
+  track.coverage = last_coverage_;
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
   track.visible = attempt->visible;

@@ -24,7 +24,7 @@ struct LumaWindow {
 /// What one frame told.
 struct EdgeTrack {
   Ellipse ellipse;        ///< The outer circle [px of the frame].
-  double coverage = 0.0;  ///< Share of the edges in view that were met.
+  double coverage = 0.0;  ///< Share of the edges in view that were met, be it too few.
   double visible = 0.0;   ///< Share of the outer circle inside the frame.
   bool is_seen = false;   ///< Else its motion was continued.
 };
@@ -94,6 +94,7 @@ class EdgeTracker {
 
   PadModel model_;
   EdgeSearch search_;
+  CircleLearner circle_learner_;
   LineLearner line_learner_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
@@ -102,6 +103,7 @@ class EdgeTracker {
   double surprise_ = 1.0;  // of the motion, against its noise
   double gain_ = 1.0;      // of the picture's contrast over the model's
   int misses_ = 0;
+  double last_coverage_ = 0.0;  // near the prediction
   bool is_locked_ = false;
 };
 

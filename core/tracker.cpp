@@ -15,6 +15,7 @@ constexpr double kLongestGap = 30.0;     // of these
 constexpr int kLookInterval = 8;         // frames between the detector's looks while following
 constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
 constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
+constexpr double kLeastCoverage = 0.4;   // of its edges, all the same
 
 double or_own(double setting, double own) {
   return setting > 0.0 ? setting : own;
@@ -38,7 +39,8 @@ std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_
   std::optional<Target> target;
   if (edge_tracker_.is_locked()) target = follow_edges(frame, pts_ns);
   const bool is_seen = target && target->state == TargetState::kTracked;
-  if (!is_seen || ++frames_since_look_ >= next_look_) target = look_at_all(frame, target);
+  const int next_look = settings_.wants_candidates ? 1 : next_look_;
+  if (!is_seen || ++frames_since_look_ >= next_look) target = look_at_all(frame, target);
   if (target) target->pts_ns = pts_ns;
   last_pts_ns_ = pts_ns;
   prepare_next_frame(target);
@@ -57,7 +59,8 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   const auto track = edge_tracker_.track(window, frames);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(track->ellipse, frame.width, frame.height);
-  if (!track->is_seen && visible < kLeastPredicted) return std::nullopt;
+  const bool is_likely = visible >= kLeastPredicted && track->coverage >= kLeastCoverage;
+  if (!track->is_seen && !is_likely) return std::nullopt;
   Target target;
   target.ellipse = track->ellipse;
   target.state = track->is_seen ? TargetState::kTracked : TargetState::kPredicted;

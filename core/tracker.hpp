@@ -54,7 +54,8 @@ class Tracker {
   /// Forgets the target, the scale and the region. Numbers of targets go on.
   void reset();
 
-  /// All ellipses of the last frame, the target among them [px of the frame]. Until the next call.
+  /// All ellipses that the detector found in the last frame [px of the frame]; none in a frame
+  /// where it was not asked, see TrackerSettings::wants_candidates. Until the next call.
   [[nodiscard]] std::span<const Detection> candidates() const { return candidates_; }
 
   /// Where the last frame was searched [px].

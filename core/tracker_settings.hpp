@@ -17,13 +17,14 @@ enum class TrackingMode {
 /// Every tunable of a tracker. A value: copy it, change it, hand it over.
 struct TrackerSettings {
   DetectorKind detector = DetectorKind::kArcs;
-  TrackingMode tracking = TrackingMode::kRedetect;
+  TrackingMode tracking = TrackingMode::kEdges;
   Overlaps detect_overlaps = {};      ///< Each 0 = the detector's own.
   Overlaps track_overlaps = {};       ///< Each 0 = the detector's own.
   Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
   int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.
+  bool wants_candidates = false;      ///< All ellipses of every frame, also while following edges.
   double roi_expansion = 2.0;         ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
 
   /// Throws std::invalid_argument that names the field.

@@ -55,12 +55,17 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   return meta;
 }
 
+static constexpr double kSameEllipsePx = 1.5;
+
 static void attach_candidate_metas(GstBuffer* buffer,
                                    std::span<const ellipse::Detection> candidates,
                                    const std::optional<ellipse::Target>& target,
                                    const GstVideoInfo& info) {
   for (const ellipse::Detection& candidate : candidates) {
-    if (target && candidate.ellipse == target->ellipse) continue;
+    // The target itself, which following it made a little different.
+    const bool is_target =
+        target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
+    if (is_target) continue;
     GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
     meta->contour_overlap = candidate.contour_overlap;
     meta->ellipse_overlap = candidate.ellipse_overlap;
@@ -95,6 +100,6 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
     meta = attach_target_meta(buffer, *target, info, processing_time);
     if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
   }
-  if (properties.candidates) attach_candidate_metas(buffer, candidates, target, info);
+  if (properties.tracker.wants_candidates) attach_candidate_metas(buffer, candidates, target, info);
   return meta;
 }

@@ -126,7 +126,7 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
           g_param_spec_boolean("candidates",
                                "Candidates",
                                "Also attach all other ellipses of the frame, as \"candidate\"",
-                               initial.candidates ? TRUE : FALSE,
+                               initial.tracker.wants_candidates ? TRUE : FALSE,
                                playing));
   install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
   guint id = first_id + PROP_FIRST_NUMBER;
@@ -158,7 +158,8 @@ void TrackProperties::set(guint which, const GValue* value) {
   if (which == PROP_INTERVAL) wanted.interval = g_value_get_uint(value);
   if (which == PROP_MESSAGES) wanted.messages = g_value_get_enum(value);
   if (which == PROP_ATTACH_ROI_META) wanted.attach_roi_meta = g_value_get_boolean(value) != FALSE;
-  if (which == PROP_CANDIDATES) wanted.candidates = g_value_get_boolean(value) != FALSE;
+  if (which == PROP_CANDIDATES)
+    wanted.tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     set_overlay_property(wanted.overlay, which - PROP_OVERLAY, value);
   }
@@ -180,7 +181,7 @@ void TrackProperties::get(guint which, GValue* value) const {
   if (which == PROP_INTERVAL) g_value_set_uint(value, interval);
   if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
   if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
-  if (which == PROP_CANDIDATES) g_value_set_boolean(value, candidates ? TRUE : FALSE);
+  if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     get_overlay_property(overlay, which - PROP_OVERLAY, value);
   }

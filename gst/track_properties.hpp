@@ -16,7 +16,6 @@ struct TrackProperties {
   guint interval = 1;
   int messages = MESSAGES_ON_CHANGE;
   bool attach_roi_meta = true;
-  bool candidates = false;
 
   /// Installs them all, with ids from first_id on; the last ones are those of setting_infos().
   static void install(GObjectClass* object_class, guint first_id);

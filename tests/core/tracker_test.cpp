@@ -58,12 +58,18 @@ Detection at(double cx, double cy, double semi_major) {
   return {{cx, cy, semi_major, 0.9 * semi_major, 0.0}, 1.0, 1.0, 100.0};
 }
 
+TrackerSettings redetecting() {
+  TrackerSettings settings;
+  settings.tracking = TrackingMode::kRedetect;
+  return settings;
+}
+
 class ScriptedTracker : public testing::Test {
  protected:
   void SetUp() override { script_.tracker = &tracker_; }
   std::optional<Target> process() { return tracker_.process(picture_.view(), 0); }
 
-  TrackerSettings settings_;
+  TrackerSettings settings_ = redetecting();
   ScriptedDetector::Script script_;
   Picture picture_{640, 360};
   Tracker tracker_{settings_, std::make_unique<ScriptedDetector>(script_)};
@@ -201,7 +207,7 @@ TEST(Tracker, OffsetsAreCompensatedExactlyBetweenScales) {
   for (int place = 0; place < kPlaces; ++place) {
     const Ellipse truth{310.37 + 0.71 * place, 171.81 + 0.37 * place, 130.0, 110.0, 0.3 * place};
     const Picture picture = rendered(scene, truth, 640, 360);
-    Tracker tracker;
+    Tracker tracker(redetecting());
     for (int step = 0; step < 3; ++step) {
       const Target target = tracker.process(picture.view(), step).value();
       EXPECT_EQ(target.scale, 1 << step);

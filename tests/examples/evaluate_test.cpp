@@ -270,7 +270,7 @@ TEST(Sweep, NamesWhatIsNoProperty) {
 }
 
 TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
-  EXPECT_EQ(method_names().front(), "arcs+redetect");
+  EXPECT_EQ(method_names().front(), "arcs+edges");
   for (const std::string& name : method_names()) EXPECT_EQ(make_method(name, {})->name(), name);
   EXPECT_THROW((void)make_method("magic", {}), std::invalid_argument);
 }

@@ -160,7 +160,7 @@ TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
   const TemporaryFolder folder;
   const std::string expected_file = folder.file("expected.ndjson");
   const std::string command = std::string(evaluate) + " '" + folder_name +
-                              "' --methods arcs+redetect --frames " + expected_file + " > " +
+                              "' --methods arcs+edges --frames " + expected_file + " > " +
                               folder.file("tables.txt");
   ASSERT_EQ(std::system(command.c_str()), 0);
   const auto expected = read_ndjson(expected_file);

@@ -466,7 +466,7 @@ TEST(EllipseTrack, SegmentsInBytesPass) {
 
 TEST(EllipseTrack, ReportsNoAxisBeyondItsLimit) {
   for (const char* detector : {"contours", "arcs"}) {
-    const auto harness = tracker("detector=" + std::string(detector));
+    const auto harness = tracker("tracking=redetect detector=" + std::string(detector));
     for (double limit = 99.9; limit < 100.1; limit += 0.005) {  // the ring is 100 px across
       g_object_set(element_of(harness), "max-axis", limit, nullptr);
       const auto out = push(harness, gray_buffer_of(ring_picture()));
@@ -477,7 +477,7 @@ TEST(EllipseTrack, ReportsNoAxisBeyondItsLimit) {
 }
 
 TEST(EllipseTrack, LoweringMaxScaleActsAtOnce) {
-  const auto harness = tracker("max-target-size=40 min-target-size=10");
+  const auto harness = tracker("tracking=redetect max-target-size=40 min-target-size=10");
   for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
   EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 4U);
   g_object_set(element_of(harness), "max-scale", 2, nullptr);
