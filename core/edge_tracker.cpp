@@ -51,8 +51,10 @@ constexpr double kCoverageToLearn = 0.8;
 constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kLeastMetOfLine = 0.5;
-constexpr double kEnoughVisible = 0.15;     // of the outer circle, to tell the centre
-constexpr double kMostCentreSigma = 0.005;  // [radii], where less is visible
+constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
+constexpr double kMostCentreSigma = 0.02;  // [radii], where less is visible
+constexpr double kPatternCoverage = 0.75;  // and
+constexpr double kPatternSpread = 0.15;
 constexpr double kLeastVisibleToRefine = 0.3;
 constexpr double kLeastCrest = 0.3;    // of the expected one
 constexpr double kCrestOfStep = 48.0;  // of GradientMap's gradient, per grey level
@@ -397,7 +399,9 @@ std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attem
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
   track.visible = attempt->visible;
-  track.is_seen = track.visible >= kEnoughVisible || centre_sigma() <= kMostCentreSigma;
+  track.is_seen = track.visible >= kEnoughVisible ||
+                  (centre_sigma() <= kMostCentreSigma && track.coverage >= kPatternCoverage &&
+                   attempt->support.spread >= kPatternSpread);
   if (track.visible >= kLeastVisibleToRefine) track.ellipse = refined(window, *ellipse);
   return track;
 }

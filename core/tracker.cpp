@@ -10,12 +10,28 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrameNs = 1e9 / 30.0;  // by which the edge tracker counts time
-constexpr double kLongestGap = 30.0;     // of these
-constexpr int kLookInterval = 8;         // frames between the detector's looks while following
+constexpr double kFrameNs = 1e9 / 30.0;   // by which the edge tracker counts time
+constexpr double kLongestGap = 30.0;      // of these
+constexpr int kLookInterval = 8;          // frames between the detector's looks while following
+constexpr int kNextLook = 2;              // the same, after one that did not find the target
+constexpr int kMostUnconfirmed = 3;       // of these, then it is given up
+constexpr double kEnoughToBeFound = 0.5;  // of the perimeter in view, for the detector to find it
+constexpr double kFartherOut = 1.1;
 constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
 constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
 constexpr double kLeastCoverage = 0.4;   // of its edges, all the same
+
+bool is_better(const ConcentricSet& chosen, const ConcentricSet& followed) {
+  if (!(followed < chosen)) return false;
+  return chosen.has_two_edges != followed.has_two_edges ||
+         chosen.score > kMuchBetter * followed.score;
+}
+
+// An edge of the same target, farther out: an inner edge was followed.
+bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
+  return (chosen.center() - followed.center()).norm() < 0.15 * chosen.semi_major &&
+         chosen.semi_major > kFartherOut * followed.semi_major;
+}
 
 double or_own(double setting, double own) {
   return setting > 0.0 ? setting : own;
@@ -81,25 +97,25 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   frames_since_look_ = 0;
   next_look_ = kLookInterval;
   const bool is_followed = followed && followed->state == TargetState::kTracked;
-  if (!chosen) {
-    if (is_followed && is_confirmed_) return followed;
-    if (is_followed) edge_tracker_.release();
-    return is_followed ? std::nullopt : followed;
-  }
   if (is_followed) {
     const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
-    const ConcentricSet new_set = set_around(chosen->ellipse, candidates_);
-    const bool is_better = old_set < new_set && (new_set.has_two_edges != old_set.has_two_edges ||
-                                                 new_set.score > kMuchBetter * old_set.score);
-    if (!is_better || old_set.score == new_set.score) {
-      is_confirmed_ = is_confirmed_ || old_set.score > 0.0;
-      return followed;
+    const bool is_found = old_set.score > 0.0;
+    if (is_found) unconfirmed_looks_ = 0;
+    const bool is_new = chosen && (is_outside_of(chosen->ellipse, followed->ellipse) ||
+                                   is_better(set_around(chosen->ellipse, candidates_), old_set));
+    if (!is_new) {
+      if (is_found || followed->visible_fraction < kEnoughToBeFound) return followed;
+      next_look_ = kNextLook;
+      if (++unconfirmed_looks_ < kMostUnconfirmed) return followed;
+      edge_tracker_.release();
+      return std::nullopt;
     }
   }
+  if (!chosen) return followed;
   Target target = *chosen;
-  if (is_followed) target.id = last_id_ + 1;
+  if (is_followed && !is_outside_of(target.ellipse, followed->ellipse)) target.id = last_id_ + 1;
   lock_edges(frame, target);
-  is_confirmed_ = false;
+  unconfirmed_looks_ = kMostUnconfirmed - 1;  // a fresh lock must be confirmed at once
   next_look_ = 1;
   return target;
 }

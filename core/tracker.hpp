@@ -91,7 +91,7 @@ class Tracker {
   std::int64_t last_pts_ns_ = 0;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
-  bool is_confirmed_ = false;  // by a second look
+  int unconfirmed_looks_ = 0;  // in a row, that did not find what is followed
 };
 
 }  // namespace ellipse
