@@ -14,8 +14,10 @@ constexpr double kFrameNs = 1e9 / 30.0;   // by which the edge tracker counts ti
 constexpr double kLongestGap = 30.0;      // of these
 constexpr int kLookInterval = 8;          // frames between the detector's looks while following
 constexpr int kNextLook = 2;              // the same, after one that did not find the target
-constexpr int kMostUnconfirmed = 3;       // of these, then it is given up
+constexpr int kMostTrust = 4;             // one for each look that finds the target, and
+constexpr int kLossOfTrust = 2;           // for each that does not; below 0 it is given up
 constexpr double kEnoughToBeFound = 0.5;  // of the perimeter in view, for the detector to find it
+constexpr double kEnoughToLock = 0.45;    // the same, to follow what was found
 constexpr double kFartherOut = 1.1;
 constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
 constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
@@ -100,13 +102,14 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   if (is_followed) {
     const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
     const bool is_found = old_set.score > 0.0;
-    if (is_found) unconfirmed_looks_ = 0;
+    if (is_found) trust_ = std::min(trust_ + 1, kMostTrust);
     const bool is_new = chosen && (is_outside_of(chosen->ellipse, followed->ellipse) ||
                                    is_better(set_around(chosen->ellipse, candidates_), old_set));
     if (!is_new) {
       if (is_found || followed->visible_fraction < kEnoughToBeFound) return followed;
       next_look_ = kNextLook;
-      if (++unconfirmed_looks_ < kMostUnconfirmed) return followed;
+      trust_ -= kLossOfTrust;
+      if (trust_ >= 0) return followed;
       edge_tracker_.release();
       return std::nullopt;
     }
@@ -115,16 +118,19 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   Target target = *chosen;
   if (is_followed && !is_outside_of(target.ellipse, followed->ellipse)) target.id = last_id_ + 1;
   lock_edges(frame, target);
-  unconfirmed_looks_ = kMostUnconfirmed - 1;  // a fresh lock must be confirmed at once
+  trust_ = 0;  // it must be confirmed at once
   next_look_ = 1;
   return target;
 }
 
+// A part of an ellipse may be part of anything: it is reported, but not followed.
 void Tracker::lock_edges(const PixelView& frame, const Target& target) {
+  edge_tracker_.release();
+  if (target.visible_fraction < kEnoughToLock) return;
   const LumaWindow window{luma_reader_.read(frame, frame_bounds_),
                           Eigen::Vector2d::Zero(),
                           Eigen::Vector2d(frame.width, frame.height)};
-  if (!edge_tracker_.lock(window, target.ellipse)) edge_tracker_.release();
+  (void)edge_tracker_.lock(window, target.ellipse);
 }
 
 // [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.

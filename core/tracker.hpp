@@ -91,7 +91,7 @@ class Tracker {
   std::int64_t last_pts_ns_ = 0;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
-  int unconfirmed_looks_ = 0;  // in a row, that did not find what is followed
+  int trust_ = 0;  // in what is followed, from the detector's looks
 };
 
 }  // namespace ellipse
