@@ -245,5 +245,113 @@ TEST(Tracker, TheSameFramesGiveTheSameTargets) {
   }
 }
 
+constexpr std::int64_t kFrameNs = 33'333'333;
+
+// The darker of two pictures: paint of either on one bright ground.
+Picture both(const Picture& a, const Picture& b) {
+  Picture result = a;
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] = std::min(a.pixels[i], b.pixels[i]);
+  }
+  return result;
+}
+
+// Pictures of one pad at a place that moves, frame after frame.
+class Film {
+ public:
+  explicit Film(const Scene& scene) : scene_(scene) {}
+
+  [[nodiscard]] static Ellipse truth_at(int frame) {
+    return {120.0 + 2.0 * frame, 110.0 + 0.5 * frame, 40.0, 32.0, 0.3};
+  }
+  [[nodiscard]] Picture at(int frame) const {
+    return rendered(scene_, truth_at(frame), 320, 240, static_cast<std::uint64_t>(frame));
+  }
+  [[nodiscard]] Picture empty() const { return rendered(scene_, {-900.0, -900.0, 9.0, 9.0, 0.0}); }
+
+ private:
+  Scene scene_;
+};
+
+TEST(FollowingTracker, FollowsFromTheSecondFrameOn) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  for (int frame = 0; frame < 40; ++frame) {
+    const auto target = tracker.process(film.at(frame).view(), frame * kFrameNs);
+    ASSERT_TRUE(target) << frame;
+    EXPECT_EQ(target->state, frame == 0 ? TargetState::kDetected : TargetState::kTracked) << frame;
+    EXPECT_EQ(target->id, 1U);
+    EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), 0.3) << frame;
+  }
+}
+
+TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  for (int frame = 0; frame < 20; ++frame) {
+    (void)tracker.process(film.at(frame).view(), frame * kFrameNs);
+  }
+  for (int frame = 20; frame < 25; ++frame) {
+    EXPECT_FALSE(tracker.process(film.empty().view(), frame * kFrameNs)) << frame;
+  }
+  const auto back = tracker.process(film.at(25).view(), 25 * kFrameNs);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->id, 1U);
+  // Gone for longer it was lost: what comes then is another one.
+  for (int frame = 26; frame < 60; ++frame) {
+    EXPECT_FALSE(tracker.process(film.empty().view(), frame * kFrameNs)) << frame;
+  }
+  const auto other = tracker.process(film.at(0).view(), 60 * kFrameNs);
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->id, 2U);
+}
+
+TEST(FollowingTracker, LeavesADiscForThePad) {
+  Scene disc = plain_ring();
+  disc.pad.pattern = Pattern::kDisc;
+  const Ellipse lone{60.0, 60.0, 34.0, 30.0, 0.0};
+  const Ellipse pad{220.0, 150.0, 40.0, 34.0, 0.2};
+  const Picture before = rendered(disc, lone);
+  const Picture after = both(before, rendered(plain_ring(), pad));
+  Tracker tracker;
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto target = tracker.process(before.view(), frame * kFrameNs);
+    ASSERT_TRUE(target);
+    EXPECT_GT(iou_inside(target->ellipse, lone, 320, 240), 0.9);
+  }
+  std::optional<Target> target;
+  for (int frame = 20; frame < 30; ++frame) {
+    target = tracker.process(after.view(), frame * kFrameNs);
+  }
+  ASSERT_TRUE(target);
+  EXPECT_GT(iou_inside(target->ellipse, pad, 320, 240), 0.9);
+  EXPECT_EQ(target->id, 2U);
+}
+
+TEST(FollowingTracker, TellsAllCandidatesOfEveryFrameWhereTheyAreWanted) {
+  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 60.0, 50.0, 0.2});
+  for (const bool is_wanted : {false, true}) {
+    TrackerSettings settings;
+    settings.wants_candidates = is_wanted;
+    Tracker tracker(settings);
+    for (int frame = 0; frame < 4; ++frame) {
+      ASSERT_TRUE(tracker.process(picture.view(), frame * kFrameNs));
+    }
+    EXPECT_EQ(!tracker.candidates().empty(), is_wanted);
+  }
+}
+
+TEST(FollowingTracker, GivesTheSameForTheSame) {
+  const Film film(plain_ring());
+  Tracker a;
+  Tracker b;
+  for (int frame = 0; frame < 30; ++frame) {
+    const auto one = a.process(film.at(frame).view(), frame * kFrameNs);
+    const auto other = b.process(film.at(frame).view(), frame * kFrameNs);
+    ASSERT_TRUE(one && other);
+    ASSERT_EQ(one->ellipse, other->ellipse) << frame;
+  }
+}
+
 }  // namespace
 }  // namespace ellipse
