@@ -34,8 +34,8 @@ double radius_at(int i) {
 class RadialProfile {
  public:
   RadialProfile(const ImageView& luma, const Eigen::Matrix3d& view) {
-    const int smallest = static_cast<int>(view.topLeftCorner<2, 2>().norm());
-    half_width_ = std::clamp(static_cast<int>(2.5 / (kRadiusStep * smallest)), 2, 8);
+    const double size_px = std::max(1.0, std::floor(view.topLeftCorner<2, 2>().norm()));
+    half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
     for (int i = 0; i < kRadii; ++i) {
       for (int k = 0; k < kAngles; ++k) levels_[at(i, k)] = level(luma, view, radius_at(i), k);
       medians_[static_cast<std::size_t>(i)] = median(i);
