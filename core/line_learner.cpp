@@ -21,7 +21,7 @@ constexpr double kGradientOfStep = 48.0;  // the crest of GradientMap's gradient
 
 }  // namespace
 
-// Pixels that the picture does not show are of one level, whose border is no line of the pad.
+// Pixels that the picture does not show are 0, and no others.
 void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
   pixels_.resize(static_cast<std::size_t>(kSize) * kSize);
   for (int j = 0; j < kSize; ++j) {
@@ -34,8 +34,28 @@ void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_fr
       const bool is_inside =
           at.z() > 0.0 && u >= 0.0 && v >= 0.0 && u < luma.width - 1 && v < luma.height - 1;
       const float level =
-          is_inside ? luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F : 0.0F;
+          is_inside ? std::max(1.0F, luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F)
+                    : 0.0F;
       pixels_[static_cast<std::size_t>(j * kSize + i)] = static_cast<std::uint8_t>(level);
+    }
+  }
+}
+
+// The picture's border is no line of the pad.
+void LineLearner::forget_crests_at_border() {
+  const auto is_shown = [&](int x, int y) {
+    return pixels_[static_cast<std::size_t>(y * kSize + x)] != 0;
+  };
+  constexpr int kNear = 3;  // of the gradient's kernel, and a pixel
+  for (int y = kNear; y < kSize - kNear; ++y) {
+    for (int x = kNear; x < kSize - kNear; ++x) {
+      std::uint8_t& crest = map_.crests()[y * map_.stride() + x];
+      if (crest == 0) continue;
+      bool is_inside = true;
+      for (const int dy : {-kNear, 0, kNear}) {
+        for (const int dx : {-kNear, 0, kNear}) is_inside &= is_shown(x + dx, y + dy);
+      }
+      if (!is_inside) crest = 0;
     }
   }
 }
@@ -52,6 +72,7 @@ void LineLearner::learn(const ImageView& luma,
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
   const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
   map_.compute(above, least / kGradientGain, 0.0);
+  forget_crests_at_border();
   chains_.trace(map_);
   lines_.clear();
   for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);

@@ -27,6 +27,7 @@ class LineLearner {
 
  private:
   void rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  void forget_crests_at_border();
   void split(std::span<const std::int32_t> pixels, const PadModel& model);
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
   [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
