@@ -88,6 +88,7 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   auto model = learn_circles(window.luma, local);
   if (!model) return false;
   model_ = std::move(*model);
+  line_learner_.reserve(model_);
   gain_ = 1.0;
   surprise_ = 1.0;
   misses_ = 0;

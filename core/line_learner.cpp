@@ -17,9 +17,21 @@ constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, al
 constexpr double kLargestRadius = 0.97;
 constexpr double kShortened = 0.02;  // at both ends, where the direction turns
 constexpr double kContrastShare = 0.3;
+constexpr std::size_t kRoom = 4 * LineLearner::kMostLines;
+constexpr std::size_t kMostChains = kSize * kSize / 40 + 8;  // a quarter are crests, 10 a chain
 constexpr double kGradientOfStep = 48.0;  // the crest of GradientMap's gradient, per grey level
 
 }  // namespace
+
+void LineLearner::reserve(PadModel& model) {
+  model.lines.reserve(kMostLines);
+  if (!pixels_.empty()) return;
+  pixels_.assign(static_cast<std::size_t>(kSize) * kSize, 0);
+  lines_.reserve(kRoom);
+  chains_.reserve(kMostChains);
+  map_.compute({pixels_.data(), kSize, kSize, kSize}, 1.0, 0.0);
+  chains_.trace(map_);
+}
 
 // Pixels that the picture does not show are 0, and no others.
 void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
@@ -76,11 +88,15 @@ void LineLearner::learn(const ImageView& luma,
   chains_.trace(map_);
   lines_.clear();
   for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);
+  keep_longest();
+  model.lines = lines_;
+}
+
+void LineLearner::keep_longest() {
   std::sort(lines_.begin(), lines_.end(), [](const PadLine& a, const PadLine& b) {
     return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
   });
   lines_.resize(std::min(lines_.size(), kMostLines));
-  model.lines = lines_;
 }
 
 // At the pixel that is farthest from the chord, until all are near it [DouglasPeucker1973].
@@ -149,6 +165,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   line.to = to;
   line.contrast = contrast / count / kGradientOfStep;
   if (line.contrast < kContrastShare * model.circles.front().contrast) return;
+  if (lines_.size() == kRoom) keep_longest();
   lines_.push_back(line);
 }
 

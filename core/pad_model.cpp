@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "core/homography.hpp"
@@ -33,13 +32,11 @@ double radius_at(int i) {
 // Brightness around circles.
 class RadialProfile {
  public:
-  RadialProfile(const ImageView& luma, const Eigen::Matrix3d& view) {
+  // Both are borrowed.
+  RadialProfile(const ImageView& luma, const Eigen::Matrix3d& view) : luma_(luma), view_(view) {
     const double size_px = std::max(1.0, std::floor(view.topLeftCorner<2, 2>().norm()));
     half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
-    for (int i = 0; i < kRadii; ++i) {
-      for (int k = 0; k < kAngles; ++k) levels_[at(i, k)] = level(luma, view, radius_at(i), k);
-      medians_[static_cast<std::size_t>(i)] = median(i);
-    }
+    for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
   }
 
   // Outside less inside, in the median over the angles; 0 where too little is seen.
@@ -61,8 +58,8 @@ class RadialProfile {
     int seen = 0;
     int agreed = 0;
     for (int k = 0; k < kAngles; ++k) {
-      const float outside = levels_[at(std::min(i + half_width_, kRadii - 1), k)];
-      const float inside = levels_[at(std::max(i - half_width_, 0), k)];
+      const float outside = level(std::min(i + half_width_, kRadii - 1), k);
+      const float inside = level(std::max(i - half_width_, 0), k);
       if (outside < 0.0F || inside < 0.0F) continue;
       ++seen;
       agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
@@ -71,25 +68,26 @@ class RadialProfile {
   }
 
  private:
-  static std::size_t at(int i, int k) { return static_cast<std::size_t>(i * kAngles + k); }
-
-  static float level(const ImageView& luma, const Eigen::Matrix3d& view, double radius, int k) {
+  [[nodiscard]] float level(int i, int k) const {
+    const double radius = radius_at(i);
     const double angle = 2.0 * std::numbers::pi * k / kAngles;
     const Eigen::Vector3d seen =
-        view * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0);
+        view_ * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0);
     const double x = seen.x() / seen.z();
     const double y = seen.y() / seen.z();
-    if (!(seen.z() > 0.0) || !(x >= 0.0 && y >= 0.0 && x < luma.width - 1 && y < luma.height - 1)) {
+    if (!(seen.z() > 0.0) ||
+        !(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
       return static_cast<float>(kUnknown);
     }
-    return luma.at(static_cast<float>(x), static_cast<float>(y));
+    return luma_.at(static_cast<float>(x), static_cast<float>(y));
   }
 
   [[nodiscard]] double median(int i) const {
     std::array<float, kAngles> seen;
     auto end = seen.begin();
     for (int k = 0; k < kAngles; ++k) {
-      if (levels_[at(i, k)] >= 0.0F) *end++ = levels_[at(i, k)];
+      const float here = level(i, k);
+      if (here >= 0.0F) *end++ = here;
     }
     const auto count = end - seen.begin();
     if (count < kLeastSeen) return kUnknown;
@@ -97,8 +95,9 @@ class RadialProfile {
     return seen[static_cast<std::size_t>(count / 2)];
   }
 
+  const ImageView& luma_;
+  const Eigen::Matrix3d& view_;
   int half_width_ = 2;
-  std::array<float, std::size_t(kRadii) * kAngles> levels_;
   std::array<double, kRadii> medians_;
 };
 
@@ -106,8 +105,8 @@ class RadialProfile {
 
 std::optional<PadModel> learn_circles(const ImageView& luma,
                                       const Eigen::Matrix3d& image_from_pad) {
-  const auto profile = std::make_unique<RadialProfile>(luma, image_from_pad);
-  const auto strength = [&](int i) { return std::abs(profile->step(i)); };
+  const RadialProfile profile(luma, image_from_pad);
+  const auto strength = [&](int i) { return std::abs(profile.step(i)); };
   const int one = static_cast<int>(std::lround((1.0 - kFirstRadius) / kRadiusStep));
   int outer = one;
   for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
@@ -117,7 +116,7 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
 
   PadModel model;
   const auto add = [&](int i) {
-    model.circles.push_back({radius_at(i) / radius_at(outer), profile->step(i) > 0.0, strength(i)});
+    model.circles.push_back({radius_at(i) / radius_at(outer), profile.step(i) > 0.0, strength(i)});
   };
   add(outer);
   for (int i = outer - kApart; i >= kApart && model.circles.size() < kMostCircles; --i) {
@@ -125,7 +124,7 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
     for (int j = 1; j <= kApart && is_peak; ++j) {
       is_peak = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
     }
-    if (is_peak && profile->agreement(i) >= kLeastAgreement) add(i);
+    if (is_peak && profile.agreement(i) >= kLeastAgreement) add(i);
   }
   return model;
 }

@@ -35,7 +35,8 @@ struct PadModel {
 /// of the radius, has a step at each.
 ///
 /// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
-/// nullopt where there is no step at the outer circle. Allocates.
+/// nullopt where there is no step at the outer circle. Allocates the model, and nothing without
+/// one.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
                                                     const Eigen::Matrix3d& image_from_pad);
 
