@@ -175,7 +175,8 @@ void EdgeSearch::look_along(const ImageView& luma,
   const Eigen::Vector2d across = step * sample.view.normal;
   int first = -steps - box;
   int last = steps + box;
-  const Eigen::Vector2d high(luma.width - 1.01, luma.height - 1.01);
+  const double rest = 1.05;  // 1, and what steps add up to in floats
+  const Eigen::Vector2d high(luma.width - rest, luma.height - rest);
   for (int axis = 0; axis < 2; ++axis) {
     const double at = sample.view.point[axis];
     const double slope = across[axis];
