@@ -191,8 +191,8 @@ TEST(EdgeTracker, FollowsAsTheLightFails) {
   Scene scene = pad_scene();
   EdgeTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
-  for (std::uint64_t i = 1; i <= 20; ++i) {
-    scene.sensor.gain *= 0.94;  // to 0.29
+  for (std::uint64_t i = 1; i <= 35; ++i) {
+    scene.sensor.gain *= 0.94;  // to 0.11
     const Ellipse truth = translated(kPad, 3.0 * static_cast<double>(i), 0.0);
     const auto track = tracker.track(whole(frame_of(truth, scene, i)), 1.0);
     ASSERT_TRUE(track && track->is_seen) << i;
@@ -211,6 +211,29 @@ TEST(EdgeTracker, FollowsBehindABar) {
     ASSERT_TRUE(track && track->is_seen) << i;
     EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.6) << i;
   }
+}
+
+TEST(EdgeTracker, ForgetsLinesThatAreNotThePads) {
+  Scene scene = pad_scene();
+  EdgeTracker tracker;
+  const auto bar_at = [](double x) {
+    return support::bar_px({x, 0.0}, {x, 360.0}, 12.0, 60.0, kWidth, kHeight);
+  };
+  scene.bars = {bar_at(300.0)};
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  ASSERT_TRUE(tracker.track(whole(frame_of(kPad, scene, 1)), 1.0));
+  scene.bars.clear();
+  double coverage = 0.0;
+  for (std::uint64_t i = 2; i <= 20; ++i) {
+    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
+    ASSERT_TRUE(track && track->is_seen) << i;
+    if (i == 2) {
+      EXPECT_LT(track->coverage, 0.95);
+    }
+    coverage = track->coverage;
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
+  }
+  EXPECT_GT(coverage, 0.97);
 }
 
 TEST(EdgeTracker, PredictsAPadThatIsGoneAndLosesIt) {
@@ -366,6 +389,7 @@ TEST(EdgeTracker, NeedsNoMoreThanItsRegion) {
     ASSERT_TRUE(first && second) << i;
     EXPECT_TRUE(first->is_seen && second->is_seen) << i;
     EXPECT_LT(max_difference_px(first->ellipse, second->ellipse), 0.01) << i;
+    EXPECT_NEAR(first->coverage, second->coverage, 0.02) << i;
     EXPECT_DOUBLE_EQ(first->visible, second->visible) << i;
   }
   EXPECT_GT(parts, 20);
