@@ -137,6 +137,11 @@ void ChainTracer::add_chain(std::int32_t seed,
   is_closed_.push_back(length > kLeastClosed && are_near(*begin, *(out - 1), stride_));
 }
 
+void ChainTracer::reserve(std::size_t chains) {
+  begins_.reserve(chains + 1);
+  is_closed_.reserve(chains);
+}
+
 void ChainTracer::trace(GradientMap& map) {
   const auto pixels =
       static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());

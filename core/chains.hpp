@@ -17,7 +17,11 @@ struct Chain {
 /// Links crests to chains. Each crest is in one chain at most.
 class ChainTracer {
  public:
-  /// Marks the crests of chains with crest::kChained. Allocates only when the picture grows.
+  /// Makes room for as many chains. Without it there is as much as there ever were.
+  void reserve(std::size_t chains);
+
+  /// Marks the crests of chains with crest::kChained. Allocates only when the picture grows,
+  /// or has more chains than there is room for.
   /// A picture with more crests than a quarter of its pixels keeps the chains of its upper part.
   void trace(GradientMap& map);
 

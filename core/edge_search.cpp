@@ -154,7 +154,8 @@ void EdgeSearch::look(const ImageView& luma,
     double reach = reach_px;
     if (covariance != nullptr) {
       const double variance = sample.view.row.dot(*covariance * sample.view.row);
-      reach = std::clamp(3.0 * std::sqrt(variance) + 2.0, reach_px, most_px);
+      // Rounding may leave less than 0 of a variance.
+      reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)) + 2.0, reach_px, most_px);
     }
     look_along(luma, gain, reach, sample);
   }
@@ -169,12 +170,13 @@ void EdgeSearch::look_along(const ImageView& luma,
   const double step = std::max(1.0, reach_px / kMostSteps);
   const int steps = static_cast<int>(std::ceil(reach_px / step));
   const double gap_px = narrowest_ * sample.view.px_per_unit;
-  const int box = std::clamp(static_cast<int>(0.6 * gap_px / step), 1, kMostBox);
+  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step, 1.0, double(kMostBox)));
   // As much of the normal as is inside the picture.
   const Eigen::Vector2d across = step * sample.view.normal;
   int first = -steps - box;
   int last = steps + box;
-  const Eigen::Vector2d high(luma.width - 1.01, luma.height - 1.01);
+  const double rest = 1.05;  // 1, and what steps add up to in floats
+  const Eigen::Vector2d high(luma.width - rest, luma.height - rest);
   for (int axis = 0; axis < 2; ++axis) {
     const double at = sample.view.point[axis];
     const double slope = across[axis];

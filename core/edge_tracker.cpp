@@ -87,7 +87,10 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   frame_px_ = window.frame_px;
   view_ = image_from_pad(outer_edge);
   const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
-  if (!circle_learner_.learn(window.luma, local, model_)) return false;
+  auto model = learn_circles(window.luma, local);
+  if (!model) return false;
+  model_ = std::move(*model);
+  line_learner_.reserve(model_);
   gain_ = 1.0;
   surprise_ = 1.0;
   misses_ = 0;

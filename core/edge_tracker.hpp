@@ -94,7 +94,6 @@ class EdgeTracker {
 
   PadModel model_;
   EdgeSearch search_;
-  CircleLearner circle_learner_;
   LineLearner line_learner_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad

@@ -17,11 +17,23 @@ constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, al
 constexpr double kLargestRadius = 0.97;
 constexpr double kShortened = 0.02;  // at both ends, where the direction turns
 constexpr double kContrastShare = 0.3;
+constexpr std::size_t kRoom = 4 * LineLearner::kMostLines;
+constexpr std::size_t kMostChains = kSize * kSize / 40 + 8;  // a quarter are crests, 10 a chain
 constexpr double kGradientOfStep = 48.0;  // the crest of GradientMap's gradient, per grey level
 
 }  // namespace
 
-// Pixels that the picture does not show are of one level, whose border is no line of the pad.
+void LineLearner::reserve(PadModel& model) {
+  model.lines.reserve(kMostLines);
+  if (!pixels_.empty()) return;
+  pixels_.assign(static_cast<std::size_t>(kSize) * kSize, 0);
+  lines_.reserve(kRoom);
+  chains_.reserve(kMostChains);
+  map_.compute({pixels_.data(), kSize, kSize, kSize}, 1.0, 0.0);
+  chains_.trace(map_);
+}
+
+// Pixels that the picture does not show are 0, and no others.
 void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
   pixels_.resize(static_cast<std::size_t>(kSize) * kSize);
   for (int j = 0; j < kSize; ++j) {
@@ -34,8 +46,28 @@ void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_fr
       const bool is_inside =
           at.z() > 0.0 && u >= 0.0 && v >= 0.0 && u < luma.width - 1 && v < luma.height - 1;
       const float level =
-          is_inside ? luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F : 0.0F;
+          is_inside ? std::max(1.0F, luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F)
+                    : 0.0F;
       pixels_[static_cast<std::size_t>(j * kSize + i)] = static_cast<std::uint8_t>(level);
+    }
+  }
+}
+
+// The picture's border is no line of the pad.
+void LineLearner::forget_crests_at_border() {
+  const auto is_shown = [&](int x, int y) {
+    return pixels_[static_cast<std::size_t>(y * kSize + x)] != 0;
+  };
+  constexpr int kNear = 3;  // of the gradient's kernel, and a pixel
+  for (int y = kNear; y < kSize - kNear; ++y) {
+    for (int x = kNear; x < kSize - kNear; ++x) {
+      std::uint8_t& crest = map_.crests()[y * map_.stride() + x];
+      if (crest == 0) continue;
+      bool is_inside = true;
+      for (const int dy : {-kNear, 0, kNear}) {
+        for (const int dx : {-kNear, 0, kNear}) is_inside &= is_shown(x + dx, y + dy);
+      }
+      if (!is_inside) crest = 0;
     }
   }
 }
@@ -52,14 +84,19 @@ void LineLearner::learn(const ImageView& luma,
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
   const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
   map_.compute(above, least / kGradientGain, 0.0);
+  forget_crests_at_border();
   chains_.trace(map_);
   lines_.clear();
   for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);
+  keep_longest();
+  model.lines = lines_;
+}
+
+void LineLearner::keep_longest() {
   std::sort(lines_.begin(), lines_.end(), [](const PadLine& a, const PadLine& b) {
     return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
   });
   lines_.resize(std::min(lines_.size(), kMostLines));
-  model.lines = lines_;
 }
 
 // At the pixel that is farthest from the chord, until all are near it [DouglasPeucker1973].
@@ -128,6 +165,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   line.to = to;
   line.contrast = contrast / count / kGradientOfStep;
   if (line.contrast < kContrastShare * model.circles.front().contrast) return;
+  if (lines_.size() == kRoom) keep_longest();
   lines_.push_back(line);
 }
 

@@ -17,18 +17,23 @@ namespace ellipse {
 /// made of. The pad is seen from above, its edges are traced, and cut into straight parts.
 class LineLearner {
  public:
+  /// Allocates all that learn() needs, once.
+  void reserve(PadModel& model);
+
   /// @param image_from_pad  Exact to about a pixel.
   /// @param model  Its circles tell what is no line, and what contrast to expect; its lines are
   ///               replaced. At most kMostLines, the longest.
-  /// Allocates only on its first use.
+  /// Allocates nothing after reserve().
   void learn(const ImageView& luma, const Eigen::Matrix3d& image_from_pad, PadModel& model);
 
   static constexpr std::size_t kMostLines = 24;
 
  private:
   void rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  void forget_crests_at_border();
   void split(std::span<const std::int32_t> pixels, const PadModel& model);
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
+  void keep_longest();
   [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
 
   std::vector<std::uint8_t> pixels_;  // the pad from above

@@ -2,8 +2,11 @@
 #include "core/pad_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+
+#include "core/homography.hpp"
 
 namespace ellipse {
 namespace {
@@ -13,12 +16,12 @@ constexpr int kRadii = 240;
 constexpr double kFirstRadius = 0.1;
 constexpr double kRadiusStep = 0.005;
 constexpr int kAngles = 128;
-constexpr std::size_t kLeastSeen = 12;   // of the angles
-constexpr double kStepPx = 2.5;          // of the averages on both sides of a step
-constexpr int kOuterSlack = 14;          // steps to both sides of radius 1
-constexpr double kLeastContrast = 6.0;   // of the outer circle [grey levels]
-constexpr double kInnerContrast = 0.5;   // of the outer circle's
-constexpr int kApart = 5;                // steps between circles
+constexpr int kLeastSeen = 12;          // of the angles
+constexpr int kOuterSlack = 14;         // steps to both sides of radius 1
+constexpr double kLeastContrast = 6.0;  // of the outer circle [grey levels]
+constexpr double kInnerContrast = 0.5;  // of the outer circle's
+constexpr int kApart = 5;               // steps between circles
+constexpr std::size_t kMostCircles = 5;
 constexpr double kLeastAgreement = 0.7;  // of the angles with a circle's own step
 constexpr double kUnknown = -1.0;
 
@@ -26,91 +29,94 @@ double radius_at(int i) {
   return kFirstRadius + i * kRadiusStep;
 }
 
-std::size_t index(int radius, int angle) {
-  return static_cast<std::size_t>(radius * kAngles + angle);
-}
-
-float level_at(const ImageView& luma, const Eigen::Matrix3d& view, double radius, int k) {
-  const double angle = 2.0 * std::numbers::pi * k / kAngles;
-  const Eigen::Vector3d seen =
-      view * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0);
-  const double x = seen.x() / seen.z();
-  const double y = seen.y() / seen.z();
-  if (!(seen.z() > 0.0) || !(x >= 0.0 && y >= 0.0 && x < luma.width - 1 && y < luma.height - 1)) {
-    return static_cast<float>(kUnknown);
+// Brightness around circles.
+class RadialProfile {
+ public:
+  // Both are borrowed.
+  RadialProfile(const ImageView& luma, const Eigen::Matrix3d& view) : luma_(luma), view_(view) {
+    const double size_px = std::max(1.0, std::floor(view.topLeftCorner<2, 2>().norm()));
+    half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
+    for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
   }
-  return luma.at(static_cast<float>(x), static_cast<float>(y));
-}
+
+  // Outside less inside, in the median over the angles; 0 where too little is seen.
+  [[nodiscard]] double step(int i) const {
+    double sum = 0.0;
+    for (int j = 1; j <= half_width_; ++j) {
+      if (i - j < 0 || i + j >= kRadii) return 0.0;
+      const double outside = medians_[static_cast<std::size_t>(i + j)];
+      const double inside = medians_[static_cast<std::size_t>(i - j)];
+      if (outside == kUnknown || inside == kUnknown) return 0.0;
+      sum += outside - inside;
+    }
+    return sum / half_width_;
+  }
+
+  // Share of the angles with a step of the same sign and half the size.
+  [[nodiscard]] double agreement(int i) const {
+    const double whole = step(i);
+    int seen = 0;
+    int agreed = 0;
+    for (int k = 0; k < kAngles; ++k) {
+      const float outside = level(std::min(i + half_width_, kRadii - 1), k);
+      const float inside = level(std::max(i - half_width_, 0), k);
+      if (outside < 0.0F || inside < 0.0F) continue;
+      ++seen;
+      agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
+    }
+    return seen > 0 ? static_cast<double>(agreed) / seen : 0.0;
+  }
+
+ private:
+  [[nodiscard]] float level(int i, int k) const {
+    const double radius = radius_at(i);
+    const double angle = 2.0 * std::numbers::pi * k / kAngles;
+    const Eigen::Vector3d seen =
+        view_ * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0);
+    const double x = seen.x() / seen.z();
+    const double y = seen.y() / seen.z();
+    if (!(seen.z() > 0.0) ||
+        !(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
+      return static_cast<float>(kUnknown);
+    }
+    return luma_.at(static_cast<float>(x), static_cast<float>(y));
+  }
+
+  [[nodiscard]] double median(int i) const {
+    std::array<float, kAngles> seen;
+    auto end = seen.begin();
+    for (int k = 0; k < kAngles; ++k) {
+      const float here = level(i, k);
+      if (here >= 0.0F) *end++ = here;
+    }
+    const auto count = end - seen.begin();
+    if (count < kLeastSeen) return kUnknown;
+    std::nth_element(seen.begin(), seen.begin() + count / 2, end);
+    return seen[static_cast<std::size_t>(count / 2)];
+  }
+
+  const ImageView& luma_;
+  const Eigen::Matrix3d& view_;
+  int half_width_ = 2;
+  std::array<double, kRadii> medians_;
+};
 
 }  // namespace
 
-double CircleLearner::median(int radius) {
-  seen_.clear();
-  for (int k = 0; k < kAngles; ++k) {
-    if (levels_[index(radius, k)] >= 0.0F) seen_.push_back(levels_[index(radius, k)]);
-  }
-  if (seen_.size() < kLeastSeen) return kUnknown;
-  const auto middle = seen_.begin() + std::ptrdiff_t(seen_.size() / 2);
-  std::nth_element(seen_.begin(), middle, seen_.end());
-  return *middle;
-}
-
-// Outside less inside, in the median over the angles; 0 where too little is seen.
-double CircleLearner::step(int radius) const {
-  double sum = 0.0;
-  for (int j = 1; j <= half_width_; ++j) {
-    if (radius - j < 0 || radius + j >= kRadii) return 0.0;
-    const double outside = medians_[static_cast<std::size_t>(radius + j)];
-    const double inside = medians_[static_cast<std::size_t>(radius - j)];
-    if (outside == kUnknown || inside == kUnknown) return 0.0;
-    sum += outside - inside;
-  }
-  return sum / half_width_;
-}
-
-// Share of the angles with a step of the same sign and half the size.
-double CircleLearner::agreement(int radius) const {
-  const double whole = step(radius);
-  int seen = 0;
-  int agreed = 0;
-  for (int k = 0; k < kAngles; ++k) {
-    const float outside = levels_[index(std::min(radius + half_width_, kRadii - 1), k)];
-    const float inside = levels_[index(std::max(radius - half_width_, 0), k)];
-    if (outside < 0.0F || inside < 0.0F) continue;
-    ++seen;
-    agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
-  }
-  return seen > 0 ? static_cast<double>(agreed) / seen : 0.0;
-}
-
-bool CircleLearner::learn(const ImageView& luma,
-                          const Eigen::Matrix3d& image_from_pad,
-                          PadModel& model) {
-  levels_.resize(std::size_t(kRadii) * kAngles);
-  medians_.resize(kRadii);
-  seen_.reserve(kAngles);
-  const double px_per_radius = image_from_pad.topLeftCorner<2, 2>().norm();
-  half_width_ = static_cast<int>(
-      std::clamp(kStepPx / (kRadiusStep * std::max(1.0, px_per_radius)), 2.0, 8.0));
-  for (int i = 0; i < kRadii; ++i) {
-    for (int k = 0; k < kAngles; ++k) {
-      levels_[index(i, k)] = level_at(luma, image_from_pad, radius_at(i), k);
-    }
-    medians_[static_cast<std::size_t>(i)] = median(i);
-  }
-  const auto strength = [&](int i) { return std::abs(step(i)); };
+std::optional<PadModel> learn_circles(const ImageView& luma,
+                                      const Eigen::Matrix3d& image_from_pad) {
+  const RadialProfile profile(luma, image_from_pad);
+  const auto strength = [&](int i) { return std::abs(profile.step(i)); };
   const int one = static_cast<int>(std::lround((1.0 - kFirstRadius) / kRadiusStep));
   int outer = one;
   for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
     if (strength(i) > strength(outer)) outer = i;
   }
-  if (strength(outer) < kLeastContrast) return false;
+  if (strength(outer) < kLeastContrast) return std::nullopt;
 
-  model.circles.clear();
-  model.circles.reserve(kMostCircles);
-  model.lines.clear();
+  PadModel model;
   const auto add = [&](int i) {
-    model.circles.push_back({radius_at(i) / radius_at(outer), step(i) > 0.0, strength(i)});
+    model.circles.push_back({radius_at(i) / radius_at(outer), profile.step(i) > 0.0, strength(i)});
   };
   add(outer);
   for (int i = outer - kApart; i >= kApart && model.circles.size() < kMostCircles; --i) {
@@ -118,9 +124,9 @@ bool CircleLearner::learn(const ImageView& luma,
     for (int j = 1; j <= kApart && is_peak; ++j) {
       is_peak = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
     }
-    if (is_peak && agreement(i) >= kLeastAgreement) add(i);
+    if (is_peak && profile.agreement(i) >= kLeastAgreement) add(i);
   }
-  return true;
+  return model;
 }
 
 }  // namespace ellipse

@@ -1,7 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/image_view.hpp"
@@ -33,27 +33,11 @@ struct PadModel {
 
 /// Learns the circles of a pad from a picture: the median brightness over the angles, as a function
 /// of the radius, has a step at each.
-class CircleLearner {
- public:
-  /// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
-  /// @param model  Its circles are replaced, and its lines are forgotten.
-  /// @return false where there is no step at the outer circle; then the model stays as it is.
-  /// Allocates only on its first use.
-  [[nodiscard]] bool learn(const ImageView& luma,
-                           const Eigen::Matrix3d& image_from_pad,
-                           PadModel& model);
-
-  static constexpr std::size_t kMostCircles = 5;
-
- private:
-  [[nodiscard]] double median(int radius);
-  [[nodiscard]] double step(int radius) const;
-  [[nodiscard]] double agreement(int radius) const;
-
-  int half_width_ = 2;           // of a step [radii in the table]
-  std::vector<float> levels_;    // by radius and angle; below 0 where the picture ends
-  std::vector<double> medians_;  // by radius
-  std::vector<float> seen_;      // at one radius
-};
+///
+/// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
+/// nullopt where there is no step at the outer circle. Allocates the model, and nothing without
+/// one.
+[[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
+                                                    const Eigen::Matrix3d& image_from_pad);
 
 }  // namespace ellipse

@@ -14,6 +14,7 @@
 
 #include "core/arc_detector.hpp"
 #include "core/contour_detector.hpp"
+#include "core/edge_tracker.hpp"
 #include "core/ellipse_fit.hpp"
 #include "core/luma.hpp"
 #include "core/overlap.hpp"
@@ -212,6 +213,80 @@ TEST_F(Allocations, NoneInTrackerAroundItsDetector) {
     const auto process = [&] { return tracker.process(bgr_view(bytes, 320, 240), 0).has_value(); };
     EXPECT_TRUE(process());
     EXPECT_EQ(steady_allocations_of(process), 0) << tracking;
+  }
+}
+
+// Scenes whose pads have lines and have none, grow, and leave the picture.
+struct Film {
+  const char* scene;
+  double from_s;
+};
+
+constexpr Film kFilms[] = {{"approach", 4.5}, {"hover", 2.0}, {"touchdown", 2.5}};
+constexpr int kFilmFrames = 50;
+
+template <class Use>
+void show(const Film& film, const Use& use) {
+  SceneRenderer renderer(scene_by_name(film.scene, 201));
+  Picture picture(320, 180);
+  for (int i = 0; i < kFilmFrames; ++i) {
+    const Truth truth =
+        renderer.render(film.from_s + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    use(i, picture.view(), truth);
+  }
+}
+
+TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
+  for (const Film& film : kFilms) {
+    EdgeTracker tracker;
+    show(film, [&](int i, const ImageView& luma, const Truth& truth) {
+      const LumaWindow window{luma, {0.0, 0.0}, {320.0, 180.0}};
+      if (i == 0) {
+        EXPECT_TRUE(tracker.lock(window, *truth.outer_edge)) << film.scene;
+        return;
+      }
+      std::optional<EdgeTrack> track;
+      EXPECT_EQ(allocations_of([&] { track = tracker.track(window, 1.0); }), 0)
+          << film.scene << ' ' << i;
+      EXPECT_TRUE(track && track->is_seen) << film.scene << ' ' << i;
+    });
+  }
+}
+
+TEST_F(Allocations, NoneWhereEdgesAreNotMet) {
+  const Picture ring = ring_picture();
+  const Picture ground(320, 240, 90);
+  EdgeTracker tracker;
+  ASSERT_TRUE(tracker.lock({ring.view(), {0.0, 0.0}, {320.0, 240.0}}, kRing));
+  for (int i = 0; i < 20; ++i) {
+    std::optional<EdgeTrack> track;
+    const LumaWindow window{ground.view(), {0.0, 0.0}, {320.0, 240.0}};
+    EXPECT_EQ(allocations_of([&] { track = tracker.track(window, 1.0); }), 0) << i;
+    EXPECT_FALSE(track && track->is_seen) << i;
+  }
+}
+
+// The second time that it sees the same frames: the detector's buffers have their sizes.
+TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
+  constexpr int kFirstFrames = 10;  // in which it locks
+  TrackerSettings settings;
+  set_by_name(settings, "tracking", "edges");
+  for (const Film& film : kFilms) {
+    Tracker tracker(settings);
+    for (const bool is_second : {false, true}) {
+      tracker.reset();
+      int followed = 0;
+      show(film, [&](int i, const ImageView& luma, const Truth&) {
+        std::optional<Target> target;
+        const auto process = [&] { target = tracker.process(luma, i * 33'333'333LL); };
+        const std::int64_t allocations = allocations_of(process);
+        if (i < kFirstFrames) return;
+        followed += target && target->state == TargetState::kTracked ? 1 : 0;
+        if (!is_second) return;
+        EXPECT_EQ(allocations, 0) << film.scene << ' ' << i;
+      });
+      EXPECT_EQ(followed, kFilmFrames - kFirstFrames) << film.scene;
+    }
   }
 }
 
