@@ -67,8 +67,9 @@ std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_
 
 // From its edges alone: nothing else of the frame is read.
 std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t pts_ns) {
-  const double frames =
-      std::clamp(static_cast<double>(pts_ns - last_pts_ns_) / kFrameNs, 0.2, kLongestGap);
+  // Streams without time stamps are taken for even ones.
+  const double elapsed = static_cast<double>(pts_ns - last_pts_ns_) / kFrameNs;
+  const double frames = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
   search_region_ = edge_tracker_.region_after(frames, frame.width, frame.height);
   candidates_.clear();
   const LumaWindow window{luma_reader_.read(frame, search_region_),

@@ -306,6 +306,16 @@ TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {
   EXPECT_EQ(other->id, 2U);
 }
 
+TEST(FollowingTracker, FollowsWithoutTimeStamps) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto target = tracker.process(film.at(frame).view(), -1);
+    ASSERT_TRUE(target) << frame;
+    EXPECT_EQ(target->state, frame == 0 ? TargetState::kDetected : TargetState::kTracked) << frame;
+  }
+}
+
 TEST(FollowingTracker, LeavesADiscForThePad) {
   Scene disc = plain_ring();
   disc.pad.pattern = Pattern::kDisc;
