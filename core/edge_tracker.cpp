@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/edge_tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -17,14 +16,15 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kFocalOverWidth = 0.8;  // where no camera is known
-constexpr double kTurnNoise = 0.002;     // of the camera, per frame [rad]
-constexpr double kShiftNoise = 0.0015;   // [radii]
-constexpr double kAlongNoise = 0.7;      // of it, along the optical axis
-constexpr double kFirstTurn = 0.03;      // a velocity that is not known yet
+constexpr double kTurnNoise = 0.002;    // of the camera, per frame [rad]
+constexpr double kShiftNoise = 0.0015;  // [radii]
+constexpr double kFirstTurn = 0.03;     // a velocity that is not known yet
 constexpr double kFirstShift = 0.05;
-constexpr double kSlack = 0.0015;   // of the shape, for all that is not modelled
-constexpr double kMostTurn = 0.05;  // that rings alone leave unknown [rad]
+constexpr double kUsualShare = 0.35;  // of the expected motion
+constexpr double kSurpriseRate = 0.25;
+constexpr double kLeastRatio = 0.5;  // by which one frame calms it down
+constexpr double kLeastSurprise = 0.25;
+constexpr double kMostSurprise = 64.0;
 constexpr double kEdgeSigmaPx = 0.6;
 constexpr int kNearSamples = 48;
 constexpr int kFineSamples = 72;
@@ -68,10 +68,6 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
-PoseCovariance inverse_of(const PoseCovariance& m) {
-  return m.ldlt().solve(PoseCovariance::Identity());
-}
-
 double tolerance_px(double radius_px) {
   return kTolerancePx + kToleranceRelative * radius_px;
 }
@@ -106,36 +102,14 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   }
   if (attempt->support.coverage < kLockCoverage) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
-  motion_.velocity_variance = noise_of_camera(kFirstTurn, kFirstShift);
+  motion_.velocity_variance = camera_noise(view_, frame_px_, kFirstTurn, kFirstShift);
   is_locked_ = true;
   return true;
 }
 
-PoseCovariance EdgeTracker::noise_of_camera(double turn_rad, double shift) const {
-  const auto changes =
-      change_by_camera(view_, kFocalOverWidth * frame_px_.x(), 0.5 * (frame_px_.array() - 1.0));
-  Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongNoise * shift;
-  return changes * sigmas.cwiseAbs2().asDiagonal() * changes.transpose();
-}
-
-// Constant velocity, whose change is the noise.
-EdgeTracker::Motion EdgeTracker::predicted(double frames, double looseness) const {
-  const PoseCovariance noise =
-      frames * surprise_ * looseness * noise_of_camera(kTurnNoise, kShiftNoise);
-  Motion next;
-  next.velocity = motion_.velocity;
-  next.pose = motion_.pose + frames * (motion_.pose_velocity + motion_.pose_velocity.transpose()) +
-              frames * frames * (motion_.velocity_variance + 0.5 * noise);
-  next.pose_velocity =
-      motion_.pose_velocity + frames * motion_.velocity_variance + 0.5 * frames * noise;
-  next.velocity_variance = motion_.velocity_variance + noise;
-  const double slack = kSlack * kSlack;
-  next.pose.diagonal() +=
-      (PoseChange() << 1e-9, 1e-9, 0.05 * slack, slack, slack, 0.05 * slack, slack, slack)
-          .finished();
-  next.pose.diagonal().array() += 1e-9;
-  return next;
+PoseMotion EdgeTracker::predicted(double frames, double looseness) const {
+  return motion_.after(
+      frames, surprise_ * looseness * camera_noise(view_, frame_px_, kTurnNoise, kShiftNoise));
 }
 
 // From a change that is about right: all edges again, near it.
@@ -246,7 +220,7 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   frame_px_ = window.frame_px;
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
-  Motion before = predicted(frames, 1.0 + 0.5 * misses_);
+  PoseMotion before = predicted(frames, 1.0 + 0.5 * misses_);
   auto attempt = look_near(window, prediction, before.pose);
   if (!attempt) {
     before = predicted(frames, 400.0);
@@ -280,37 +254,21 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   return told(window, &*attempt);
 }
 
-// The Kalman filter's step: what the pose was told tells the velocity as well.
-void EdgeTracker::accept(const Attempt& attempt, const Motion& before) {
-  const PoseChange& change = attempt.estimate.change;
-  const PoseCovariance after = inverse_of(attempt.estimate.information);
-  const PoseCovariance prior_information = inverse_of(before.pose);
-  const PoseCovariance gain = before.pose_velocity.transpose() * prior_information;
-  motion_.velocity = before.velocity + gain * change;
-  motion_.pose = after;
-  motion_.pose_velocity = after * gain.transpose();
-  const PoseCovariance reduced =
-      before.velocity_variance - gain * (before.pose - after) * gain.transpose();
-  motion_.velocity_variance = 0.5 * (reduced + reduced.transpose());
-  motion_.velocity_variance.diagonal().array() += 1e-12;
-  if (model_.lines.empty()) {
-    // Rings look the same from all sides.
-    motion_.velocity(5) = 0.0;
-    const double most = kMostTurn * kMostTurn;
-    const double factor = std::min(1.0, std::sqrt(most / motion_.pose(5, 5)));
-    motion_.pose.row(5) *= factor;
-    motion_.pose.col(5) *= factor;
-  }
+void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
+  motion_ = before.corrected(attempt.estimate);
+  if (model_.lines.empty()) motion_.leave_turn_open();  // rings look the same from all sides
   // How far the edges moved, over how far they were expected to.
   double moved_px = 0.0;
   double expected_px = 0.0;
   for (const EdgeSample& sample : search_.samples()) {
-    moved_px += std::pow(sample.predicted_px(change), 2);
+    moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
     expected_px += sample.view.row.dot(before.pose * sample.view.row);
   }
   if (expected_px > 0.0) {
-    const double ratio = std::clamp(moved_px / expected_px / 0.35, 0.5, 64.0);
-    surprise_ = std::clamp(surprise_ * std::pow(ratio, 0.25), 0.25, 64.0);
+    const double ratio =
+        std::clamp(moved_px / (kUsualShare * expected_px), kLeastRatio, kMostSurprise);
+    surprise_ =
+        std::clamp(surprise_ * std::pow(ratio, kSurpriseRate), kLeastSurprise, kMostSurprise);
   }
   gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
   judge_lines(attempt.last);
@@ -380,17 +338,11 @@ void EdgeTracker::judge_lines(const PoseChange& change) {
   });
 }
 
-void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const Motion& before) {
+void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const PoseMotion& before) {
   view_ = prediction;
   motion_ = before;
   motion_.velocity *= 0.8;
   if (++misses_ > kMostMisses) is_locked_ = false;
-}
-
-// Standard deviation of the pad's centre, as far as the edges tell it [radii].
-double EdgeTracker::centre_sigma() const {
-  const PoseCovariance& p = motion_.pose;
-  return std::sqrt(p(0, 0) + p(1, 1) + p(6, 6) + p(7, 7) + 2.0 * (p(0, 6) + p(1, 7)));
 }
 
 std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attempt* attempt) const {
@@ -403,8 +355,8 @@ std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attem
   track.coverage = attempt->support.coverage;
   track.visible = attempt->visible;
   track.is_seen = track.visible >= kEnoughVisible ||
-                  (centre_sigma() <= kMostCentreSigma && track.coverage >= kPatternCoverage &&
-                   attempt->support.spread >= kPatternSpread);
+                  (motion_.centre_sigma() <= kMostCentreSigma &&
+                   track.coverage >= kPatternCoverage && attempt->support.spread >= kPatternSpread);
   if (track.visible >= kLeastVisibleToRefine) track.ellipse = refined(window, *ellipse);
   return track;
 }

@@ -10,6 +10,7 @@
 #include "core/image_view.hpp"
 #include "core/line_learner.hpp"
 #include "core/pad_model.hpp"
+#include "core/pose_motion.hpp"
 #include "core/pose_solver.hpp"
 
 namespace ellipse {
@@ -59,16 +60,7 @@ class EdgeTracker {
     double visible = 0.0;
   };
 
-  /// A view that moves: what is known of it and of its velocity.
-  struct Motion {
-    PoseChange velocity = PoseChange::Zero();  // per frame
-    PoseCovariance pose = PoseCovariance::Zero();
-    PoseCovariance pose_velocity = PoseCovariance::Zero();
-    PoseCovariance velocity_variance = PoseCovariance::Zero();
-  };
-
-  [[nodiscard]] Motion predicted(double frames, double looseness) const;
-  [[nodiscard]] PoseCovariance noise_of_camera(double turn_rad, double shift) const;
+  [[nodiscard]] PoseMotion predicted(double frames, double looseness) const;
   [[nodiscard]] std::optional<Attempt> look_near(const LumaWindow& window,
                                                  const Eigen::Matrix3d& start,
                                                  const PoseCovariance& covariance);
@@ -81,15 +73,14 @@ class EdgeTracker {
                                               const PosePrior& prior,
                                               const PoseChange& change,
                                               double reach_px);
-  void accept(const Attempt& attempt, const Motion& before);
+  void accept(const Attempt& attempt, const PoseMotion& before);
   void learn_radii(const PoseChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const PoseChange& change);
-  void miss(const Eigen::Matrix3d& prediction, const Motion& before);
+  void miss(const Eigen::Matrix3d& prediction, const PoseMotion& before);
   [[nodiscard]] std::optional<EdgeTrack> told(const LumaWindow& window,
                                               const Attempt* attempt) const;
   [[nodiscard]] Ellipse refined(const LumaWindow& window, const Ellipse& outer) const;
-  [[nodiscard]] double centre_sigma() const;
   [[nodiscard]] double radius_px() const;
 
   PadModel model_;
@@ -97,7 +88,7 @@ class EdgeTracker {
   LineLearner line_learner_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
-  Motion motion_;
+  PoseMotion motion_;
   Eigen::Vector2d frame_px_{0.0, 0.0};
   double surprise_ = 1.0;  // of the motion, against its noise
   double gain_ = 1.0;      // of the picture's contrast over the model's

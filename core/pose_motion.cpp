@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "core/pose_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kFocalOverWidth = 0.8;  // where no camera is known
+constexpr double kAlongShare = 0.7;      // of the shift, along the optical axis
+constexpr double kSlack = 0.0015;        // of the shape, for all that is not modelled
+constexpr double kLittleSlack = 0.05;    // of its variance, of size and turn
+constexpr double kLeast = 1e-9;          // variance that is added to all
+constexpr double kMostTurn = 0.05;       // that rings alone leave unknown [rad]
+
+}  // namespace
+
+PoseCovariance inverse_of(const PoseCovariance& matrix) {
+  return matrix.ldlt().solve(PoseCovariance::Identity());
+}
+
+PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
+                            const Eigen::Vector2d& frame_px,
+                            double turn_rad,
+                            double shift) {
+  const auto changes = change_by_camera(
+      image_from_pad, kFocalOverWidth * frame_px.x(), 0.5 * (frame_px.array() - 1.0));
+  Eigen::Matrix<double, 6, 1> sigmas;
+  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
+  return changes * sigmas.cwiseAbs2().asDiagonal() * changes.transpose();
+}
+
+PoseMotion PoseMotion::after(double frames, const PoseCovariance& noise_per_frame) const {
+  const PoseCovariance noise = frames * noise_per_frame;
+  PoseMotion next;
+  next.velocity = velocity;
+  next.pose = pose + frames * (pose_velocity + pose_velocity.transpose()) +
+              frames * frames * (velocity_variance + 0.5 * noise);
+  next.pose_velocity = pose_velocity + frames * velocity_variance + 0.5 * frames * noise;
+  next.velocity_variance = velocity_variance + noise;
+  const double much = kSlack * kSlack;
+  const double little = kLittleSlack * much;
+  next.pose.diagonal() +=
+      (PoseChange() << kLeast, kLeast, little, much, much, little, much, much).finished();
+  next.pose.diagonal().array() += kLeast;
+  return next;
+}
+
+PoseMotion PoseMotion::corrected(const PoseEstimate& measured) const {
+  const PoseCovariance gain = pose_velocity.transpose() * inverse_of(pose);
+  PoseMotion result;
+  result.pose = inverse_of(measured.information);
+  result.velocity = velocity + gain * measured.change;
+  result.pose_velocity = result.pose * gain.transpose();
+  const PoseCovariance reduced = velocity_variance - gain * (pose - result.pose) * gain.transpose();
+  result.velocity_variance = 0.5 * (reduced + reduced.transpose());
+  result.velocity_variance.diagonal().array() += 1e-12;
+  return result;
+}
+
+void PoseMotion::leave_turn_open() {
+  velocity(5) = 0.0;
+  const double factor = std::min(1.0, kMostTurn / std::sqrt(pose(5, 5)));
+  pose.row(5) *= factor;
+  pose.col(5) *= factor;
+}
+
+double PoseMotion::centre_sigma() const {
+  return std::sqrt(pose(0, 0) + pose(1, 1) + pose(6, 6) + pose(7, 7) +
+                   2.0 * (pose(0, 6) + pose(1, 7)));
+}
+
+}  // namespace ellipse

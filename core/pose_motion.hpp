@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include "core/homography.hpp"
+#include "core/pose_solver.hpp"
+
+namespace ellipse {
+
+/// What is known of a view that moves: how certain it is, and its velocity. A Kalman filter
+/// [Kalman1960] whose state is the view's change and that change per frame. A value.
+struct PoseMotion {
+  PoseChange velocity = PoseChange::Zero();  ///< Per frame.
+  PoseCovariance pose = PoseCovariance::Zero();
+  PoseCovariance pose_velocity = PoseCovariance::Zero();  ///< Covariance of the two.
+  PoseCovariance velocity_variance = PoseCovariance::Zero();
+
+  /// Some frames later, at the same velocity but for the noise.
+  [[nodiscard]] PoseMotion after(double frames, const PoseCovariance& noise_per_frame) const;
+
+  /// After a measurement: what tells the pose tells the velocity as well.
+  /// @param measured  The change from the prediction, with what was known before in it.
+  [[nodiscard]] PoseMotion corrected(const PoseEstimate& measured) const;
+
+  /// The same, where nothing tells how the pad is turned about its centre.
+  void leave_turn_open();
+
+  /// Standard deviation of the pad's centre, as far as the edges tell it [radii].
+  [[nodiscard]] double centre_sigma() const;
+};
+
+[[nodiscard]] PoseCovariance inverse_of(const PoseCovariance& matrix);
+
+/// How a view changes from frame to frame under a camera that turns and shifts at random.
+/// @param turn_rad  Standard deviation about each axis.
+/// @param shift     And along each [radii of the pad]; less along the optical axis.
+[[nodiscard]] PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
+                                          const Eigen::Vector2d& frame_px,
+                                          double turn_rad,
+                                          double shift);
+
+}  // namespace ellipse
