@@ -104,7 +104,10 @@ class Patch {
 
  private:
   static constexpr float kOutside = -1.0F;
-  static std::size_t index(int i, int j) { return static_cast<std::size_t>(j * kCells + i); }
+  static std::size_t index(int i, int j) {
+    const int cell = j * kCells + i;
+    return static_cast<std::size_t>(cell);
+  }
 
   std::array<CellGradient, std::size_t(kCells) * kCells> gradients_{};
   std::array<bool, std::size_t(kCells) * kCells> is_known_{};

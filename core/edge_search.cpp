@@ -189,7 +189,8 @@ void EdgeSearch::look_along(const ImageView& luma,
   sample.is_seen = first <= -box && last >= box;
   if (!sample.is_seen) return;
 
-  const auto n = static_cast<std::size_t>(last - first + 1);
+  const int levels = last - first + 1;
+  const auto n = static_cast<std::size_t>(levels);
   std::array<float, kLongestProfile + 1> sums;  // of all levels before
   sums[0] = 0.0F;
   auto x = static_cast<float>(sample.view.point.x() + first * across.x());

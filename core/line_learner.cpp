@@ -48,7 +48,8 @@ void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_fr
       const float level =
           is_inside ? std::max(1.0F, luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F)
                     : 0.0F;
-      pixels_[static_cast<std::size_t>(j * kSize + i)] = static_cast<std::uint8_t>(level);
+      const int pixel = j * kSize + i;
+      pixels_[static_cast<std::size_t>(pixel)] = static_cast<std::uint8_t>(level);
     }
   }
 }
@@ -56,7 +57,8 @@ void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_fr
 // The picture's border is no line of the pad.
 void LineLearner::forget_crests_at_border() {
   const auto is_shown = [&](int x, int y) {
-    return pixels_[static_cast<std::size_t>(y * kSize + x)] != 0;
+    const int pixel = y * kSize + x;
+    return pixels_[static_cast<std::size_t>(pixel)] != 0;
   };
   constexpr int kNear = 3;  // of the gradient's kernel, and a pixel
   for (int y = kNear; y < kSize - kNear; ++y) {

@@ -44,8 +44,8 @@ class RadialProfile {
     double sum = 0.0;
     for (int j = 1; j <= half_width_; ++j) {
       if (i - j < 0 || i + j >= kRadii) return 0.0;
-      const double outside = medians_[static_cast<std::size_t>(i + j)];
-      const double inside = medians_[static_cast<std::size_t>(i - j)];
+      const double outside = *(medians_.begin() + i + j);
+      const double inside = *(medians_.begin() + i - j);
       if (outside == kUnknown || inside == kUnknown) return 0.0;
       sum += outside - inside;
     }

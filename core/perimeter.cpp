@@ -80,6 +80,7 @@ class Places {
   [[nodiscard]] std::int32_t index_of(const Eigen::Vector2i& pixel) const {
     return (pixel.y() + origin_y_) * stride_ + pixel.x() + origin_x_;
   }
+  [[nodiscard]] int stride() const { return stride_; }
   // Whether the normal is closer to the row than to the column.
   [[nodiscard]] bool is_flat(std::size_t k) const { return std::abs(nx[k]) > std::abs(ny[k]); }
   [[nodiscard]] Eigen::Vector2d anomaly(std::size_t k) const {
@@ -109,7 +110,7 @@ constexpr int kNone = 1000;
 // normal (nx, ny) from dark to bright; kNone where none is.
 int nearest_edge(const std::uint8_t* crests,
                  const Gradient* gradients,
-                 int step,
+                 std::ptrdiff_t step,
                  float nx,
                  float ny,
                  int tolerance_px) {
@@ -124,6 +125,86 @@ int nearest_edge(const std::uint8_t* crests,
   }
   return kNone;
 }
+
+// An edge that was met.
+struct Meeting {
+  float residual_px;
+  float direction_error_rad;
+  float strength;
+  float sharpness;
+};
+
+// @param here    The gradient of the edge's pixel, `offset` steps beside the place.
+// @param sign    1 where the inside is dark, else -1.
+// @param axes    Product of the semi-axes [px^2].
+Meeting meeting(
+    const Places& places, std::size_t k, const Gradient* here, int offset, float sign, float axes) {
+  const bool is_flat = places.is_flat(k);
+  const float nx = places.nx[k];
+  const float ny = places.ny[k];
+  const float speed = places.speed[k];
+  const CrestVertex vertex = crest_vertex(here, is_flat ? 1 : places.stride());
+  const Eigen::Vector2i pixel = places.nearest(k);
+  const float along = static_cast<float>(offset) + vertex.offset_px;
+  const float dx = static_cast<float>(pixel.x()) + (is_flat ? along : 0.0F) - places.x[k];
+  const float dy = static_cast<float>(pixel.y()) + (is_flat ? 0.0F : along) - places.y[k];
+  const float gx = here->x;
+  const float gy = here->y;
+  const float strength = std::sqrt(gx * gx + gy * gy);
+  const float sine = sign * (gy * nx - gx * ny) / strength;
+  const float curvature = axes / (speed * speed) / speed;
+  // Beside its foot the perimeter falls back behind its tangent.
+  const float aside = dy * nx - dx * ny;
+  return {dx * nx + dy * ny + curvature * (0.5F * aside * aside + kShift),
+          sine * (1.0F + sine * sine / 6.0F),  // below 30 degrees within .003
+          strength,
+          vertex.sharpness};
+}
+
+// Sums around a perimeter; lengths per eccentric anomaly.
+struct Tally {
+  float total = 0.0F;
+  float inside = 0.0F;
+  float met = 0.0F;
+  float inside_turn = 0.0F;  // curvature x length, but for a factor
+  float met_turn = 0.0F;
+  float gradients = 0.0F;
+  float sharpness = 0.0F;
+  std::array<float, 4> levels{};
+
+  void add_inside(float speed) {
+    inside += speed;
+    inside_turn += 1.0F / (speed * speed);
+  }
+
+  void add_met(const Meeting& edge, float speed) {
+    met += speed;
+    met_turn += 1.0F / (speed * speed);
+    gradients += edge.strength;
+    sharpness += edge.sharpness;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      const bool is_within =
+          std::abs(edge.residual_px) < static_cast<float>(kDistanceLevels[l]) &&
+          std::abs(edge.direction_error_rad) < static_cast<float>(kDirectionLevels[l]);
+      levels[l] += is_within ? speed : 0.0F;
+    }
+  }
+
+  [[nodiscard]] PerimeterEvidence evidence(float spacing, std::size_t hits, double noise) const {
+    PerimeterEvidence evidence;
+    if (!(inside > 0.0F)) return evidence;
+    evidence.inside_px = inside * spacing;
+    evidence.inside_fraction = inside / total;
+    evidence.support = met / inside;
+    evidence.turn_support = met_turn / inside_turn;
+    for (std::size_t l = 0; l < levels.size(); ++l) evidence.levels[l] = levels[l] / inside;
+    if (hits == 0) return evidence;
+    const auto count = static_cast<double>(hits);
+    evidence.signal_to_noise = gradients / count / noise;
+    evidence.sharpness = sharpness / count;
+    return evidence;
+  }
+};
 
 }  // namespace
 
@@ -144,7 +225,7 @@ double perimeter_support(const GradientMap& map,
       if (!places.is_inside(pixel)) continue;
       inside += places.speed[k];
       const std::int32_t at = places.index_of(pixel);
-      const int step = places.is_flat(k) ? 1 : map.stride();
+      const std::ptrdiff_t step = places.is_flat(k) ? 1 : map.stride();
       const int offset = nearest_edge(map.crests() + at,
                                       map.gradients() + at,
                                       step,
@@ -161,79 +242,36 @@ double perimeter_support(const GradientMap& map,
 PerimeterEvidence PerimeterProbe::probe(
     const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
   hits_.clear();
-  PerimeterEvidence evidence;
   const Places places(map, e, samples, tolerance_px);
   const auto sign = static_cast<float>(polarity);
   const auto spacing = static_cast<float>(2.0 * std::numbers::pi / samples);
   const auto axes_product = static_cast<float>(e.semi_major * e.semi_minor);
   const auto cx = static_cast<float>(e.cx - std::round(e.cx));
   const auto cy = static_cast<float>(e.cy - std::round(e.cy));
-  float total = 0.0F;
-  float inside = 0.0F;
-  float met = 0.0F;
-  float inside_turn = 0.0F;
-  float met_turn = 0.0F;
-  float gradients = 0.0F;
-  float sharpness = 0.0F;
-  std::array<float, 4> levels{};
+  Tally tally;
   for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k) {
     const float speed = places.speed[k];
-    total += speed;
+    tally.total += speed;
     const Eigen::Vector2i pixel = places.nearest(k);
     if (!places.is_inside(pixel)) continue;
-    const float turn = 1.0F / (speed * speed);  // curvature x length, but for a factor
-    inside += speed;
-    inside_turn += turn;
+    tally.add_inside(speed);
     const float nx = places.nx[k];
     const float ny = places.ny[k];
-    const bool is_flat = places.is_flat(k);
-    const int step = is_flat ? 1 : map.stride();
+    const std::ptrdiff_t step = places.is_flat(k) ? 1 : map.stride();
     const Gradient* here = map.gradients() + places.index_of(pixel);
     const int offset = nearest_edge(
         map.crests() + places.index_of(pixel), here, step, sign * nx, sign * ny, tolerance_px);
     if (offset == kNone) continue;
-    here += offset * step;
-    met += speed;
-    met_turn += turn;
-
-    const CrestVertex vertex = crest_vertex(here, step);
-    const float along = static_cast<float>(offset) + vertex.offset_px;
-    const float dx = static_cast<float>(pixel.x()) + (is_flat ? along : 0.0F) - places.x[k];
-    const float dy = static_cast<float>(pixel.y()) + (is_flat ? 0.0F : along) - places.y[k];
-    const float gx = here->x;
-    const float gy = here->y;
-    const float strength = std::sqrt(gx * gx + gy * gy);
-    const float sine = sign * (gy * nx - gx * ny) / strength;
-    const float curvature = axes_product * turn / speed;
-    // Beside its foot the perimeter falls back behind its tangent.
-    const float aside = dy * nx - dx * ny;
-    const float residual = dx * nx + dy * ny + curvature * (0.5F * aside * aside + kShift);
-    const float error = sine * (1.0F + sine * sine / 6.0F);  // below 30 degrees within .003
+    const Meeting edge = meeting(places, k, here + offset * step, offset, sign, axes_product);
+    tally.add_met(edge, speed);
     hits_.push_back({static_cast<int>(k),
                      {places.x[k] - cx, places.y[k] - cy},
                      {nx, ny},
-                     {places.anomaly(k), axes_product / speed, residual},
-                     error,
+                     {places.anomaly(k), axes_product / speed, edge.residual_px},
+                     edge.direction_error_rad,
                      speed * spacing});
-    gradients += strength;
-    sharpness += vertex.sharpness;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-      const bool is_within = std::abs(residual) < static_cast<float>(kDistanceLevels[l]) &&
-                             std::abs(error) < static_cast<float>(kDirectionLevels[l]);
-      levels[l] += is_within ? speed : 0.0F;
-    }
   }
-  if (!(inside > 0.0F)) return evidence;
-  evidence.inside_px = inside * spacing;
-  evidence.inside_fraction = inside / total;
-  evidence.support = met / inside;
-  evidence.turn_support = met_turn / inside_turn;
-  for (std::size_t l = 0; l < levels.size(); ++l) evidence.levels[l] = levels[l] / inside;
-  if (hits_.empty()) return evidence;
-  const auto hits = static_cast<double>(hits_.size());
-  evidence.signal_to_noise = gradients / hits / map.noise();
-  evidence.sharpness = sharpness / hits;
-  return evidence;
+  return tally.evidence(spacing, hits_.size(), map.noise());
 }
 
 }  // namespace ellipse

@@ -74,24 +74,24 @@ class Tracker {
 
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;
-  bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
   std::vector<Detection> candidates_;
   LumaReader luma_reader_;
   Scaler scaler_;
   EdgeTracker edge_tracker_;
 
-  bool is_tracking_ = false;
-  int scale_ = 1;
   Rect roi_;  // where the target is expected, while it is being tracked
   Rect search_region_;
   Rect frame_bounds_;
-  bool had_target_ = false;
   Ellipse last_ellipse_;
   std::uint64_t last_id_ = 0;
   std::int64_t last_pts_ns_ = 0;
+  int scale_ = 1;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
   int trust_ = 0;  // in what is followed, from the detector's looks
+  bool is_tracking_ = false;
+  bool had_target_ = false;
+  bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
 };
 
 }  // namespace ellipse
