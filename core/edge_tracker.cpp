@@ -4,8 +4,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <cstdint>
 
 #include "core/coarse_search.hpp"
 #include "core/ellipse_fit.hpp"

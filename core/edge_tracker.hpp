@@ -1,8 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <optional>
 
 #include "core/edge_search.hpp"

@@ -99,12 +99,7 @@ TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
       scene.ground.level = 170.0;
       scene.sensor.read_noise = 3.0;
       scene.seed = i;
-      const double flat = std::sqrt(random.between(1.0, 2.0));
-      const Ellipse truth{60.0 + random.unit(),
-                          50.0 + random.unit(),
-                          6.0 * flat,
-                          6.0 / flat,
-                          random.between(-1.5, 1.5)};
+      const Ellipse truth = support::random_ellipse(random, 60, 50, 6.0);
       found += best_iou(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8 ? 1 : 0;
     }
     EXPECT_GE(found, 42) << static_cast<int>(pattern);
@@ -135,12 +130,7 @@ TEST(ArcDetector, IsExact) {
   ArcDetector detector;
   for (int i = 0; i < 60; ++i) {
     const double radius = 10.0 * std::pow(12.0, random.unit());
-    const double flat = std::sqrt(random.between(1.0, 2.0));
-    const Ellipse truth{200.0 + random.unit(),
-                        180.0 + random.unit(),
-                        radius * flat,
-                        radius / flat,
-                        random.between(-1.5, 1.5)};
+    const Ellipse truth = support::random_ellipse(random, 200, 180, radius);
     Scene scene = disc();
     scene.sensor.read_noise = 3.0;
     scene.seed = static_cast<std::uint64_t>(i);

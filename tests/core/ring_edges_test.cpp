@@ -73,12 +73,7 @@ TEST(RingEdges, MakeSmallRingsExact) {
     std::vector<double> major;
     std::vector<double> minor;
     for (std::uint64_t i = 0; i < 31; ++i) {
-      const double flat = std::sqrt(random.between(1.0, 2.0));
-      const Ellipse truth{80.0 + random.unit(),
-                          70.0 + random.unit(),
-                          radius * flat,
-                          radius / flat,
-                          random.between(-1.5, 1.5)};
+      const Ellipse truth = support::random_ellipse(random, 80, 70, radius);
       Scene scene = support::plain_ring();
       scene.sensor.read_noise = 3.0;
       scene.seed = i;

@@ -1,9 +1,11 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "core/image_view.hpp"
+#include "core/scene/random.hpp"
 #include "core/scene/renderer.hpp"
 
 namespace support {
@@ -37,6 +39,15 @@ inline Picture rendered(const ellipse::Scene& scene,
   ellipse::SceneRenderer(scene).render(
       ellipse::image_from_pad(outer_edge), frame, picture.writable());
   return picture;
+}
+
+/// An ellipse of this mean radius, up to twice as long as wide, turned at random, whose centre is
+/// somewhere in this pixel.
+inline ellipse::Ellipse random_ellipse(ellipse::Random& random, int x, int y, double radius) {
+  const double flat = std::sqrt(random.between(1.0, 2.0));
+  const double cx = x + random.unit();
+  const double cy = y + random.unit();
+  return {cx, cy, radius * flat, radius / flat, random.between(-1.5, 1.5)};
 }
 
 /// A bar between places given in pixels of a picture of this size.
