@@ -39,11 +39,14 @@ struct CrestVertex {
   float sharpness = 0.0F;  ///< Curvature of the crest's profile over its height [1/px^2].
 };
 
+/// Of the blur of a lens that is in focus [px^2].
+inline constexpr double kLensVariance = 0.36;
+
 /// How far inside a curved edge the crest of its smoothed gradient lies [px], per curvature [1/px]:
 /// smoothing of variance v draws the crest of an edge of curvature k in by v k / 2, to first order
 /// (own derivation from the mean of a disc's edge over a Gaussian). The 5 x 5 kernels have a
-/// variance of 1 along the edge, a lens that is in focus has one of about 0.36.
-inline constexpr double kCrestShift = 0.5 * (1.0 + 0.36);
+/// variance of 1 along the edge.
+inline constexpr double kCrestShift = 0.5 * (1.0 + kLensVariance);
 
 /// The vertex of the parabola through three pixels along the axis closest to the gradient
 /// [Devernay1995] 2. The gradients' projections on the middle one count.

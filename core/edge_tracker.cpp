@@ -10,8 +10,6 @@
 
 #include "core/coarse_search.hpp"
 #include "core/ellipse_fit.hpp"
-#include "core/picture_refinement.hpp"
-#include "core/ring_edges.hpp"
 
 namespace ellipse {
 namespace {
@@ -57,11 +55,6 @@ constexpr double kMostCentreSigma = 0.02;  // [radii], where less is visible
 constexpr double kPatternCoverage = 0.75;  // and
 constexpr double kPatternSpread = 0.15;
 constexpr double kLeastVisibleToRefine = 0.3;
-constexpr double kLeastCrest = 0.3;    // of the expected one
-constexpr double kCrestOfStep = 48.0;  // of GradientMap's gradient, per grey level
-constexpr double kLeastRefined = 0.5;  // share of the perimeter with a crest
-constexpr double kThinRingPx = 6.0;
-constexpr double kNearRelative = 0.03;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
   Eigen::Matrix3d result = view;
@@ -84,7 +77,7 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   frame_px_ = window.frame_px;
   view_ = image_from_pad(outer_edge);
   const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
-  auto model = learn_circles(window.luma, local);
+  auto model = learn_circles(window.luma, local, ring_ratio_);
   if (!model) return false;
   model_ = std::move(*model);
   line_learner_.reserve(model_);
@@ -282,6 +275,7 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
 void EdgeTracker::learn_radii(const PoseChange& change, double share) {
   for (std::size_t i = 1; i < model_.circles.size(); ++i) {
     PadCircle& circle = model_.circles[i];
+    if (circle.is_given) continue;
     const double sign = circle.is_bright_outside ? 1.0 : -1.0;
     double sum = 0.0;
     double weights = 0.0;
@@ -358,35 +352,11 @@ std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attem
   track.is_seen = track.visible >= kEnoughVisible ||
                   (motion_.centre_sigma() <= kMostCentreSigma &&
                    track.coverage >= kPatternCoverage && attempt->support.spread >= kPatternSpread);
-  if (track.visible >= kLeastVisibleToRefine) track.ellipse = refined(window, *ellipse);
+  if (track.visible < kLeastVisibleToRefine || refinement_ == Refinement::kNone) return track;
+  const auto exact = refined_outer_edge(
+      window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
+  if (exact) track.ellipse = translated(*exact, window.origin_px.x(), window.origin_px.y());
   return track;
-}
-
-// The outer edge on the gradient's crests: exact, where the search along the normals is robust.
-Ellipse EdgeTracker::refined(const LumaWindow& window, const Ellipse& outer) const {
-  const PadCircle& circle = model_.circles.front();
-  const double least = kLeastCrest * kCrestOfStep * circle.contrast * gain_;
-  const auto on_picture = [&](const Ellipse& e, bool is_bright_outside) {
-    const Polarity polarity = is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
-    const Ellipse local = translated(e, -window.origin_px.x(), -window.origin_px.y());
-    return refined_on_picture(window.luma, local, polarity, least);
-  };
-  const auto edge = on_picture(outer, circle.is_bright_outside);
-  if (!edge || edge->support < kLeastRefined) return outer;
-  Ellipse exact = edge->ellipse;
-  const bool has_inner =
-      model_.circles.size() > 1 && model_.circles[1].is_bright_outside != circle.is_bright_outside;
-  if (has_inner && (1.0 - model_.circles[1].radius) * outer.semi_minor < kThinRingPx) {
-    if (const auto inner = project_circle(view_, model_.circles[1].radius)) {
-      const auto next = on_picture(*inner, !circle.is_bright_outside);
-      if (next && next->support >= kLeastRefined) {
-        exact = without_repulsion({exact, next->ellipse}).outer;
-      }
-    }
-  }
-  exact = translated(exact, window.origin_px.x(), window.origin_px.y());
-  const bool is_near = max_difference_px(exact, outer) <= 1.0 + kNearRelative * outer.semi_major;
-  return is_near ? exact : outer;
 }
 
 Rect EdgeTracker::region_after(double frames, int width, int height) const {

@@ -7,6 +7,7 @@
 #include "core/homography.hpp"
 #include "core/image_view.hpp"
 #include "core/line_learner.hpp"
+#include "core/outer_edge.hpp"
 #include "core/pad_model.hpp"
 #include "core/pose_motion.hpp"
 #include "core/pose_solver.hpp"
@@ -43,6 +44,13 @@ class EdgeTracker {
   /// nullopt where the pad is lost.
   [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
 
+  /// @param refinement  Of the reported ellipses; the following itself needs none.
+  /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
+  void configure(Refinement refinement, double ring_ratio) {
+    refinement_ = refinement;
+    ring_ratio_ = ring_ratio;
+  }
+
   [[nodiscard]] bool is_locked() const { return is_locked_; }
   void release() { is_locked_ = false; }
 
@@ -78,9 +86,10 @@ class EdgeTracker {
   void miss(const Eigen::Matrix3d& prediction, const PoseMotion& before);
   [[nodiscard]] std::optional<EdgeTrack> told(const LumaWindow& window,
                                               const Attempt* attempt) const;
-  [[nodiscard]] Ellipse refined(const LumaWindow& window, const Ellipse& outer) const;
   [[nodiscard]] double radius_px() const;
 
+  Refinement refinement_ = Refinement::kPhotometric;
+  double ring_ratio_ = 0.0;
   PadModel model_;
   EdgeSearch search_;
   LineLearner line_learner_;

@@ -19,6 +19,7 @@ constexpr int kAngles = 128;
 constexpr int kLeastSeen = 12;          // of the angles
 constexpr int kOuterSlack = 14;         // steps to both sides of radius 1
 constexpr double kLeastContrast = 6.0;  // of the outer circle [grey levels]
+constexpr double kOuterContrast = 0.6;  // of the strongest step near radius 1
 constexpr double kInnerContrast = 0.5;  // of the outer circle's
 constexpr int kApart = 5;               // steps between circles
 constexpr std::size_t kMostCircles = 5;
@@ -27,6 +28,10 @@ constexpr double kUnknown = -1.0;
 
 double radius_at(int i) {
   return kFirstRadius + i * kRadiusStep;
+}
+
+int index_of(double radius) {
+  return static_cast<int>(std::lround((radius - kFirstRadius) / kRadiusStep));
 }
 
 // Brightness around circles.
@@ -104,27 +109,46 @@ class RadialProfile {
 }  // namespace
 
 std::optional<PadModel> learn_circles(const ImageView& luma,
-                                      const Eigen::Matrix3d& image_from_pad) {
+                                      const Eigen::Matrix3d& image_from_pad,
+                                      double ring_ratio) {
   const RadialProfile profile(luma, image_from_pad);
   const auto strength = [&](int i) { return std::abs(profile.step(i)); };
-  const int one = static_cast<int>(std::lround((1.0 - kFirstRadius) / kRadiusStep));
-  int outer = one;
+  const auto is_peak = [&](int i) {
+    bool is_highest = true;
+    for (int j = 1; j <= kApart && is_highest; ++j) {
+      is_highest = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
+    }
+    return is_highest;
+  };
+  const int one = index_of(1.0);
+  double strongest = 0.0;
   for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
-    if (strength(i) > strength(outer)) outer = i;
+    strongest = std::max(strongest, strength(i));
   }
-  if (strength(outer) < kLeastContrast) return std::nullopt;
+  if (strongest < kLeastContrast) return std::nullopt;
+  // The other edge of a thin ring may be as strong.
+  const auto is_outer = [&](int i) {
+    return strength(i) >= kOuterContrast * strongest && is_peak(i);
+  };
+  int outer = one;
+  for (int off = 0; off <= kOuterSlack && !is_outer(outer); ++off) {
+    outer = is_outer(one + off) ? one + off : one - off;
+  }
+  if (!is_outer(outer)) return std::nullopt;
 
   PadModel model;
   const auto add = [&](int i) {
     model.circles.push_back({radius_at(i) / radius_at(outer), profile.step(i) > 0.0, strength(i)});
   };
   add(outer);
-  for (int i = outer - kApart; i >= kApart && model.circles.size() < kMostCircles; --i) {
-    bool is_peak = strength(i) >= kInnerContrast * strength(outer);
-    for (int j = 1; j <= kApart && is_peak; ++j) {
-      is_peak = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
-    }
-    if (is_peak && profile.agreement(i) >= kLeastAgreement) add(i);
+  if (ring_ratio > 0.0) {
+    const PadCircle& edge = model.circles.front();
+    model.circles.push_back({ring_ratio, !edge.is_bright_outside, edge.contrast, true});
+  }
+  const int last = index_of(model.circles.back().radius * radius_at(outer));
+  for (int i = last - kApart; i >= kApart && model.circles.size() < kMostCircles; --i) {
+    const bool is_strong = strength(i) >= kInnerContrast * strength(outer);
+    if (is_strong && is_peak(i) && profile.agreement(i) >= kLeastAgreement) add(i);
   }
   return model;
 }

@@ -13,6 +13,7 @@ struct PadCircle {
   double radius = 1.0;  ///< [radii of the outer circle]
   bool is_bright_outside = true;
   double contrast = 0.0;  ///< [grey levels]
+  bool is_given = false;  ///< Its radius was not learned, so it stays.
 };
 
 /// A straight edge on the pad.
@@ -35,9 +36,13 @@ struct PadModel {
 /// of the radius, has a step at each.
 ///
 /// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
+/// @param ring_ratio      Radius of the circle next inside the outer one, where it is known: it is
+///                        taken for what it is, also where the picture is too coarse to show it.
+///                        0 = is learned.
 /// nullopt where there is no step at the outer circle. Allocates the model, and nothing without
 /// one.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
-                                                    const Eigen::Matrix3d& image_from_pad);
+                                                    const Eigen::Matrix3d& image_from_pad,
+                                                    double ring_ratio = 0.0);
 
 }  // namespace ellipse

@@ -218,12 +218,14 @@ void Tracker::reset() {
 
 void Tracker::configure(const TrackerSettings& settings) {
   settings.validate();
-  const bool starts_over =
-      settings.detector != settings_.detector || settings.tracking != settings_.tracking;
+  const bool starts_over = settings.detector != settings_.detector ||
+                           settings.tracking != settings_.tracking ||
+                           settings.ring_ratio != settings_.ring_ratio;
   if (settings.detector != settings_.detector && !is_detector_given_) {
     detector_ = make_detector(settings.detector);
   }
   settings_ = settings;
+  edge_tracker_.configure(settings.refine, settings.ring_ratio);
   if (starts_over) reset();
   while (scale_ > settings_.max_scale) scale_ /= 2;
 }

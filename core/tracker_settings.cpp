@@ -9,11 +9,14 @@
 #include <string>
 #include <type_traits>
 
+#include "core/ring_edges.hpp"
+
 namespace ellipse {
 namespace {
 
 constexpr Range kMaxScaleRange{1.0, 128.0};
 constexpr Range kRoiExpansionRange{1.0, 10.0};
+constexpr Range kRingRatioRange{0.0, kThinnestRing};
 
 template <auto kMember, auto... kRest>
 constexpr auto& follow(auto& object) {
@@ -91,6 +94,11 @@ const std::array kSettings = {
         kRoiExpansionRange,
         true,
         "Search region: the target's box and (this - 1) semi-major axes more on every side"),
+    setting<&TrackerSettings::ring_ratio>(
+        "ring-ratio",
+        kRingRatioRange,
+        false,
+        "Inner over outer radius of the target's ring, where it is known; 0 = is learned"),
     setting<kLimits, &Thresholds::edge_low>(
         "edge-low",
         kEdgeRange,
@@ -149,6 +157,10 @@ void set_by_name(TrackerSettings& settings, std::string_view name, std::string_v
   }
   if (name == "tracking") {
     settings.tracking = from_nick<TrackingMode>(name, value, kTrackingNicks);
+    return;
+  }
+  if (name == "refine") {
+    settings.refine = from_nick<Refinement>(name, value, refinement_nicks());
     return;
   }
   const auto found = std::find_if(

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/detectors.hpp"
+#include "core/outer_edge.hpp"
 #include "core/thresholds.hpp"
 
 namespace ellipse {
@@ -18,14 +19,16 @@ enum class TrackingMode {
 struct TrackerSettings {
   DetectorKind detector = DetectorKind::kArcs;
   TrackingMode tracking = TrackingMode::kEdges;
-  Overlaps detect_overlaps = {};      ///< Each 0 = the detector's own.
-  Overlaps track_overlaps = {};       ///< Each 0 = the detector's own.
+  Refinement refine = Refinement::kPhotometric;  ///< Of the ellipse while its edges are followed.
+  Overlaps detect_overlaps = {};                 ///< Each 0 = the detector's own.
+  Overlaps track_overlaps = {};                  ///< Each 0 = the detector's own.
   Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
   int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.
   bool wants_candidates = false;      ///< All ellipses of every frame, also while following edges.
   double roi_expansion = 2.0;         ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
+  double ring_ratio = 0.0;            ///< Inner over outer radius of the pad's ring; 0 = learned.
 
   /// Throws std::invalid_argument that names the field.
   void validate() const;
@@ -50,7 +53,7 @@ struct SettingInfo {
 /// The nicks of the tracking modes, in their order.
 [[nodiscard]] std::span<const char* const> tracking_nicks();
 
-/// Sets one setting by name from text: a number, or a nick for "detector" and "tracking".
+/// Sets one setting by name from text: a number, or a nick for "detector", "tracking", "refine".
 /// Throws std::invalid_argument that names the setting where it is unknown, or the value no good.
 void set_by_name(TrackerSettings& settings, std::string_view name, std::string_view value);
 

@@ -7,6 +7,7 @@ namespace {
 enum {
   PROP_DETECTOR,
   PROP_TRACKING,
+  PROP_REFINE,
   PROP_INTERVAL,
   PROP_MESSAGES,
   PROP_ATTACH_ROI_META,
@@ -39,6 +40,19 @@ GType gst_ellipse_tracking_get_type(void) {
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseTracking", kValues);
+  return kType;
+}
+
+GType gst_ellipse_refinement_get_type(void) {
+  static const GEnumValue kValues[] = {
+      {int(ellipse::Refinement::kNone), "Where the edges that it is followed by put it", "none"},
+      {int(ellipse::Refinement::kEdges), "By the crests along its outer edge", "edges"},
+      {int(ellipse::Refinement::kPhotometric),
+       "By the brightness of all pixels along its outer edge",
+       "photometric"},
+      {0, nullptr, nullptr},
+  };
+  static const GType kType = g_enum_register_static("GstEllipseRefinement", kValues);
   return kType;
 }
 
@@ -101,6 +115,13 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
                             gst_ellipse_tracking_get_type(),
                             static_cast<gint>(initial.tracker.tracking),
                             playing));
+  install(first_id + PROP_REFINE,
+          g_param_spec_enum("refine",
+                            "Refine",
+                            "What makes an ellipse exact that is followed by its edges",
+                            gst_ellipse_refinement_get_type(),
+                            static_cast<gint>(initial.tracker.refine),
+                            playing));
   install(first_id + PROP_INTERVAL,
           g_param_spec_uint("interval",
                             "Interval",
@@ -139,6 +160,7 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   };
   mark(gst_ellipse_detector_get_type());
   mark(gst_ellipse_tracking_get_type());
+  mark(gst_ellipse_refinement_get_type());
   mark(gst_ellipse_messages_get_type());
   mark(GST_TYPE_ELLIPSE_OVERLAY_FLAGS);
 }
@@ -154,6 +176,9 @@ void TrackProperties::set(guint which, const GValue* value) {
   }
   if (which == PROP_TRACKING) {
     wanted.tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
+  }
+  if (which == PROP_REFINE) {
+    wanted.tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
   }
   if (which == PROP_INTERVAL) wanted.interval = g_value_get_uint(value);
   if (which == PROP_MESSAGES) wanted.messages = g_value_get_enum(value);
@@ -178,6 +203,7 @@ void TrackProperties::get(guint which, GValue* value) const {
   }
   if (which == PROP_DETECTOR) g_value_set_enum(value, static_cast<gint>(tracker.detector));
   if (which == PROP_TRACKING) g_value_set_enum(value, static_cast<gint>(tracker.tracking));
+  if (which == PROP_REFINE) g_value_set_enum(value, static_cast<gint>(tracker.refine));
   if (which == PROP_INTERVAL) g_value_set_uint(value, interval);
   if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
   if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);

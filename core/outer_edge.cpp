@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "core/outer_edge.hpp"
+
+#include <limits>
+
+#include "core/homography.hpp"
+#include "core/photometric_refinement.hpp"
+#include "core/picture_refinement.hpp"
+#include "core/ring_edges.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kLeastContrast = 0.3;  // of the expected one
+constexpr double kCrestOfStep = 48.0;   // of GradientMap's gradient, per grey level
+constexpr double kLeastSupport = 0.5;   // share of the perimeter with a crest
+constexpr double kThinRingPx = 6.0;
+constexpr double kReachOfNextEdgePx = 2.0;  // its blur
+constexpr double kNearPx = 1.0;
+constexpr double kNearRelative = 0.03;
+
+constexpr const char* kNicks[] = {"none", "edges", "photometric"};
+
+Polarity polarity_of(bool is_bright_outside) {
+  return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
+}
+
+// The crests of both edges of a thin ring are drawn apart.
+std::optional<Ellipse> on_crests(const ImageView& luma,
+                                 const Eigen::Matrix3d& image_from_pad,
+                                 const PadModel& model,
+                                 const Ellipse& outer,
+                                 double ring_px,
+                                 double least_contrast) {
+  const double least = kCrestOfStep * least_contrast;
+  const bool is_bright_outside = model.circles.front().is_bright_outside;
+  const auto edge = refined_on_picture(luma, outer, polarity_of(is_bright_outside), least);
+  if (!edge || edge->support < kLeastSupport) return std::nullopt;
+  const bool is_ring =
+      model.circles.size() > 1 && model.circles[1].is_bright_outside != is_bright_outside;
+  if (!is_ring || ring_px >= kThinRingPx) return edge->ellipse;
+  const auto inner = project_circle(image_from_pad, model.circles[1].radius);
+  if (!inner) return edge->ellipse;
+  const auto next = refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least);
+  if (!next || next->support < kLeastSupport) return edge->ellipse;
+  return without_repulsion({edge->ellipse, next->ellipse}).outer;
+}
+
+}  // namespace
+
+std::span<const char* const> refinement_nicks() {
+  return kNicks;
+}
+
+std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
+                                          const Eigen::Matrix3d& image_from_pad,
+                                          const PadModel& model,
+                                          double gain,
+                                          Refinement refinement) {
+  const auto outer = project_circle(image_from_pad, 1.0);
+  if (!outer || refinement == Refinement::kNone) return std::nullopt;
+  const PadCircle& circle = model.circles.front();
+  const double least_contrast = kLeastContrast * circle.contrast * gain;
+  const double ring_px = model.circles.size() > 1
+                             ? (1.0 - model.circles[1].radius) * outer->semi_minor
+                             : std::numeric_limits<double>::infinity();
+  std::optional<Ellipse> exact;
+  if (refinement == Refinement::kPhotometric) {
+    exact = refined_photometrically(luma,
+                                    *outer,
+                                    polarity_of(circle.is_bright_outside),
+                                    ring_px - kReachOfNextEdgePx,
+                                    least_contrast);
+  }
+  if (!exact) exact = on_crests(luma, image_from_pad, model, *outer, ring_px, least_contrast);
+  if (!exact) return std::nullopt;
+  const bool is_near =
+      max_difference_px(*exact, *outer) <= kNearPx + kNearRelative * outer->semi_major;
+  return is_near ? exact : std::nullopt;
+}
+
+}  // namespace ellipse

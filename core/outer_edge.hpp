@@ -1,0 +1,33 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "core/ellipse.hpp"
+#include "core/image_view.hpp"
+#include "core/pad_model.hpp"
+
+namespace ellipse {
+
+/// What makes a followed ellipse exact.
+enum class Refinement {
+  kNone,         ///< Nothing: where the edges that it is followed by put it.
+  kEdges,        ///< The crests of the gradient along the outer edge.
+  kPhotometric,  ///< The brightness of all pixels along it; crests where the ring is too thin.
+};
+
+/// Their nicks, in their order.
+[[nodiscard]] std::span<const char* const> refinement_nicks();
+
+/// The outer edge of a pad whose view is known within a pixel or so, made exact on the picture.
+///
+/// @param gain  Of the picture's contrast over the model's.
+/// @return nullopt where the picture does not show it well enough. Allocates nothing.
+[[nodiscard]] std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
+                                                        const Eigen::Matrix3d& image_from_pad,
+                                                        const PadModel& model,
+                                                        double gain,
+                                                        Refinement refinement);
+
+}  // namespace ellipse
