@@ -19,6 +19,7 @@ constexpr int kBefore = 6;  // of these, before the edge's own
 constexpr std::size_t kMostSectors = 80;
 constexpr double kUsualSectors = 64.0;
 constexpr double kShortestSector = 6.0;  // lines
+constexpr double kLongestPx = 1e6;       // perimeter that lines are counted of
 constexpr double kFewLines = 96.0;
 constexpr double kMostLines = 800.0;
 constexpr std::size_t kLeastSectors = 8;
@@ -128,7 +129,7 @@ class Band {
         shape_(shape_matrix(e)),
         conic_(shape_.inverse()),
         accumulator_(inside_px, pass.step_px) {
-    const double lines = 0.9 * perimeter_px(e);
+    const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
     stride_ = static_cast<int>(std::ceil(lines / pass.most_lines));
     lines_of_sector_ =
         static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kUsualSectors)));
@@ -162,8 +163,9 @@ class Band {
     normal[axis] = forth;
     const double to = place(normal)[axis];
     const Eigen::Array2i size(luma_.width, luma_.height);
-    const int low = std::max(0, static_cast<int>(std::ceil(std::min(from, to))));
-    const int high = std::min(size[axis] - 1, static_cast<int>(std::floor(std::max(from, to))));
+    const double end = size[axis];
+    const int low = static_cast<int>(std::ceil(std::clamp(std::min(from, to), 0.0, end)));
+    const int high = static_cast<int>(std::floor(std::clamp(std::max(from, to), -1.0, end - 1.0)));
     const std::ptrdiff_t along = axis == 0 ? luma_.stride : 1;
     const std::ptrdiff_t step = axis == 0 ? 1 : luma_.stride;
     const double c = 1.0 / conic_(other, other);
@@ -175,8 +177,8 @@ class Band {
       at[other] = slant * at[axis] +
                   side * std::sqrt(std::max(0.0, (1.0 - determinant * at[axis] * at[axis]) * c));
       const double crossing = center_[other] + at[other];
-      const int nearest = static_cast<int>(std::floor(crossing + 0.5));
-      if (nearest < kBefore || nearest + kLanes - kBefore > size[other]) continue;
+      if (!(crossing >= kBefore && crossing < size[other] - kLanes + kBefore)) continue;
+      const int nearest = static_cast<int>(crossing + 0.5);
       const Eigen::Vector2d gradient = conic_ * at;
       const double inverse = 1.0 / gradient.norm();
       const Eigen::Vector2d outwards = inverse * gradient;

@@ -109,6 +109,44 @@ TEST(LearnCirclesFrom, AnEdgeThatIsOffByAFewPercent) {
   }
 }
 
+TEST(LearnCirclesFrom, AThinRingsOuterEdge) {
+  for (const double ring_width : {0.1, 0.055}) {
+    for (const bool is_bright : {false, true}) {
+      Scene scene = scene_of(Pattern::kRing, is_bright);
+      scene.pad.ring_width = ring_width;
+      const Picture picture = rendered(scene, kPad);
+      for (const double factor : {0.985, 1.0, 1.015}) {
+        const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
+        ASSERT_TRUE(model) << ring_width << is_bright << factor;
+        EXPECT_EQ(model->circles[0].is_bright_outside, !is_bright) << ring_width << factor;
+        ASSERT_EQ(model->circles.size(), 2U) << ring_width << is_bright << factor;
+        EXPECT_NEAR(model->circles[1].radius, 1.0 - ring_width, 0.015) << is_bright << factor;
+      }
+    }
+  }
+}
+
+TEST(LearnCirclesFrom, AGivenRingRatioWins) {
+  // Too coarse to tell that it is a ring.
+  Scene scene = scene_of(Pattern::kRing, false);
+  scene.pad.ring_width = 0.06;
+  const Ellipse small{160.0, 120.0, 14.0, 12.0, 0.3};
+  const Picture picture = rendered(scene, small);
+  const Matrix3d view = image_from_pad(small);
+  const auto given = learn_circles(picture.view(), view, 0.94);
+  ASSERT_TRUE(given);
+  ASSERT_GE(given->circles.size(), 2U);
+  EXPECT_EQ(given->circles[1].radius, 0.94);
+  EXPECT_TRUE(given->circles[1].is_given);
+  EXPECT_NE(given->circles[1].is_bright_outside, given->circles[0].is_bright_outside);
+  // Where it can be told, it is not doubled.
+  const Picture large = rendered(scene_of(Pattern::kRing), kPad);
+  const auto model = learn_circles(large.view(), image_from_pad(kPad), kInner + 0.004);
+  ASSERT_TRUE(model);
+  ASSERT_EQ(model->circles.size(), 2U);
+  EXPECT_EQ(model->circles[1].radius, kInner + 0.004);
+}
+
 TEST(LearnCirclesFrom, ThePartThatIsInThePicture) {
   const Ellipse half_out = translated(kPad, -150.0, 0.0);
   const Picture picture = rendered(scene_of(Pattern::kRing), half_out);
