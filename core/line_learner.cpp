@@ -139,32 +139,36 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   }
   if (middle.norm() > kLargestRadius) return;
 
-  // The line through the crests, finer than pixels; and the mean gradient on it.
-  const Eigen::Vector2d along = (to - from) / length;
-  PadLine line;
-  line.to_bright = Eigen::Vector2d(along.y(), -along.x());
-  double offset = 0.0;
-  double contrast = 0.0;
+  // The line through the crests, finer than pixels, by total least squares; and the mean gradient.
+  Eigen::Vector2d sum(0.0, 0.0);
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d gradient(0.0, 0.0);
   for (const std::int32_t pixel : pixels) {
     const Gradient* here = map_.gradients() + pixel;
     const bool is_flat = std::abs(here->x) > std::abs(here->y);
     const CrestVertex vertex = crest_vertex(here, is_flat ? 1 : map_.stride());
-    Eigen::Vector2d place = place_of(pixel);
+    Eigen::Vector2d place = place_of(pixel) - middle;
     place[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
-    offset += line.to_bright.dot(place - from);
-    contrast += line.to_bright.dot(Eigen::Vector2d(here->x, here->y));
+    sum += place;
+    squares += place * place.transpose();
+    gradient += Eigen::Vector2d(here->x, here->y);
   }
   const auto count = static_cast<double>(pixels.size());
+  const Eigen::Vector2d mean = sum / count;
+  squares -= sum * mean.transpose();
+  const double turn = 0.5 * std::atan2(2.0 * squares(0, 1), squares(0, 0) - squares(1, 1));
+  Eigen::Vector2d along(std::cos(turn), std::sin(turn));
+  if (along.dot(to - from) < 0.0) along = -along;
+  PadLine line;
+  line.to_bright = Eigen::Vector2d(along.y(), -along.x());
+  double contrast = line.to_bright.dot(gradient);
   if (contrast < 0.0) {
     line.to_bright = -line.to_bright;
-    offset = -offset;
     contrast = -contrast;
   }
-  const Eigen::Vector2d shift = offset / count * line.to_bright;
-  from += shift + kShortened * along;
-  to += shift - kShortened * along;
-  line.from = from;
-  line.to = to;
+  const double reach = 0.5 * length - kShortened;
+  line.from = middle + mean - (reach + along.dot(mean)) * along;
+  line.to = middle + mean + (reach - along.dot(mean)) * along;
   line.contrast = contrast / count / kGradientOfStep;
   if (line.contrast < kContrastShare * model.circles.front().contrast) return;
   if (lines_.size() == kRoom) keep_longest();
