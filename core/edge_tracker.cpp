@@ -267,6 +267,8 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
   gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
   judge_lines(attempt.last);
   if (attempt.visible >= kLeastVisibleToLearn) learn_radii(attempt.last, kLearningShare);
+  motion_.velocity =
+      carried(motion_.velocity, view_, attempt.view, frame_px_, kTurnNoise, kShiftNoise);
   view_ = attempt.view;
   misses_ = 0;
 }

@@ -16,6 +16,18 @@ constexpr double kLittleSlack = 0.05;    // of its variance, of size and turn
 constexpr double kLeast = 1e-9;          // variance that is added to all
 constexpr double kMostTurn = 0.05;       // that rings alone leave unknown [rad]
 
+// The changes of a view by a camera that turns and shifts by what is usual in a frame.
+Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
+                                          const Eigen::Vector2d& frame_px,
+                                          double turn_rad,
+                                          double shift) {
+  Eigen::Matrix<double, 6, 1> sigmas;
+  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
+  return change_by_camera(
+             image_from_pad, kFocalOverWidth * frame_px.x(), 0.5 * (frame_px.array() - 1.0)) *
+         sigmas.asDiagonal();
+}
+
 }  // namespace
 
 PoseCovariance inverse_of(const PoseCovariance& matrix) {
@@ -26,11 +38,23 @@ PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                             const Eigen::Vector2d& frame_px,
                             double turn_rad,
                             double shift) {
-  const auto changes = change_by_camera(
-      image_from_pad, kFocalOverWidth * frame_px.x(), 0.5 * (frame_px.array() - 1.0));
-  Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
-  return changes * sigmas.cwiseAbs2().asDiagonal() * changes.transpose();
+  const auto changes = usual_changes(image_from_pad, frame_px, turn_rad, shift);
+  return changes * changes.transpose();
+}
+
+// The likeliest motion of the camera under the usual ones is what moved the view.
+PoseChange carried(const PoseChange& velocity,
+                   const Eigen::Matrix3d& from,
+                   const Eigen::Matrix3d& to,
+                   const Eigen::Vector2d& frame_px,
+                   double turn_rad,
+                   double shift) {
+  const auto here = usual_changes(from, frame_px, turn_rad, shift);
+  const auto there = usual_changes(to, frame_px, turn_rad, shift);
+  Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
+  normal.diagonal().array() += kLeast;
+  const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
+  return velocity + (there - here) * motion;
 }
 
 PoseMotion PoseMotion::after(double frames, const PoseCovariance& noise_per_frame) const {

@@ -5,6 +5,17 @@
 
 namespace ellipse {
 
+/// The same motion of the camera, seen from another view of the pad: a pad that leaves the picture
+/// grows longer and longer, though the camera moves evenly.
+/// @param velocity  As change of the view `from` per frame. What no camera can do stays as it is.
+/// Parameters as for camera_noise().
+[[nodiscard]] PoseChange carried(const PoseChange& velocity,
+                                 const Eigen::Matrix3d& from,
+                                 const Eigen::Matrix3d& to,
+                                 const Eigen::Vector2d& frame_px,
+                                 double turn_rad,
+                                 double shift);
+
 /// What is known of a view that moves: how certain it is, and its velocity. A Kalman filter
 /// [Kalman1960] whose state is the view's change and that change per frame. A value.
 struct PoseMotion {
