@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "gst/blend.hpp"
 #include "gst/overlay.hpp"
 #include "gst/video_view.hpp"
 
@@ -35,6 +36,9 @@ struct _GstEllipseOverlay {
   // Under the object lock.
   OverlayStyle* style;
   gboolean shows_truth;
+
+  // The streaming thread's.
+  Overlay* overlay;
 };
 
 G_DEFINE_TYPE(GstEllipseOverlay, gst_ellipse_overlay, GST_TYPE_VIDEO_FILTER)
@@ -76,20 +80,33 @@ static void gst_ellipse_overlay_get_property(GObject* object,
   GST_OBJECT_UNLOCK(self);
 }
 
-static void draw_all(GstVideoFrame& frame, const OverlayStyle& style, bool shows_truth) {
+static void draw_all(Overlay& overlay,
+                     GstBuffer* buffer,
+                     const OverlayStyle& style,
+                     bool shows_truth) {
   OverlayStyle truth_style = style;
   truth_style.color_argb = kTruthColor;
   const OverlayStyle candidate_style{
       GST_ELLIPSE_OVERLAY_ELLIPSE, kCandidateColor, std::max(1U, style.line_width_px / 2)};
   gpointer state = nullptr;
-  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(frame.buffer, &state)) {
+  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
     if (meta->role == GST_ELLIPSE_ROLE_TRUTH) {
-      if (shows_truth) draw_overlay(frame, *meta, truth_style);
+      if (shows_truth) overlay.draw(*meta, truth_style);
     } else if (meta->role == GST_ELLIPSE_ROLE_CANDIDATE) {
-      draw_overlay(frame, *meta, candidate_style);
+      overlay.draw(*meta, candidate_style);
     } else {
-      draw_overlay(frame, *meta, style);
+      overlay.draw(*meta, style);
     }
+  }
+}
+
+static void show(GstEllipseOverlay* self, GstBuffer* buffer) {
+  MappedFrame mapped(GST_VIDEO_FILTER(self)->in_info, buffer, GST_MAP_READWRITE);
+  if (mapped.is_mapped()) {
+    blend(self->overlay->canvas(), mapped.frame());
+  } else {
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
   }
 }
 
@@ -100,16 +117,11 @@ static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, Gs
   const bool shows_truth = self->shows_truth != FALSE;
   GST_OBJECT_UNLOCK(self);
 
-  gpointer state = nullptr;
-  if (gst_buffer_iterate_ellipse_meta(buffer, &state) == nullptr) return GST_FLOW_OK;
-  MappedFrame mapped(GST_VIDEO_FILTER(base)->in_info, buffer, GST_MAP_READWRITE);
-  if (!mapped.is_mapped()) {
-    GST_ELEMENT_WARNING(
-        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
-    return GST_FLOW_OK;
-  }
+  const GstVideoInfo& info = GST_VIDEO_FILTER(base)->in_info;
   try {
-    draw_all(mapped.frame(), style, shows_truth);
+    self->overlay->begin(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+    draw_all(*self->overlay, buffer, style, shows_truth);
+    if (!self->overlay->canvas().tiles().empty()) show(self, buffer);
   } catch (const std::exception& error) {
     GST_ELEMENT_WARNING(
         self, STREAM, FAILED, ("A frame could not be drawn on: %s", error.what()), ("it passes"));
@@ -126,13 +138,16 @@ static gboolean gst_ellipse_overlay_propose_allocation(GstBaseTransform* base,
 }
 
 static void gst_ellipse_overlay_finalize(GObject* object) {
-  delete GST_ELLIPSE_OVERLAY(object)->style;
+  auto* self = GST_ELLIPSE_OVERLAY(object);
+  delete self->overlay;
+  delete self->style;
   G_OBJECT_CLASS(gst_ellipse_overlay_parent_class)->finalize(object);
 }
 
 static void gst_ellipse_overlay_init(GstEllipseOverlay* self) {
   self->style = new OverlayStyle();
   self->style->parts = kDefaultParts;
+  self->overlay = new Overlay();
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
 }
 
