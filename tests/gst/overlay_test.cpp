@@ -157,8 +157,8 @@ TEST(EllipseOverlay, CoversTheWholeLineInEachFormat) {
   }
 }
 
-// Of a red line, where it is wide enough to cover all that shares a sample: both standards and both
-// ranges, by their definitions.
+// Of a red line that is wide enough to cover all that shares a sample, also at the border, where
+// less shares it: both standards and both ranges, by their definitions.
 TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
   struct Case {
     const char* colorimetry;
@@ -170,16 +170,16 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
                              {"1:3:5:1", {54, 99, 255}}};
   for (const char* format : kFormats) {
     for (const Case& of : kCases) {
-      const GstVideoInfo info = info_of(format, 96, 96);
+      const GstVideoInfo info = info_of(format, 97, 97);
       if (!GST_VIDEO_INFO_IS_YUV(&info)) continue;
-      const std::string caps = caps_of(format, 96, 96) + ",colorimetry=" + of.colorimetry;
+      const std::string caps = caps_of(format, 97, 97) + ",colorimetry=" + of.colorimetry;
       const auto harness = harness_of(
           "ellipseoverlay overlay=ellipse line-width=20 overlay-color=0xffff0000", caps, caps);
-      auto buffer = even_buffer(format, 96, 96);
-      add_ellipse(buffer.get(), {48.0, 48.0, 30.0, 30.0, 0.0});
+      auto buffer = even_buffer(format, 97, 97);
+      add_ellipse(buffer.get(), {66.0, 48.0, 30.0, 30.0, 0.0});
       const Bytes bytes = bytes_of(push(harness, std::move(buffer)).get());
       for (const Sample& sample : samples_of(info)) {
-        if (!sample.block.contains(78, 48)) continue;
+        if (!sample.block.contains(96, 48)) continue;
         EXPECT_EQ(bytes[sample.at], of.yuv[sample.component])
             << format << ' ' << of.colorimetry << ' ' << sample.component;
       }
@@ -253,6 +253,20 @@ TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
           << format << ' ' << size;
     }
   }
+}
+
+TEST(EllipseOverlay, ShowsNothingOfTheFrameBefore) {
+  const std::string caps = caps_of("GRAY8", 320, 240);
+  const auto harness = harness_of("ellipseoverlay", caps, caps);
+  const auto frame_with = [&](const Ellipse& e) {
+    auto buffer = even_buffer("GRAY8", 320, 240);
+    add_ellipse(buffer.get(), e);
+    return bytes_of(push(harness, std::move(buffer)).get());
+  };
+  const Ellipse e{200.0, 120.0, 40.0, 30.0, 0.0};
+  const Bytes alone = frame_with(e);
+  EXPECT_NE(frame_with({90.0, 70.0, 60.0, 50.0, 0.3}), alone);
+  EXPECT_EQ(frame_with(e), alone);
 }
 
 TEST(EllipseOverlay, RowsMayBeFarApart) {
@@ -354,7 +368,7 @@ Touched touched_by_label(int width, int height, const Ellipse& e) {
 }
 
 TEST(EllipseOverlay, LabelStaysInTheFrameAndOffTheCentre) {
-  for (const double radius : {10.0, 45.0, 99.0}) {
+  for (const double radius : {10.0, 45.0, 99.0, 230.0}) {
     const Touched free = touched_by_label(960, 240, {480.0, 100.0, radius, radius, 0.0});
     ASSERT_GT(free.count, 0);
     for (int cy = -20; cy <= 260; cy += 4) {
@@ -529,6 +543,17 @@ TEST(EllipseOverlay, ComposesOverWhatIsThereAlready) {
   };
   EXPECT_EQ(rectangles("ellipseoverlay overlay=ellipse"), 1U);
   EXPECT_EQ(rectangles("ellipseoverlay overlay=ellipse ! ellipseoverlay overlay=centre"), 2U);
+}
+
+TEST(EllipseOverlay, NeverLosesWhatUpstreamComposes) {
+  const Owned<GstHarness> harness(gst_harness_new("ellipseoverlay"));
+  gst_harness_set_sink_caps_str(harness.get(), caps_of("I420", 64, 64).c_str());
+  gst_harness_set_src_caps_str(
+      harness.get(),
+      "video/x-raw(memory:SystemMemory, meta:GstVideoOverlayComposition),format=I420,width=64,"
+      "height=64,framerate=30/1");
+  EXPECT_EQ(gst_harness_push(harness.get(), even_buffer("I420", 64, 64).release()),
+            GST_FLOW_NOT_NEGOTIATED);
 }
 
 TEST(EllipseOverlay, FollowsDownstreamWhenItChangesItsMind) {
