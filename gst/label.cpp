@@ -57,7 +57,7 @@ std::optional<Label> make_label(std::string text, int frame_width, int frame_hei
     return cv::getTextSize(text, kFont, scale, stroke_px(scale), &baseline).width +
            2 * side_margin_px(scale);
   };
-  double scale = std::max(0.4, frame_height / (50.0 * kCapitalPx));
+  double scale = (5.0 + frame_height / 60.0) / kCapitalPx;
   const int wanted = width_at(scale);
   if (wanted > frame_width) scale *= static_cast<double>(frame_width) / wanted;
   const int width = width_at(scale);

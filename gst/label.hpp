@@ -16,8 +16,8 @@ struct Label {
   ellipse::Rect box{};  ///< With its margins [px].
 };
 
-/// Measures a text for a frame of this size: capitals of a fiftieth of its height, at least 8 px,
-/// and less where the text would be too wide. nullopt where it could not be read.
+/// Measures a text for a frame of this size: capitals of 5 px and a sixtieth of its height, and
+/// less where the text would be too wide. nullopt where it could not be read.
 [[nodiscard]] std::optional<Label> make_label(std::string text, int frame_width, int frame_height);
 
 /// Where the label's box goes in a frame: below the ellipse, else above it, else at the frame's
