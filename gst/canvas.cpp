@@ -34,18 +34,19 @@ void wipe(Canvas::Tile& tile) {
 }  // namespace
 
 void Canvas::clear(int width, int height) {
-  paint(0U);  // what is covered still
+  paint(0U);  // takes away what a drawing that was broken off has covered
   for (const auto& tile : tiles()) {
     cell_at(tile->x, tile->y) = nullptr;
     wipe(*tile);
   }
   used_ = 0;
   if (width == width_ && height == height_) return;
+  const int columns = (width + kTileSize - 1) / kTileSize;
+  const int rows = (height + kTileSize - 1) / kTileSize;
+  cells_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), nullptr);
+  columns_ = columns;
   width_ = width;
   height_ = height;
-  columns_ = (width + kTileSize - 1) / kTileSize;
-  const int rows = (height + kTileSize - 1) / kTileSize;
-  cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows), nullptr);
 }
 
 Canvas::Tile* Canvas::add_tile(int x, int y) {
