@@ -65,7 +65,7 @@ guint8 mixed(guint8 sample, const Mix& mix, const Sum& sum, int pixels) {
                      mix.green * static_cast<float>(sum.green) +
                      mix.blue * static_cast<float>(sum.blue);
   const float level = under + (over + (mix.offset - under) * alpha) / static_cast<float>(pixels);
-  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
+  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);  // lround would be a call
 }
 
 // The samples of one component, each of which a block of pixels shares.
@@ -97,7 +97,9 @@ class Plane {
       const int right = std::min(columns, left + (1 << x_shift_));
       Sum sum;
       for (int row = top; row < bottom; ++row) {
-        for (int column = left; column < right; ++column) sum.add(tile.pixel(column, row));
+        for (int column = left; column < right; ++column) {
+          sum.add(tile.pixels[Canvas::Tile::index(column, row)]);
+        }
       }
       if (sum.alpha == 0) continue;
       guint8& sample = samples[std::ptrdiff_t{(tile.x + left) >> x_shift_} * pixel_stride_];

@@ -25,8 +25,8 @@ std::uint32_t premultiplied(std::uint32_t argb) {
 void wipe(Canvas::Tile& tile) {
   for (int row = 0; row < Canvas::kTileSize; ++row) {
     const Canvas::Span& span = tile.drawn[static_cast<std::size_t>(row)];
-    const auto first = tile.pixels.begin() + row * Canvas::kTileSize;
-    if (span.begin < span.end) std::fill(first + span.begin, first + span.end, 0U);
+    if (span.begin >= span.end) continue;
+    std::fill_n(&tile.pixels[Canvas::Tile::index(span.begin, row)], span.end - span.begin, 0U);
   }
   tile.drawn.fill({});
 }
@@ -41,9 +41,9 @@ void Canvas::clear(int width, int height) {
   }
   used_ = 0;
   if (width == width_ && height == height_) return;
-  const int columns = (width + kTileSize - 1) / kTileSize;
-  const int rows = (height + kTileSize - 1) / kTileSize;
-  cells_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), nullptr);
+  const auto columns = static_cast<std::size_t>((width + kTileSize - 1) / kTileSize);
+  const auto rows = static_cast<std::size_t>((height + kTileSize - 1) / kTileSize);
+  cells_.assign(columns * rows, nullptr);
   columns_ = columns;
   width_ = width;
   height_ = height;
@@ -63,7 +63,7 @@ void Canvas::cover(int x, int y, std::uint8_t level) {
   if (cell == nullptr) cell = add_tile(x, y);
   const int column = x - cell->x;
   const int row = y - cell->y;
-  std::uint8_t& coverage = cell->coverage[static_cast<std::size_t>(row * kTileSize + column)];
+  std::uint8_t& coverage = cell->coverage[Tile::index(column, row)];
   coverage = std::max(coverage, level);
   cell->covered[static_cast<std::size_t>(row)].add({column, column + 1});
 }
@@ -90,7 +90,7 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
       const Vector2d d = Vector2d(x, y) - from;
       const double distance = (d - std::clamp(d.dot(along), 0.0, length) * along).norm();
       const double share = std::clamp(reach - distance, 0.0, most_share);
-      cover(x, y, static_cast<std::uint8_t>(255.0 * share + 0.5));
+      cover(x, y, static_cast<std::uint8_t>(255.0 * share + 0.5));  // lround would be a call
     }
   }
 }
@@ -98,18 +98,16 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
 void Canvas::paint(std::uint32_t argb) {
   const std::uint32_t color = premultiplied(argb);
   for (const auto& tile : tiles()) {
-    for (std::size_t row = 0; row < kTileSize; ++row) {
-      Span& span = tile->covered[row];
-      const std::size_t first = row * kTileSize;
-      for (auto i = first + static_cast<std::size_t>(span.begin);
-           i < first + static_cast<std::size_t>(span.end);
-           ++i) {
+    for (int row = 0; row < kTileSize; ++row) {
+      Span& span = tile->covered[static_cast<std::size_t>(row)];
+      for (int column = span.begin; column < span.end; ++column) {
+        const std::size_t i = Tile::index(column, row);
         if (tile->coverage[i] == 0) continue;
         const std::uint32_t over = scaled(color, tile->coverage[i]);
         tile->pixels[i] = over + scaled(tile->pixels[i], 255U - (over >> 24U));
         tile->coverage[i] = 0;
       }
-      tile->drawn[row].add(span);
+      tile->drawn[static_cast<std::size_t>(row)].add(span);
       span = {};
     }
   }

@@ -19,6 +19,8 @@ class Canvas {
  public:
   static constexpr int kTileSize = 64;  ///< [px]. A multiple of every block of chroma.
 
+  static constexpr std::size_t kTilePixels = std::size_t{kTileSize} * kTileSize;
+
   /// A part of a tile's row, empty where end <= begin.
   struct Span {
     int begin = kTileSize;
@@ -36,11 +38,12 @@ class Canvas {
     int y = 0;
     Spans drawn;  ///< Outside of these all pixels are transparent.
     Spans covered;
-    std::array<std::uint32_t, kTileSize * kTileSize> pixels{};  ///< 0xAARRGGBB, premultiplied.
-    std::array<std::uint8_t, kTileSize * kTileSize> coverage{};
+    std::array<std::uint32_t, kTilePixels> pixels{};  ///< 0xAARRGGBB, premultiplied.
+    std::array<std::uint8_t, kTilePixels> coverage{};
 
-    [[nodiscard]] std::uint32_t pixel(int column, int row) const {
-      return pixels[static_cast<std::size_t>(row * kTileSize + column)];
+    /// Of a pixel in `pixels` and `coverage`.
+    [[nodiscard]] static constexpr std::size_t index(int column, int row) {
+      return static_cast<std::size_t>(row) * kTileSize + static_cast<std::size_t>(column);
     }
   };
 
@@ -66,13 +69,14 @@ class Canvas {
 
  private:
   [[nodiscard]] Tile*& cell_at(int x, int y) {
-    return cells_[static_cast<std::size_t>(y / kTileSize * columns_ + x / kTileSize)];
+    return cells_[static_cast<std::size_t>(y / kTileSize) * columns_ +
+                  static_cast<std::size_t>(x / kTileSize)];
   }
   Tile* add_tile(int x, int y);
 
   int width_ = 0;
   int height_ = 0;
-  int columns_ = 0;
+  std::size_t columns_ = 0;
   std::vector<Tile*> cells_;                  // row by row; null where nothing was drawn
   std::vector<std::unique_ptr<Tile>> tiles_;  // those in use first
   std::size_t used_ = 0;

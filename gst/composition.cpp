@@ -51,7 +51,7 @@ void copy_pixels(const Block& block, guint8* to) {
       if (span.begin >= span.end) continue;
       std::memcpy(to + (tile->y + row - block.top) * stride +
                       std::ptrdiff_t{4} * (tile->x + span.begin - block.left),
-                  &tile->pixels[static_cast<std::size_t>(row * Canvas::kTileSize + span.begin)],
+                  &tile->pixels[Canvas::Tile::index(span.begin, row)],
                   4U * static_cast<std::size_t>(span.end - span.begin));
     }
   }
