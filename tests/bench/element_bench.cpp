@@ -156,7 +156,7 @@ void add_overlays() {
                                  (is_composed ? "/composed" : "/drawn");
         benchmark::RegisterBenchmark(
             name.c_str(), [=](State& state) { run_overlay(state, format, parts, is_composed); })
-            ->Iterations(2000)
+            ->Iterations(500)
             ->UseManualTime()
             ->Unit(benchmark::kMicrosecond);
       }
