@@ -8,6 +8,9 @@
  * can stand after a tee, a scaler or a decoder that keeps metadata. A buffer without an ellipse
  * passes untouched.
  *
+ * Where downstream lays overlays over the picture by itself, as sinks on a GPU do, the drawing
+ * travels beside the pixels as #GstVideoOverlayCompositionMeta; elsewhere it goes into them.
+ *
  * |[
  * gst-launch-1.0 ellipsetestsrc ! ellipsetrack ! videoscale ! video/x-raw,width=1280,height=720 \
  *     ! ellipseoverlay ! videoconvert ! autovideosink
@@ -19,6 +22,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "gst/blend.hpp"
+#include "gst/composition.hpp"
 #include "gst/overlay.hpp"
 #include "gst/video_view.hpp"
 
@@ -35,6 +40,10 @@ struct _GstEllipseOverlay {
   // Under the object lock.
   OverlayStyle* style;
   gboolean shows_truth;
+
+  // The streaming thread's.
+  Overlay* overlay;
+  bool composes;  // downstream lays the overlay over the picture
 };
 
 G_DEFINE_TYPE(GstEllipseOverlay, gst_ellipse_overlay, GST_TYPE_VIDEO_FILTER)
@@ -76,20 +85,117 @@ static void gst_ellipse_overlay_get_property(GObject* object,
   GST_OBJECT_UNLOCK(self);
 }
 
-static void draw_all(GstVideoFrame& frame, const OverlayStyle& style, bool shows_truth) {
+/* Whether to draw into the pixels or beside them */
+
+static bool has_composition(const GstCapsFeatures* features) {
+  return gst_caps_features_contains(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+}
+
+// Adds one of the caps' structures with the feature, or without it.
+static void append(GstCaps* to, GstCaps* from, guint index, bool is_composed) {
+  GstCapsFeatures* features = gst_caps_features_copy(gst_caps_get_features(from, index));
+  if (is_composed && !has_composition(features)) {
+    gst_caps_features_add(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+  } else if (!is_composed) {
+    gst_caps_features_remove(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+  }
+  gst_caps_append_structure_full(
+      to, gst_structure_copy(gst_caps_get_structure(from, index)), features);
+}
+
+// Pictures may get the feature on their way downstream, and never lose it.
+static GstCaps* gst_ellipse_overlay_transform_caps(GstBaseTransform*,
+                                                   GstPadDirection direction,
+                                                   GstCaps* caps,
+                                                   GstCaps* filter) {
+  GstCaps* result = gst_caps_new_empty();
+  for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
+    const bool is_composed = has_composition(gst_caps_get_features(caps, i));
+    if (direction == GST_PAD_SINK || is_composed) append(result, caps, i, true);
+    if (direction == GST_PAD_SRC || !is_composed) append(result, caps, i, false);
+  }
+  if (filter == nullptr) return result;
+  GstCaps* filtered = gst_caps_intersect_full(filter, result, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(result);
+  return filtered;
+}
+
+// Takes the first of the caps that has the feature, or has it not. NULL where there is none.
+static GstCaps* first_of(GstCaps* caps, bool is_composed) {
+  for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
+    if (has_composition(gst_caps_get_features(caps, i)) != is_composed) continue;
+    return gst_caps_fixate(gst_caps_copy_nth(caps, i));
+  }
+  return nullptr;
+}
+
+static bool downstream_composes(GstBaseTransform* base, GstCaps* caps) {
+  // Some elements answer for caps only that they have.
+  if (!gst_pad_set_caps(GST_BASE_TRANSFORM_SRC_PAD(base), caps)) return false;
+  GstQuery* query = gst_query_new_allocation(caps, FALSE);
+  const bool composes = gst_pad_peer_query(GST_BASE_TRANSFORM_SRC_PAD(base), query) &&
+                        gst_query_find_allocation_meta(
+                            query, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr) != FALSE;
+  gst_query_unref(query);
+  return composes;
+}
+
+// Like textoverlay: beside the pixels where downstream has the feature in its caps and also asks
+// for the metadata. The metadata alone would not do: scalers pass it on and leave it unscaled.
+static GstCaps* gst_ellipse_overlay_fixate_caps(GstBaseTransform* base,
+                                                GstPadDirection direction,
+                                                GstCaps* caps,
+                                                GstCaps* othercaps) {
+  auto* self = GST_ELLIPSE_OVERLAY(base);
+  if (direction == GST_PAD_SRC) {
+    return GST_BASE_TRANSFORM_CLASS(gst_ellipse_overlay_parent_class)
+        ->fixate_caps(base, direction, caps, othercaps);
+  }
+  GstCaps* composed = first_of(othercaps, true);
+  GstCaps* plain = first_of(othercaps, false);
+  gst_caps_unref(othercaps);
+  self->composes = composed != nullptr && downstream_composes(base, composed);
+  if (composed != nullptr && (self->composes || plain == nullptr)) {
+    gst_clear_caps(&plain);
+    return composed;
+  }
+  gst_clear_caps(&composed);
+  return plain;
+}
+
+/* Drawing */
+
+static void draw_all(Overlay& overlay,
+                     GstBuffer* buffer,
+                     const OverlayStyle& style,
+                     bool shows_truth) {
   OverlayStyle truth_style = style;
   truth_style.color_argb = kTruthColor;
   const OverlayStyle candidate_style{
       GST_ELLIPSE_OVERLAY_ELLIPSE, kCandidateColor, std::max(1U, style.line_width_px / 2)};
   gpointer state = nullptr;
-  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(frame.buffer, &state)) {
+  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
     if (meta->role == GST_ELLIPSE_ROLE_TRUTH) {
-      if (shows_truth) draw_overlay(frame, *meta, truth_style);
+      if (shows_truth) overlay.draw(*meta, truth_style);
     } else if (meta->role == GST_ELLIPSE_ROLE_CANDIDATE) {
-      draw_overlay(frame, *meta, candidate_style);
+      overlay.draw(*meta, candidate_style);
     } else {
-      draw_overlay(frame, *meta, style);
+      overlay.draw(*meta, style);
     }
+  }
+}
+
+static void show(GstEllipseOverlay* self, GstBuffer* buffer) {
+  if (self->composes) {
+    attach_composition(buffer, self->overlay->canvas());
+    return;
+  }
+  MappedFrame mapped(GST_VIDEO_FILTER(self)->in_info, buffer, GST_MAP_READWRITE);
+  if (mapped.is_mapped()) {
+    blend(self->overlay->canvas(), mapped.frame());
+  } else {
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
   }
 }
 
@@ -100,16 +206,11 @@ static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, Gs
   const bool shows_truth = self->shows_truth != FALSE;
   GST_OBJECT_UNLOCK(self);
 
-  gpointer state = nullptr;
-  if (gst_buffer_iterate_ellipse_meta(buffer, &state) == nullptr) return GST_FLOW_OK;
-  MappedFrame mapped(GST_VIDEO_FILTER(base)->in_info, buffer, GST_MAP_READWRITE);
-  if (!mapped.is_mapped()) {
-    GST_ELEMENT_WARNING(
-        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
-    return GST_FLOW_OK;
-  }
+  const GstVideoInfo& info = GST_VIDEO_FILTER(base)->in_info;
   try {
-    draw_all(mapped.frame(), style, shows_truth);
+    self->overlay->begin(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+    draw_all(*self->overlay, buffer, style, shows_truth);
+    if (!self->overlay->canvas().tiles().empty()) show(self, buffer);
   } catch (const std::exception& error) {
     GST_ELEMENT_WARNING(
         self, STREAM, FAILED, ("A frame could not be drawn on: %s", error.what()), ("it passes"));
@@ -126,13 +227,16 @@ static gboolean gst_ellipse_overlay_propose_allocation(GstBaseTransform* base,
 }
 
 static void gst_ellipse_overlay_finalize(GObject* object) {
-  delete GST_ELLIPSE_OVERLAY(object)->style;
+  auto* self = GST_ELLIPSE_OVERLAY(object);
+  delete self->overlay;
+  delete self->style;
   G_OBJECT_CLASS(gst_ellipse_overlay_parent_class)->finalize(object);
 }
 
 static void gst_ellipse_overlay_init(GstEllipseOverlay* self) {
   self->style = new OverlayStyle();
   self->style->parts = kDefaultParts;
+  self->overlay = new Overlay();
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
 }
 
@@ -158,9 +262,11 @@ static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
                                         "Filter/Effect/Video",
                                         "Draws the ellipses that buffers carry as metadata",
                                         "The gst-ellipse authors");
-  add_video_pad_templates(element_class);
+  add_composing_pad_templates(element_class);
 
   auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
   base_class->transform_ip = gst_ellipse_overlay_transform_ip;
+  base_class->transform_caps = gst_ellipse_overlay_transform_caps;
+  base_class->fixate_caps = gst_ellipse_overlay_fixate_caps;
   base_class->propose_allocation = gst_ellipse_overlay_propose_allocation;
 }

@@ -23,6 +23,7 @@
 #include <string>
 
 #include "core/tracker.hpp"
+#include "gst/blend.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/overlay.hpp"
 #include "gst/target_meta.hpp"
@@ -53,6 +54,7 @@ constexpr guint kMostLateFrames = 4;
 // What the streaming thread keeps from frame to frame.
 struct Stream {
   ellipse::Tracker tracker;
+  Overlay overlay;
   guint64 frame = 0;
   guint late_frames = 0;  // in a row
   std::optional<ellipse::Target> last_target;
@@ -282,6 +284,16 @@ static void skip(GstEllipseTrack* self) {
   GST_OBJECT_UNLOCK(self);
 }
 
+static void draw(GstEllipseTrack* self,
+                 GstVideoFrame& frame,
+                 const GstEllipseMeta& meta,
+                 const OverlayStyle& style) {
+  Overlay& overlay = self->stream->overlay;
+  overlay.begin(GST_VIDEO_FRAME_WIDTH(&frame), GST_VIDEO_FRAME_HEIGHT(&frame));
+  overlay.draw(meta, style);
+  blend(overlay.canvas(), frame);
+}
+
 static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const TrackProperties& properties) {
   const bool draws = properties.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
   MappedFrame mapped(
@@ -298,7 +310,7 @@ static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const TrackPropert
       tracker.process(pixel_view_of(mapped.frame()), static_cast<gint64>(GST_BUFFER_PTS(buffer)));
   const GstEllipseMeta* meta =
       publish(self, buffer, properties, target, gst_util_get_timestamp() - start);
-  if (draws && meta != nullptr) draw_overlay(mapped.frame(), *meta, properties.overlay);
+  if (draws && meta != nullptr) draw(self, mapped.frame(), *meta, properties.overlay);
 }
 
 static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {

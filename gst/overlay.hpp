@@ -2,41 +2,32 @@
 
 #include <gst/video/video.h>
 
+#include <vector>
+
+#include "core/image_view.hpp"
+#include "gst/canvas.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/overlay_style.hpp"
 
-G_BEGIN_DECLS
+/// What is drawn over one frame after another. Keeps its memory from frame to frame. Not
+/// thread-safe.
+class Overlay {
+ public:
+  /// Starts a frame of this size [px].
+  void begin(int width, int height);
 
-/// What is drawn of an ellipse.
-typedef enum {
-  GST_ELLIPSE_OVERLAY_NONE = 0,
-  GST_ELLIPSE_OVERLAY_ELLIPSE = 1 << 0,
-  GST_ELLIPSE_OVERLAY_AXES = 1 << 1,
-  GST_ELLIPSE_OVERLAY_CENTRE = 1 << 2,
-  GST_ELLIPSE_OVERLAY_ROI = 1 << 3,
-  GST_ELLIPSE_OVERLAY_LABEL = 1 << 4,
-} GstEllipseOverlayFlags;
+  /// Draws one ellipse, anti-aliased, clipped to the frame. One that is no picture's (NaN, axes the
+  /// wrong way round, beyond 1e5 px) is left out. A label is as large as the frame's height has it,
+  /// lies inside the frame, and covers neither the ellipse's centre nor another label; where there
+  /// is no room for one there is none.
+  void draw(const GstEllipseMeta& meta, const OverlayStyle& style);
 
-#define GST_TYPE_ELLIPSE_OVERLAY_FLAGS (gst_ellipse_overlay_flags_get_type())
-GType gst_ellipse_overlay_flags_get_type(void);
+  /// What was drawn since begin().
+  [[nodiscard]] const Canvas& canvas() const { return canvas_; }
 
-G_END_DECLS
+ private:
+  void draw_label(const GstEllipseMeta& meta, const OverlayStyle& style);
 
-/// How it is drawn.
-struct OverlayStyle {
-  GstEllipseOverlayFlags parts = GST_ELLIPSE_OVERLAY_NONE;
-  guint color_argb = 0xff00ff00;
-  guint line_width_px = 2;
+  Canvas canvas_;
+  std::vector<ellipse::Rect> taken_;  // where no label may come
 };
-
-/// The properties overlay, overlay-color and line-width, the same in every element that draws.
-/// They take the ids first_id to first_id + 2.
-void install_overlay_properties(GObjectClass* object_class,
-                                guint first_id,
-                                GstEllipseOverlayFlags default_parts);
-/// @param which  The property's id minus first_id.
-void set_overlay_property(OverlayStyle& style, guint which, const GValue* value);
-void get_overlay_property(const OverlayStyle& style, guint which, GValue* value);
-
-/// Draws one ellipse into a frame that is mapped for writing, in the frame's own 8-bit format,
-/// anti-aliased. Touches only the pixels around its lines. Clipped to the frame.
-void draw_overlay(GstVideoFrame& frame, const GstEllipseMeta& meta, const OverlayStyle& style);

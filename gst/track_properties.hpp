@@ -3,7 +3,7 @@
 #include <gst/gst.h>
 
 #include "core/tracker_settings.hpp"
-#include "gst/overlay.hpp"
+#include "gst/overlay_style.hpp"
 
 /// When an element message is posted.
 enum { MESSAGES_NONE, MESSAGES_ON_CHANGE, MESSAGES_EVERY_FRAME };

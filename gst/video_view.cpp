@@ -2,16 +2,27 @@
 #include "gst/video_view.hpp"
 
 #define VIDEO_CAPS GST_VIDEO_CAPS_MAKE(GST_ELLIPSE_VIDEO_FORMATS)
+#define COMPOSING_CAPS                                          \
+  VIDEO_CAPS ";" GST_VIDEO_CAPS_MAKE_WITH_FEATURES(             \
+      GST_CAPS_FEATURE_MEMORY_SYSTEM_MEMORY                     \
+      ", " GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION, \
+      GST_ELLIPSE_VIDEO_FORMATS)
 
-static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
-
-static GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
+static void add_pad_templates(GstElementClass* element_class, const char* description) {
+  GstCaps* caps = gst_caps_from_string(description);
+  gst_element_class_add_pad_template(
+      element_class, gst_pad_template_new("sink", GST_PAD_SINK, GST_PAD_ALWAYS, caps));
+  gst_element_class_add_pad_template(
+      element_class, gst_pad_template_new("src", GST_PAD_SRC, GST_PAD_ALWAYS, caps));
+  gst_caps_unref(caps);
+}
 
 void add_video_pad_templates(GstElementClass* element_class) {
-  gst_element_class_add_static_pad_template(element_class, &sink_template);
-  gst_element_class_add_static_pad_template(element_class, &src_template);
+  add_pad_templates(element_class, VIDEO_CAPS);
+}
+
+void add_composing_pad_templates(GstElementClass* element_class) {
+  add_pad_templates(element_class, COMPOSING_CAPS);
 }
 
 MappedFrame::MappedFrame(const GstVideoInfo& info, GstBuffer* buffer, GstMapFlags access)

@@ -12,6 +12,9 @@
 /// Gives an element class a sink and a source pad for these formats.
 void add_video_pad_templates(GstElementClass* element_class);
 
+/// The same, for an element that also knows pictures with an overlay beside their pixels.
+void add_composing_pad_templates(GstElementClass* element_class);
+
 /// A video buffer mapped while this lives. Takes no reference, so that metadata can be attached to
 /// the buffer meanwhile.
 class MappedFrame {

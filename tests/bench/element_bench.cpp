@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Whole elements from buffer to buffer, beside edges and contours alone. The row "identity" is what
-// the pads and the harness around an element cost.
+// Whole elements from buffer to buffer, beside edges and contours alone; overlays in a small frame
+// and in a large one. The rows "identity" and "ellipseoverlay/none" are what the pads and the
+// harness around an element cost.
 #include <gst/check/gstharness.h>
 
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -83,6 +85,85 @@ void add_elements() {
   }
 }
 
+// One buffer that goes through an overlay again and again, with the same ellipse in its middle.
+class OverlayLoop {
+ public:
+  OverlayLoop(const std::string& format, const bench::Size& size, bool is_composed)
+      : harness_(gst_harness_new("ellipseoverlay")),
+        buffer_(support::buffer_of(support::Picture(size.width, size.height, 90),
+                                   support::info_of(format, size.width, size.height))) {
+    if (is_composed) support::offer_composition(harness_.get());
+    gst_harness_set_src_caps_str(harness_.get(),
+                                 support::caps_of(format, size.width, size.height).c_str());
+    GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer_.get(), GST_ELLIPSE_ROLE_TARGET);
+    meta->id = 1;
+    meta->cx = size.width / 2.0;
+    meta->cy = size.height / 2.0;
+    meta->semi_major = 60.0;
+    meta->semi_minor = 45.0;
+    meta->angle_rad = 0.4;
+  }
+
+  void select(const char* parts) {
+    const Owned<GstElement> overlay(gst_harness_find_element(harness_.get(), "ellipseoverlay"));
+    gst_util_set_object_arg(G_OBJECT(overlay.get()), "overlay", parts);
+  }
+
+  double run_s() {
+    const auto start = std::chrono::steady_clock::now();
+    buffer_.reset(gst_harness_push_and_pull(harness_.get(), buffer_.release()));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    if (GstMeta* drawn =
+            gst_buffer_get_meta(buffer_.get(), GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE)) {
+      gst_buffer_remove_meta(buffer_.get(), drawn);
+    }
+    return elapsed.count();
+  }
+
+ private:
+  Owned<GstHarness> harness_;
+  Owned<GstBuffer> buffer_;
+};
+
+// The time is the small frame's; "ratio_4k" is what the large one takes, measured beside it.
+void run_overlay(State& state, const std::string& format, const char* parts, bool is_composed) {
+  OverlayLoop small(format, bench::kSizes.front(), is_composed);
+  OverlayLoop large(format, bench::kSizes.back(), is_composed);
+  for (OverlayLoop* loop : {&small, &large}) {
+    loop->select(parts);
+    for (int i = 0; i < 10; ++i) loop->run_s();
+  }
+  const bench::HeapMeter meter;
+  small.run_s();
+  const auto allocations = static_cast<double>(meter.allocations());
+  double small_s = 0.0;
+  double large_s = 0.0;
+  for (auto _ : state) {
+    const double elapsed_s = small.run_s();
+    state.SetIterationTime(elapsed_s);
+    small_s += elapsed_s;
+    large_s += large.run_s();
+  }
+  state.counters["ratio_4k"] = large_s / small_s;
+  state.counters["allocations"] = allocations;
+}
+
+void add_overlays() {
+  for (const char* parts : {"none", "ellipse", "ellipse+axes+centre+label"}) {
+    for (const char* format : {"I420", "BGRx"}) {
+      for (const bool is_composed : {false, true}) {
+        const std::string name = std::string("ellipseoverlay/") + parts + "/" + format +
+                                 (is_composed ? "/composed" : "/drawn");
+        benchmark::RegisterBenchmark(
+            name.c_str(), [=](State& state) { run_overlay(state, format, parts, is_composed); })
+            ->Iterations(500)
+            ->UseManualTime()
+            ->Unit(benchmark::kMicrosecond);
+      }
+    }
+  }
+}
+
 // Before 2.76 GLib keeps small pieces to itself, and the heap would seem to be at rest.
 bool counts_slices() {
   const bench::HeapMeter meter;
@@ -99,5 +180,6 @@ int main(int argc, char** argv) {
     return 1;
   }
   add_elements();
+  add_overlays();
   return bench::run_benchmarks(argc, argv);
 }

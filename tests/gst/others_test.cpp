@@ -1,134 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipseoverlay, ellipsejson and ellipsetestsrc.
+// ellipsejson and ellipsetestsrc.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 #include <string>
 
-#include "core/ellipse.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
 
+using support::add_circle;
 using support::buffer_of;
 using support::caps_of;
+using support::harness_of;
 using support::info_of;
 using support::object_of;
 using support::Owned;
 using support::Picture;
-
-Owned<GstHarness> harness_of(const std::string& element,
-                             const std::string& in,
-                             const std::string& out) {
-  Owned<GstHarness> harness(gst_harness_new_parse(element.c_str()));
-  gst_harness_set_caps_str(harness.get(), in.c_str(), out.c_str());
-  return harness;
-}
-
-void add_circle(GstBuffer* buffer, double cx, double cy, double radius) {
-  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
-  meta->id = 1;
-  meta->cx = cx;
-  meta->cy = cy;
-  meta->semi_major = radius;
-  meta->semi_minor = radius;
-  meta->roi_width = 10;
-  meta->roi_height = 10;
-}
-
-// The luma (or red) plane after an overlay has drawn on an even picture.
-Picture drawn(const std::string& format, int width, int height, const std::string& settings) {
-  const std::string caps = caps_of(format, width, height);
-  const auto harness = harness_of("ellipseoverlay " + settings, caps, caps);
-  auto buffer = buffer_of(Picture(width, height, 128), info_of(format, width, height));
-  add_circle(buffer.get(), width / 2.0, height / 2.0, 30.0);
-  const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-  const GstVideoInfo info = info_of(format, width, height);
-  GstVideoFrame frame;
-  gst_video_frame_map(&frame, &info, out.get(), GST_MAP_READ);
-  Picture picture(width, height);
-  for (int y = 0; y < height; ++y) {
-    const auto* row = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)) +
-                      std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0);
-    for (int x = 0; x < width; ++x) {
-      picture.at(x, y) = row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, 0)];
-    }
-  }
-  gst_video_frame_unmap(&frame);
-  return picture;
-}
-
-TEST(EllipseOverlay, DrawsOnTheEllipseAndNowhereElse) {
-  for (const char* format : {"GRAY8", "I420", "NV12", "YUY2", "BGR", "ARGB", "Y41B"}) {
-    const Picture picture = drawn(format, 161, 121, "overlay=ellipse overlay-color=0xffffffff");
-    const ellipse::Ellipse circle{80.5, 60.5, 30.0, 30.0, 0.0};
-    int on_line = 0;
-    for (int y = 0; y < 121; ++y) {
-      for (int x = 0; x < 161; ++x) {
-        const double d = std::abs(ellipse::sampson_distance(circle, {x, y}));
-        const int level = picture.view().row(y)[x];
-        if (d < 0.5) {
-          EXPECT_GT(level, 220) << format << ' ' << x << ' ' << y;
-          ++on_line;
-        } else if (d > 2.0) {
-          EXPECT_EQ(level, 128) << format << ' ' << x << ' ' << y;
-        }
-      }
-    }
-    EXPECT_GT(on_line, 150) << format;
-  }
-}
-
-TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
-  for (const int size : {1, 2, 3, 16}) {
-    const Picture picture = drawn("I420", size, size, "overlay=ellipse+axes+centre+roi+label");
-    EXPECT_EQ(picture.width, size);
-  }
-}
-
-TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
-  const std::string caps = caps_of("GRAY8", 64, 64);
-  const auto harness = harness_of("ellipseoverlay overlay=label", caps, caps);
-  auto buffer = buffer_of(Picture(64, 64, 50), info_of("GRAY8", 64, 64));
-  add_circle(buffer.get(), 32.0, 32.0, 10.0);
-  const gint foreign = 7;
-  std::memcpy(&gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->state,
-              &foreign,
-              sizeof foreign);
-  const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-  EXPECT_TRUE(out);
-}
-
-TEST(EllipseOverlay, TransparentColourDrawsNothing) {
-  const Picture picture = drawn("GRAY8", 100, 100, "overlay=ellipse overlay-color=0x00ffffff");
-  for (const auto level : picture.pixels) EXPECT_EQ(level, 128);
-}
-
-TEST(EllipseOverlay, LeavesBuffersWithoutEllipseAlone) {
-  const std::string caps = caps_of("GRAY8", 64, 64);
-  const auto harness = harness_of("ellipseoverlay", caps, caps);
-  auto buffer = buffer_of(Picture(64, 64, 50), info_of("GRAY8", 64, 64));
-  GstBuffer* same = gst_buffer_ref(buffer.get());
-  GstMemory* memory = gst_buffer_peek_memory(same, 0);
-  const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-  EXPECT_EQ(gst_buffer_peek_memory(out.get(), 0), memory);
-  gst_buffer_unref(same);
-}
-
-TEST(EllipseOverlay, SurvivesAbsurdEllipses) {
-  const std::string caps = caps_of("GRAY8", 64, 64);
-  const auto harness =
-      harness_of("ellipseoverlay overlay=ellipse+axes+centre+roi+label", caps, caps);
-  for (const double value : {std::nan(""), 1e300, -1e300, 0.0, 1e-300}) {
-    auto buffer = buffer_of(Picture(64, 64, 50), info_of("GRAY8", 64, 64));
-    add_circle(buffer.get(), value, 32.0, 10.0);
-    add_circle(buffer.get(), 32.0, 32.0, value);
-    const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-    EXPECT_TRUE(out);
-  }
-}
 
 TEST(EllipseJson, WritesALineAFrame) {
   const auto harness = harness_of("ellipsejson", caps_of("GRAY8", 64, 48), "application/x-ndjson");

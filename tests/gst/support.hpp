@@ -44,7 +44,8 @@ inline GstVideoInfo info_of(const std::string& format, int width, int height) {
 /// A buffer of any 8-bit format that shows a grey picture.
 inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& info) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
-  gst_buffer_memset(buffer, 0, 128, GST_VIDEO_INFO_SIZE(&info));
+  const guint8 neutral = GST_VIDEO_INFO_IS_RGB(&info) ? 255 : 128;  // opacity, or chroma
+  gst_buffer_memset(buffer, 0, neutral, GST_VIDEO_INFO_SIZE(&info));
   GstVideoFrame frame;
   gst_video_frame_map(&frame, &info, buffer, GST_MAP_WRITE);
   const guint components = GST_VIDEO_FORMAT_INFO_IS_RGB(info.finfo) ? 3 : 1;
@@ -65,6 +66,36 @@ inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& in
 
 inline Owned<GstBuffer> gray_buffer_of(const Picture& picture) {
   return buffer_of(picture, info_of("GRAY8", picture.width, picture.height));
+}
+
+/// One element, or several in a row, between two pads that are tested.
+inline Owned<GstHarness> harness_of(const std::string& element,
+                                    const std::string& in,
+                                    const std::string& out) {
+  Owned<GstHarness> harness(gst_harness_new_parse(element.c_str()));
+  gst_harness_set_caps_str(harness.get(), in.c_str(), out.c_str());
+  return harness;
+}
+
+/// As a target that is being followed.
+inline void add_circle(GstBuffer* buffer, double cx, double cy, double radius) {
+  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  meta->id = 1;
+  meta->state = GST_ELLIPSE_STATE_TRACKED;
+  meta->cx = cx;
+  meta->cy = cy;
+  meta->semi_major = radius;
+  meta->semi_minor = radius;
+  meta->roi_width = 10;
+  meta->roi_height = 10;
+}
+
+/// Makes what is downstream of an element take any picture, and overlays beside it.
+inline void offer_composition(GstHarness* harness) {
+  gst_harness_set_sink_caps_str(
+      harness, "video/x-raw(memory:SystemMemory, meta:GstVideoOverlayComposition); video/x-raw");
+  gst_harness_add_propose_allocation_meta(
+      harness, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
 }
 
 /// One message of a type from an element that has a bus of its own, or nothing.
