@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/ellipse.hpp"
+#include "gst/ellipse/gstellipsesearchmeta.h"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -186,6 +187,24 @@ TEST(EllipseMeta, JsonIsOneValidObjectWithoutNaN) {
   EXPECT_TRUE(json_object_get_null_member(object, "contour_overlap"));
   EXPECT_EQ(std::strchr(text, '\n'), nullptr);
   g_free(text);
+}
+
+TEST(EllipseSearchMeta, LivesAsLongAsTheEllipses) {
+  const auto buffer = empty_buffer();
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(buffer.get()), nullptr);
+  gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  const Owned<GstBuffer> copy(gst_buffer_copy(buffer.get()));
+  const Owned<GstBuffer> part(gst_buffer_copy_region(
+      buffer.get(), static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_ALL), 0, 8));
+  ASSERT_NE(gst_buffer_get_ellipse_search_meta(copy.get()), nullptr);
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(copy.get())->processing_time, 250U);
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(part.get()), nullptr);
+  for (guint i = 0; gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i] != nullptr; ++i) {
+    const gchar* tag = gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i];
+    EXPECT_TRUE(
+        gst_meta_api_type_has_tag(GST_ELLIPSE_SEARCH_META_API_TYPE, g_quark_from_string(tag)))
+        << tag;
+  }
 }
 
 TEST(EllipseMeta, NamesRoleAndState) {

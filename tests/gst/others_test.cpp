@@ -45,19 +45,7 @@ Picture drawn(const std::string& format, int width, int height, const std::strin
   auto buffer = buffer_of(Picture(width, height, 128), info_of(format, width, height));
   add_circle(buffer.get(), width / 2.0, height / 2.0, 30.0);
   const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-  const GstVideoInfo info = info_of(format, width, height);
-  GstVideoFrame frame;
-  gst_video_frame_map(&frame, &info, out.get(), GST_MAP_READ);
-  Picture picture(width, height);
-  for (int y = 0; y < height; ++y) {
-    const auto* row = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)) +
-                      std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0);
-    for (int x = 0; x < width; ++x) {
-      picture.at(x, y) = row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, 0)];
-    }
-  }
-  gst_video_frame_unmap(&frame);
-  return picture;
+  return support::picture_of(out.get(), info_of(format, width, height));
 }
 
 TEST(EllipseOverlay, DrawsOnTheEllipseAndNowhereElse) {
@@ -150,6 +138,21 @@ TEST(EllipseJson, WritesALineAFrame) {
   EXPECT_NE(text.find("{\"frame\":1,\"pts_ns\":40000000,"), std::string::npos);
   EXPECT_NE(text.find("\"cx\":32.2500,\"cy\":24.5000,\"semi_major\":10.0000"), std::string::npos);
   EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(EllipseJson, TellsAFruitlessSearchFromNone) {
+  const support::TemporaryFolder folder;
+  ASSERT_EQ(support::run_pipeline("ellipsetestsrc scene=negative ground=plain num-buffers=4 ! "
+                                  "ellipsetrack interval=2 ! ellipsejson ! filesink location=" +
+                                  folder.file("lines")),
+            "");
+  const auto lines = support::read_ndjson(folder.file("lines"));
+  ASSERT_EQ(lines.size(), 4U);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    JsonObject* line = object_of(lines[i]);
+    EXPECT_EQ(json_array_get_length(json_object_get_array_member(line, "targets")), 0U) << i;
+    EXPECT_EQ(json_object_get_null_member(line, "processing_ns"), i % 2 == 1) << i;
+  }
 }
 
 TEST(EllipseJson, TakesAnyRawVideo) {

@@ -67,6 +67,22 @@ inline Owned<GstBuffer> gray_buffer_of(const Picture& picture) {
   return buffer_of(picture, info_of("GRAY8", picture.width, picture.height));
 }
 
+/// The first component of a buffer, its luma or a colour of a grey picture.
+inline Picture picture_of(GstBuffer* buffer, const GstVideoInfo& info) {
+  Picture picture(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+  GstVideoFrame frame;
+  if (!gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ)) return picture;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto* row = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)) +
+                      std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0);
+    for (int x = 0; x < picture.width; ++x) {
+      picture.at(x, y) = row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, 0)];
+    }
+  }
+  gst_video_frame_unmap(&frame);
+  return picture;
+}
+
 /// One message of a type from an element that has a bus of its own, or nothing.
 class BusTap {
  public:
