@@ -127,10 +127,7 @@ TEST(EllipseJson, WritesALineAFrame) {
     GST_BUFFER_PTS(buffer.get()) = static_cast<guint64>(i) * 40 * GST_MSECOND;
     const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
     EXPECT_EQ(GST_BUFFER_PTS(out.get()), static_cast<guint64>(i) * 40 * GST_MSECOND);
-    GstMapInfo map;
-    gst_buffer_map(out.get(), &map, GST_MAP_READ);
-    text.append(reinterpret_cast<const char*>(map.data), map.size);
-    gst_buffer_unmap(out.get(), &map);
+    text += support::bytes_of(out.get());
   }
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "{\"frame\":0,\"pts_ns\":0,\"width\":64,\"height\":48,\"processing_ns\":null,"
@@ -172,11 +169,7 @@ Owned<GstBuffer> first_frame(const std::string& settings, const std::string& cap
 }
 
 std::string bytes_of(const Owned<GstBuffer>& buffer) {
-  GstMapInfo map;
-  gst_buffer_map(buffer.get(), &map, GST_MAP_READ);
-  std::string bytes(reinterpret_cast<const char*>(map.data), map.size);
-  gst_buffer_unmap(buffer.get(), &map);
-  return bytes;
+  return support::bytes_of(buffer.get());
 }
 
 TEST(EllipseTestSrc, CarriesTheTruth) {
