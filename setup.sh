@@ -27,6 +27,10 @@ esac
 if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev
+    # what the metadata is sent through, and what carries the JSON lines
+    gstreamer1.0-plugins-bad gstreamer1.0-plugins-ugly gstreamer1.0-x
+    mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
+    locales  # numbers with a comma
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
   )
 fi

@@ -17,6 +17,7 @@
 #include <gst/video/video.h>
 
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/ellipse/gstellipsesearchmeta.h"
 
 struct _GstEllipseJson {
   GstBaseTransform parent;
@@ -69,9 +70,9 @@ static GString* line_of(GstEllipseJson* self, GstBuffer* buffer) {
                          ",\"width\":%d,\"height\":%d",
                          GST_VIDEO_INFO_WIDTH(&self->info),
                          GST_VIDEO_INFO_HEIGHT(&self->info));
-  const GstEllipseMeta* target = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
   append_time(
-      line, "processing_ns", target != nullptr ? target->processing_time : GST_CLOCK_TIME_NONE);
+      line, "processing_ns", search != nullptr ? search->processing_time : GST_CLOCK_TIME_NONE);
   g_string_append(line, ",\"targets\":[");
   gpointer state = nullptr;
   const gchar* separator = "";

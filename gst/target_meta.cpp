@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gst/ellipse/gstellipsesearchmeta.h"
+
 const gchar* state_nick(const std::optional<ellipse::Target>& target) {
   if (!target) return "lost";
   switch (target->state) {
@@ -95,6 +97,7 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
                                    const TrackProperties& properties,
                                    const GstVideoInfo& info,
                                    GstClockTime processing_time) {
+  gst_buffer_add_ellipse_search_meta(buffer, processing_time);
   const GstEllipseMeta* meta = nullptr;
   if (target) {
     meta = attach_target_meta(buffer, *target, info, processing_time);

@@ -12,9 +12,10 @@
 /// "detected", "tracked", "predicted"; "lost" where there is no target.
 [[nodiscard]] const gchar* state_nick(const std::optional<ellipse::Target>& target);
 
-/// Attaches what was found in a frame to its buffer: the target; where the properties ask for it,
-/// the target's upright box inside the frame as the standard metadata for a region of interest,
-/// with the target's structure as its parameter, and all other ellipses with the role "candidate".
+/// Attaches what was found in a frame to its buffer: that it was searched; the target; where the
+/// properties ask for it, the target's upright box inside the frame as the standard metadata for a
+/// region of interest, with the target's structure as its parameter, and all other ellipses with
+/// the role "candidate".
 /// @return The target's metadata, owned by the buffer; nullptr where there is no target.
 const GstEllipseMeta* attach_metas(GstBuffer* buffer,
                                    const std::optional<ellipse::Target>& target,

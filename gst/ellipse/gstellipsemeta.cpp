@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/ellipse.hpp"
+#include "core/image_view.hpp"
 
 GType gst_ellipse_role_get_type(void) {
   static const GEnumValue kValues[] = {
@@ -71,26 +72,52 @@ static gboolean ellipse_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
+// Where a scaler puts the picture: between black borders where its shape is another one, as
+// videoscale does unless told otherwise; GstVideoMetaTransform does not say whether it was. Borders
+// are whole pixels of the chroma.
+static ellipse::Rect picture_inside(const GstVideoInfo& in, const GstVideoInfo& out) {
+  const gint width = GST_VIDEO_INFO_WIDTH(&out);
+  const gint height = GST_VIDEO_INFO_HEIGHT(&out);
+  gint n = 0;  // n / d: width by height of the picture, in pixels of the output
+  gint d = 0;
+  const bool is_known =
+      gst_util_fraction_multiply(
+          in.width, in.height, GST_VIDEO_INFO_PAR_N(&in), GST_VIDEO_INFO_PAR_D(&in), &n, &d) &&
+      gst_util_fraction_multiply(
+          n, d, GST_VIDEO_INFO_PAR_D(&out), GST_VIDEO_INFO_PAR_N(&out), &n, &d);
+  if (!is_known) return {0, 0, width, height};
+  const guint64 least_height = gst_util_uint64_scale_int(static_cast<guint64>(width), d, n);
+  if (least_height <= static_cast<guint64>(height)) {
+    const gint used = static_cast<gint>(least_height);
+    const guint chroma = out.finfo->h_sub[1];
+    return {0, (height - used) / 2 >> chroma << chroma, width, used};
+  }
+  const gint used =
+      static_cast<gint>(gst_util_uint64_scale_int(static_cast<guint64>(height), n, d));
+  const guint chroma = out.finfo->w_sub[1];
+  return {(width - used) / 2 >> chroma << chroma, 0, used, height};
+}
+
 // The whole pixels that a span of pixels covers after scaling.
-static void scale_span(gint& begin, guint& length, double factor) {
+static void scale_span(gint& begin, guint& length, double factor, gint offset) {
   static constexpr double kFarthest = G_MAXINT / 2;
   const auto near = [](double value) { return std::clamp(value, -kFarthest, kFarthest); };
-  const double end = near(std::ceil((static_cast<double>(begin) + length) * factor));
-  const double first = near(std::floor(begin * factor));
+  const double end = near(std::ceil((static_cast<double>(begin) + length) * factor) + offset);
+  const double first = near(std::floor(begin * factor) + offset);
   begin = static_cast<gint>(first);
   length = static_cast<guint>(std::max(0.0, end - first));
 }
 
 // x becomes (x + 0.5) s - 0.5 in each direction, so that pixels keep the area that they cover.
 static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* scale) {
-  const double sx = GST_VIDEO_INFO_WIDTH(scale->out_info) /
-                    static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->in_info));
-  const double sy = GST_VIDEO_INFO_HEIGHT(scale->out_info) /
-                    static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->in_info));
+  const ellipse::Rect inside = picture_inside(*scale->in_info, *scale->out_info);
+  const double sx = inside.width / static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->in_info));
+  const double sy = inside.height / static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->in_info));
   const ellipse::Ellipse before{
       meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
   const Eigen::Vector2d factors(sx, sy);
-  const Eigen::Vector2d shift = 0.5 * (factors - Eigen::Vector2d::Ones());
+  const Eigen::Vector2d shift =
+      Eigen::Vector2d(inside.x, inside.y) + 0.5 * (factors - Eigen::Vector2d::Ones());
   const std::optional<ellipse::Ellipse> after =
       ellipse::transformed(before, factors.asDiagonal(), shift);
   if (!after) return FALSE;
@@ -99,8 +126,8 @@ static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* 
   meta->semi_major = after->semi_major;
   meta->semi_minor = after->semi_minor;
   meta->angle_rad = after->angle_rad;
-  scale_span(meta->roi_x, meta->roi_width, sx);
-  scale_span(meta->roi_y, meta->roi_height, sy);
+  scale_span(meta->roi_x, meta->roi_width, sx, inside.x);
+  scale_span(meta->roi_y, meta->roi_height, sy, inside.y);
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(scale->out_info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(scale->out_info));
   return TRUE;

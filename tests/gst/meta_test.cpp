@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <cmath>
 #include <limits>
 
 #include "core/ellipse.hpp"
+#include "gst/ellipse/gstellipsesearchmeta.h"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -35,10 +35,13 @@ Owned<GstBuffer> empty_buffer() {
   return Owned<GstBuffer>(gst_buffer_new_allocate(nullptr, 16, nullptr));
 }
 
-// As a scaler does.
-GstEllipseMeta* scaled_to(GstBuffer* from, GstBuffer* to, int width, int height) {
+// As a scaler does, into pixels of this shape (width by height).
+GstEllipseMeta* scaled_to(
+    GstBuffer* from, GstBuffer* to, int width, int height, int par_n = 1, int par_d = 1) {
   GstVideoInfo in = support::info_of("GRAY8", 320, 240);
   GstVideoInfo out = support::info_of("GRAY8", width, height);
+  out.par_n = par_n;
+  out.par_d = par_d;
   GstVideoMetaTransform transform = {&in, &out};
   GstMeta* meta = gst_buffer_get_meta(from, GST_ELLIPSE_META_API_TYPE);
   meta->info->transform_func(
@@ -107,7 +110,7 @@ TEST(EllipseMeta, TurnsUnderANonUniformScale) {
   const auto from = empty_buffer();
   const auto to = empty_buffer();
   const GstEllipseMeta* before = add_example(from.get());
-  const GstEllipseMeta* after = scaled_to(from.get(), to.get(), 640, 120);
+  const GstEllipseMeta* after = scaled_to(from.get(), to.get(), 640, 120, 1, 4);
   ASSERT_NE(after, nullptr);
   const ellipse::Ellipse a{before->cx, before->cy, 40.0, 20.0, 0.7};
   const ellipse::Ellipse b{
@@ -117,6 +120,44 @@ TEST(EllipseMeta, TurnsUnderANonUniformScale) {
     const Eigen::Vector2d q((p.x() + 0.5) * 2.0 - 0.5, (p.y() + 0.5) * 0.5 - 0.5);
     EXPECT_NEAR(ellipse::sampson_distance(b, q), 0.0, 1e-9);
   }
+}
+
+TEST(EllipseMeta, KeepsItsShapeBetweenBorders) {
+  const auto from = empty_buffer();
+  const auto wide = empty_buffer();
+  const auto high = empty_buffer();
+  add_example(from.get());
+  const GstEllipseMeta* beside = scaled_to(from.get(), wide.get(), 161, 60);  // 80 x 60 at x = 40
+  ASSERT_NE(beside, nullptr);
+  EXPECT_NEAR(beside->cx, 40.0 + 100.0 / 4.0 - 0.5, 1e-9);
+  EXPECT_NEAR(beside->cy, 50.0 / 4.0 - 0.5, 1e-9);
+  EXPECT_NEAR(beside->semi_major, 10.0, 1e-9);
+  EXPECT_NEAR(beside->angle_rad, 0.7, 1e-9);
+  EXPECT_EQ(beside->roi_x, 40 + 2);
+  EXPECT_EQ(beside->frame_width, 161U);
+  const GstEllipseMeta* below = scaled_to(from.get(), high.get(), 320, 305);  // at y = 32
+  ASSERT_NE(below, nullptr);
+  EXPECT_NEAR(below->cx, 99.5, 1e-9);
+  EXPECT_NEAR(below->cy, 32.0 + 49.5, 1e-9);
+  EXPECT_EQ(below->roi_y, 32 + 20);
+  EXPECT_EQ(below->roi_height, 60U);
+}
+
+TEST(EllipseMeta, IsLostWhereBordersLeaveNothingOfThePicture) {
+  const auto from = empty_buffer();
+  const auto to = empty_buffer();
+  add_example(from.get());
+  EXPECT_EQ(scaled_to(from.get(), to.get(), 640, 480, 1, 1000), nullptr);
+  EXPECT_EQ(scaled_to(from.get(), to.get(), 640, 480, 1000, 1), nullptr);
+}
+
+TEST(EllipseMeta, FillsTheFrameWhereTheShapeCannotBeKnown) {
+  const auto from = empty_buffer();
+  const auto to = empty_buffer();
+  add_example(from.get());
+  const GstEllipseMeta* meta = scaled_to(from.get(), to.get(), 640, 480, 1, G_MAXINT);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->cx, 199.5, 1e-9);
 }
 
 TEST(EllipseMeta, StructureHasAllFields) {
@@ -146,6 +187,24 @@ TEST(EllipseMeta, JsonIsOneValidObjectWithoutNaN) {
   EXPECT_TRUE(json_object_get_null_member(object, "contour_overlap"));
   EXPECT_EQ(std::strchr(text, '\n'), nullptr);
   g_free(text);
+}
+
+TEST(EllipseSearchMeta, LivesAsLongAsTheEllipses) {
+  const auto buffer = empty_buffer();
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(buffer.get()), nullptr);
+  gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  const Owned<GstBuffer> copy(gst_buffer_copy(buffer.get()));
+  const Owned<GstBuffer> part(gst_buffer_copy_region(
+      buffer.get(), static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_ALL), 0, 8));
+  ASSERT_NE(gst_buffer_get_ellipse_search_meta(copy.get()), nullptr);
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(copy.get())->processing_time, 250U);
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(part.get()), nullptr);
+  for (guint i = 0; gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i] != nullptr; ++i) {
+    const gchar* tag = gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i];
+    EXPECT_TRUE(
+        gst_meta_api_type_has_tag(GST_ELLIPSE_SEARCH_META_API_TYPE, g_quark_from_string(tag)))
+        << tag;
+  }
 }
 
 TEST(EllipseMeta, NamesRoleAndState) {

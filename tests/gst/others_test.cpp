@@ -28,10 +28,7 @@ TEST(EllipseJson, WritesALineAFrame) {
     GST_BUFFER_PTS(buffer.get()) = static_cast<guint64>(i) * 40 * GST_MSECOND;
     const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
     EXPECT_EQ(GST_BUFFER_PTS(out.get()), static_cast<guint64>(i) * 40 * GST_MSECOND);
-    GstMapInfo map;
-    gst_buffer_map(out.get(), &map, GST_MAP_READ);
-    text.append(reinterpret_cast<const char*>(map.data), map.size);
-    gst_buffer_unmap(out.get(), &map);
+    text += support::bytes_of(out.get());
   }
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "{\"frame\":0,\"pts_ns\":0,\"width\":64,\"height\":48,\"processing_ns\":null,"
@@ -39,6 +36,21 @@ TEST(EllipseJson, WritesALineAFrame) {
   EXPECT_NE(text.find("{\"frame\":1,\"pts_ns\":40000000,"), std::string::npos);
   EXPECT_NE(text.find("\"cx\":32.2500,\"cy\":24.5000,\"semi_major\":10.0000"), std::string::npos);
   EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(EllipseJson, TellsAFruitlessSearchFromNone) {
+  const support::TemporaryFolder folder;
+  ASSERT_EQ(support::run_pipeline("ellipsetestsrc scene=negative ground=plain num-buffers=4 ! "
+                                  "ellipsetrack interval=2 ! ellipsejson ! filesink location=" +
+                                  folder.file("lines")),
+            "");
+  const auto lines = support::read_ndjson(folder.file("lines"));
+  ASSERT_EQ(lines.size(), 4U);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    JsonObject* line = object_of(lines[i]);
+    EXPECT_EQ(json_array_get_length(json_object_get_array_member(line, "targets")), 0U) << i;
+    EXPECT_EQ(json_object_get_null_member(line, "processing_ns"), i % 2 == 1) << i;
+  }
 }
 
 TEST(EllipseJson, TakesAnyRawVideo) {
@@ -58,11 +70,7 @@ Owned<GstBuffer> first_frame(const std::string& settings, const std::string& cap
 }
 
 std::string bytes_of(const Owned<GstBuffer>& buffer) {
-  GstMapInfo map;
-  gst_buffer_map(buffer.get(), &map, GST_MAP_READ);
-  std::string bytes(reinterpret_cast<const char*>(map.data), map.size);
-  gst_buffer_unmap(buffer.get(), &map);
-  return bytes;
+  return support::bytes_of(buffer.get());
 }
 
 TEST(EllipseTestSrc, CarriesTheTruth) {

@@ -61,25 +61,6 @@ TEST(Pipeline, TracksAVideoFileReadBackFromDisk) {
   EXPECT_GE(right, 59);
 }
 
-TEST(Pipeline, MetadataFollowsConversionAndScaling) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("scaled.ndjson");
-  ASSERT_EQ(run_pipeline("ellipsetestsrc num-buffers=5 ! video/x-raw,width=640,height=360 ! "
-                         "ellipsetrack ! queue ! videoconvert ! "
-                         "video/x-raw,format=BGRx ! videoscale add-borders=false ! "
-                         "video/x-raw,width=320,height=360,pixel-aspect-ratio=1/1 ! ellipsejson ! "
-                         "filesink location=" +
-                         file),
-            "");
-  for (const auto& line : read_ndjson(file)) {
-    const auto truth = ellipse_on(object_of(line), "truth");
-    const auto target = ellipse_on(object_of(line), "target");
-    ASSERT_TRUE(truth && target);
-    EXPECT_GT(truth->aspect_ratio(), 1.3);  // squeezed to half the width
-    EXPECT_GT(ellipse::iou_inside(*truth, *target, 320, 360), 0.97);
-  }
-}
-
 // Notes the memory of each buffer that passes a pad.
 GstPadProbeReturn note_memory(GstPad*, GstPadProbeInfo* info, gpointer data) {
   static_cast<std::vector<GstMemory*>*>(data)->push_back(

@@ -98,6 +98,30 @@ inline void offer_composition(GstHarness* harness) {
       harness, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
 }
 
+/// The first component of a buffer, its luma or a colour of a grey picture.
+inline Picture picture_of(GstBuffer* buffer, const GstVideoInfo& info) {
+  Picture picture(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+  GstVideoFrame frame;
+  if (!gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ)) return picture;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto* row = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)) +
+                      std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0);
+    for (int x = 0; x < picture.width; ++x) {
+      picture.at(x, y) = row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, 0)];
+    }
+  }
+  gst_video_frame_unmap(&frame);
+  return picture;
+}
+
+inline std::string bytes_of(GstBuffer* buffer) {
+  GstMapInfo map;
+  if (!gst_buffer_map(buffer, &map, GST_MAP_READ)) return {};
+  std::string bytes(reinterpret_cast<const char*>(map.data), map.size);
+  gst_buffer_unmap(buffer, &map);
+  return bytes;
+}
+
 /// One message of a type from an element that has a bus of its own, or nothing.
 class BusTap {
  public:
@@ -114,42 +138,85 @@ class BusTap {
   GstBus* bus_;
 };
 
-/// Runs a pipeline until EOS or an error. @return the error's text, empty where it came to EOS.
-inline std::string run_pipeline(const std::string& description,
-                                const std::function<void(GstElement*)>& prepare = {}) {
-  GError* error = nullptr;
-  Owned<GstElement> pipeline(gst_parse_launch(description.c_str(), &error));
-  if (error != nullptr) {
+/// A pipeline from its description, in the state NULL until it is told otherwise and at its end.
+class Pipeline {
+ public:
+  explicit Pipeline(const std::string& description) {
+    GError* error = nullptr;
+    pipeline_.reset(gst_parse_launch(description.c_str(), &error));
+    if (error == nullptr) return;
+    if (g_error_matches(error, GST_PARSE_ERROR, GST_PARSE_ERROR_NO_SUCH_ELEMENT)) {
+      failure_ = kNotInstalled;
+    }
+    failure_ += text_of(error);
+  }
+  ~Pipeline() {
+    if (pipeline_) gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+  }
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  [[nodiscard]] GstElement* get() const { return pipeline_.get(); }
+  /// What its description has wrong; empty where it is right. Begins with kNotInstalled where an
+  /// element is missing.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  static constexpr char kNotInstalled[] = "not installed: ";
+  [[nodiscard]] Owned<GstElement> element(const std::string& name) const {
+    return Owned<GstElement>(gst_bin_get_by_name(GST_BIN(pipeline_.get()), name.c_str()));
+  }
+  /// Until the first buffer is at its sink.
+  void pause() {
+    gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+    gst_element_get_state(pipeline_.get(), nullptr, nullptr, 60 * GST_SECOND);
+  }
+  void play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+  /// @return The error's text, empty where it came to EOS.
+  [[nodiscard]] std::string wait_for_end() {
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    const Owned<GstMessage> message(gst_bus_timed_pop_filtered(
+        bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    gst_object_unref(bus);
+    if (!message) return "timed out";
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
+    GError* error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    return text_of(error);
+  }
+
+ private:
+  static std::string text_of(GError* error) {
     std::string text = error->message;
     g_error_free(error);
     return text;
   }
+
+  Owned<GstElement> pipeline_;
+  std::string failure_;
+};
+
+/// Runs a pipeline until EOS or an error. @return the error's text, empty where it came to EOS.
+inline std::string run_pipeline(const std::string& description,
+                                const std::function<void(GstElement*)>& prepare = {}) {
+  Pipeline pipeline(description);
+  if (!pipeline.failure().empty()) return pipeline.failure();
   if (prepare) prepare(pipeline.get());
-  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  Owned<GstMessage> message(gst_bus_timed_pop_filtered(
-      bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
-  std::string text = message ? "" : "timed out";
-  if (message && GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) {
-    gst_message_parse_error(message.get(), &error, nullptr);
-    text = error->message;
-    g_error_free(error);
-  }
-  gst_object_unref(bus);
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
-  return text;
+  pipeline.play();
+  return pipeline.wait_for_end();
 }
 
-/// The lines of an NDJSON file, parsed; fails to a null root where a line is no JSON.
-inline std::vector<Owned<JsonParser>> read_ndjson(const std::string& file) {
+/// The lines of NDJSON, parsed; fails to a null root where a line is no JSON.
+inline std::vector<Owned<JsonParser>> parse_ndjson(std::istream&& in) {
   std::vector<Owned<JsonParser>> lines;
-  std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     Owned<JsonParser> parser(json_parser_new());
     json_parser_load_from_data(parser.get(), line.c_str(), -1, nullptr);
     lines.push_back(std::move(parser));
   }
   return lines;
+}
+
+inline std::vector<Owned<JsonParser>> read_ndjson(const std::string& file) {
+  return parse_ndjson(std::ifstream(file));
 }
 
 inline JsonObject* object_of(const Owned<JsonParser>& line) {

@@ -1,0 +1,186 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gio/gio.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "tests/gst/support.hpp"
+
+// What lines are sent to, and where they are read again: all on the loopback.
+namespace support {
+
+inline std::size_t count_lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+/// A socket on the loopback that gives up after a while instead of waiting for ever.
+class Socket {
+ public:
+  explicit Socket(GSocketType type)
+      : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, type, G_SOCKET_PROTOCOL_DEFAULT, nullptr)) {
+    g_socket_set_timeout(socket_, 20);
+  }
+  ~Socket() { g_object_unref(socket_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  /// @return The port, chosen by the system.
+  int bind() {
+    GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
+    g_socket_bind(socket_, any, FALSE, nullptr);
+    g_object_unref(any);
+    GSocketAddress* bound = g_socket_get_local_address(socket_, nullptr);
+    const int port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound));
+    g_object_unref(bound);
+    return port;
+  }
+  void connect(int port) {
+    GSocketAddress* there =
+        g_inet_socket_address_new_from_string("127.0.0.1", static_cast<guint>(port));
+    EXPECT_TRUE(g_socket_connect(socket_, there, nullptr, nullptr));
+    g_object_unref(there);
+  }
+  void keep_little_unread() { g_socket_set_option(socket_, SOL_SOCKET, SO_RCVBUF, 4096, nullptr); }
+  /// @return One datagram, or what there is of a stream; empty where nothing more comes.
+  std::string receive() {
+    std::array<char, 65536> bytes;
+    const gssize size = g_socket_receive(socket_, bytes.data(), bytes.size(), nullptr, nullptr);
+    return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : std::string();
+  }
+  void receive_lines(std::string& text, std::size_t count) {
+    for (std::size_t lines = count_lines(text); lines < count;) {
+      const std::string more = receive();
+      if (more.empty()) return;
+      lines += count_lines(more);
+      text += more;
+    }
+  }
+
+ private:
+  GSocket* socket_;
+};
+
+/// tcpserversink at a port of the system's choice, with its clients.
+class Server {
+ public:
+  explicit Server(const std::string& lines, const std::string& settings = "")
+      : pipeline_(lines + "tcpserversink name=server host=127.0.0.1 port=0 sync=false " + settings),
+        sink_(pipeline_.element("server")) {
+    pipeline_.pause();  // frame 0 is at the sink
+  }
+  /// From here on the client gets every line.
+  void accept(Socket& client) {
+    const guint before = number("num-handles");
+    client.connect(static_cast<int>(number("current-port")));
+    wait_for_clients(before + 1);
+  }
+  [[nodiscard]] guint number(const char* property) const {
+    guint value = 0;
+    g_object_get(sink_.get(), property, &value, nullptr);
+    return value;
+  }
+  void wait_for_clients(guint count) const {
+    for (int i = 0; i < 2000 && number("num-handles") != count; ++i) g_usleep(10000);
+    EXPECT_EQ(number("num-handles"), count);
+  }
+  /// This frame's line waits at the door until there are so many clients.
+  void hold(int frame, guint until_clients) {
+    held_frame_ = frame;
+    held_clients_ = until_clients;
+    probe("server", on_line, this);
+  }
+  /// Of the buffers that come to an element, after frame 0.
+  void probe(const char* name, GstPadProbeCallback callback, gpointer data) {
+    const auto element = pipeline_.element(name);
+    GstPad* pad = gst_element_get_static_pad(element.get(), "sink");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, callback, data, nullptr);
+    gst_object_unref(pad);
+  }
+  void play() { pipeline_.play(); }
+  [[nodiscard]] std::string wait_for_end() { return pipeline_.wait_for_end(); }
+
+ private:
+  static GstPadProbeReturn on_line(GstPad*, GstPadProbeInfo*, gpointer data) {
+    auto* self = static_cast<Server*>(data);
+    if (++self->frame_ == self->held_frame_) self->wait_for_clients(self->held_clients_);
+    return GST_PAD_PROBE_OK;
+  }
+
+  Pipeline pipeline_;
+  Owned<GstElement> sink_;
+  int frame_ = 0;
+  int held_frame_ = 0;
+  guint held_clients_ = 0;
+};
+
+/// A program of the system, or nothing where it is not installed.
+inline std::string program(const std::string& name) {
+  gchar* path = g_find_program_in_path(name.c_str());
+  if (path == nullptr) path = g_find_program_in_path(("/usr/sbin/" + name).c_str());
+  std::string text = path != nullptr ? path : "";
+  g_free(path);
+  return text;
+}
+
+/// @return What a command wrote, and whether it said that all went well.
+inline std::pair<std::string, bool> output_of(const std::string& command) {
+  FILE* pipe = popen((command + " 2> /dev/null").c_str(), "r");
+  std::string text;
+  std::array<char, 4096> bytes;
+  while (const std::size_t size = std::fread(bytes.data(), 1, bytes.size(), pipe)) {
+    text.append(bytes.data(), size);
+  }
+  return {text, pclose(pipe) == 0};
+}
+
+/// An MQTT broker on the loopback, for as long as this lives.
+class Broker {
+ public:
+  explicit Broker(const std::string& mosquitto) {
+    port_ = std::to_string(Socket(G_SOCKET_TYPE_STREAM).bind());
+    process_ = g_subprocess_new(static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDOUT_SILENCE |
+                                                              G_SUBPROCESS_FLAGS_STDERR_SILENCE),
+                                nullptr,
+                                mosquitto.c_str(),
+                                "-p",
+                                port_.c_str(),
+                                nullptr);
+  }
+  ~Broker() {
+    g_subprocess_force_exit(process_);
+    g_subprocess_wait(process_, nullptr, nullptr);
+    g_object_unref(process_);
+  }
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  [[nodiscard]] std::string address() const {
+    return " -h 127.0.0.1 -p " + port_ + " -t pad -q 1 ";
+  }
+  /// The broker keeps for this reader what comes from here on.
+  [[nodiscard]] bool subscribe() const {
+    for (int i = 0; i < 200; ++i) {  // until it is up
+      if (output_of("mosquitto_sub" + address() + kReader + "-E").second) return true;
+      g_usleep(50000);
+    }
+    return false;
+  }
+  [[nodiscard]] std::string read(std::size_t count) const {
+    return output_of("mosquitto_sub" + address() + kReader + "-W 20 -C " + std::to_string(count))
+        .first;
+  }
+
+ private:
+  static constexpr char kReader[] = "-i reader -c ";
+
+  std::string port_;
+  GSubprocess* process_;
+};
+
+}  // namespace support

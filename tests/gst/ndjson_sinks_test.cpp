@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+//
+// JSON lines, carried by the sinks of others and read at their far ends.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "tests/gst/loopback.hpp"
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::Broker;
+using support::count_lines;
+using support::object_of;
+using support::Pipeline;
+using support::program;
+using support::run_pipeline;
+using support::Server;
+using support::Socket;
+using support::TemporaryFolder;
+
+constexpr std::size_t kFrames = 30;
+const std::string kLines =
+    "ellipsetestsrc num-buffers=" + std::to_string(kFrames) + " ! ellipsetrack ! ellipsejson ! ";
+
+// Each line is a JSON object, and they are the frames from this one on, without a gap.
+void expect_frames(const std::string& text, std::size_t first, std::size_t count) {
+  ASSERT_TRUE(text.ends_with('\n'));
+  const auto lines = support::parse_ndjson(std::istringstream(text));
+  EXPECT_EQ(lines.size(), count);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    JsonObject* line = object_of(lines[i]);
+    ASSERT_NE(line, nullptr) << "line " << i << " is no JSON";
+    ASSERT_EQ(json_object_get_int_member(line, "frame"), static_cast<gint64>(first + i));
+  }
+}
+
+std::string contents_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST(NdjsonSinks, FileSink) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_pipeline(kLines + "filesink location=" + folder.file("lines")), "");
+  expect_frames(contents_of(folder.file("lines")), 0, kFrames);
+}
+
+TEST(NdjsonSinks, AppSinkHasALineABuffer) {
+  Pipeline pipeline(kLines + "appsink name=out");
+  const auto sink = pipeline.element("out");
+  pipeline.play();
+  std::string text;
+  std::size_t buffers = 0;
+  while (true) {
+    GstSample* sample = nullptr;
+    g_signal_emit_by_name(sink.get(), "pull-sample", &sample);
+    if (sample == nullptr) break;
+    EXPECT_TRUE(gst_structure_has_name(gst_caps_get_structure(gst_sample_get_caps(sample), 0),
+                                       "application/x-ndjson"));
+    text += support::bytes_of(gst_sample_get_buffer(sample));
+    EXPECT_EQ(count_lines(text), ++buffers);
+    gst_sample_unref(sample);
+  }
+  expect_frames(text, 0, kFrames);
+}
+
+TEST(NdjsonSinks, FdSinkIntoAPipe) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(ends[1])), "");
+  close(ends[1]);
+  std::string text;
+  std::array<char, 4096> bytes;
+  for (ssize_t size; (size = read(ends[0], bytes.data(), bytes.size())) > 0;) {
+    text.append(bytes.data(), static_cast<std::size_t>(size));
+  }
+  close(ends[0]);
+  expect_frames(text, 0, kFrames);
+}
+
+TEST(NdjsonSinks, UdpSinkHasALineADatagram) {
+  Socket receiver(G_SOCKET_TYPE_DATAGRAM);
+  const std::string port = std::to_string(receiver.bind());
+  ASSERT_EQ(run_pipeline(kLines + "udpsink host=127.0.0.1 port=" + port), "");
+  std::string text;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const std::string datagram = receiver.receive();
+    EXPECT_EQ(count_lines(datagram), 1U);
+    text += datagram;
+  }
+  expect_frames(text, 0, kFrames);
+}
+
+TEST(NdjsonSinks, TcpServerSinkServesEachClientFromWhenItComes) {
+  Server server(kLines);
+  Socket early(G_SOCKET_TYPE_STREAM);
+  Socket late(G_SOCKET_TYPE_STREAM);
+  server.accept(early);
+  server.hold(20, 2);
+  server.play();
+  std::string all;
+  early.receive_lines(all, 20);
+  server.accept(late);
+  ASSERT_EQ(server.wait_for_end(), "");
+  early.receive_lines(all, kFrames);
+  expect_frames(all, 0, kFrames);
+  std::string rest;
+  late.receive_lines(rest, kFrames - 20);
+  expect_frames(rest, 20, kFrames - 20);
+}
+
+// Lines of some 16 KB each: 16 MB in all, which is more than the system keeps for a client.
+constexpr std::size_t kLongLines = 1000;
+const std::string kManyBytes =
+    "videotestsrc pattern=black num-buffers=" + std::to_string(kLongLines) +
+    " ! video/x-raw,format=GRAY8,width=16,height=16 ! ellipsejson name=json ! ";
+
+GstPadProbeReturn add_ellipses(GstPad*, GstPadProbeInfo* info, gpointer) {
+  GstBuffer* buffer = gst_buffer_make_writable(GST_PAD_PROBE_INFO_BUFFER(info));
+  for (int i = 0; i < 100; ++i) gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  GST_PAD_PROBE_INFO_DATA(info) = buffer;
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(NdjsonSinks, TcpServerSinkIsNotHeldUpByAClientThatDoesNotRead) {
+  Server server(kManyBytes);
+  server.probe("json", add_ellipses, nullptr);
+  Socket silent(G_SOCKET_TYPE_STREAM);
+  Socket reader(G_SOCKET_TYPE_STREAM);
+  silent.keep_little_unread();
+  server.accept(silent);
+  server.accept(reader);
+  server.play();
+  std::string text;
+  reader.receive_lines(text, kLongLines);
+  expect_frames(text, 0, kLongLines);
+  EXPECT_EQ(server.wait_for_end(), "");
+  EXPECT_GT(server.number("buffers-queued"), 100U);  // kept for the other one
+}
+
+TEST(NdjsonSinks, TcpServerSinkDropsAClientThatDoesNotReadWhereToldSo) {
+  Server server(kManyBytes, "units-max=300");
+  server.probe("json", add_ellipses, nullptr);
+  Socket silent(G_SOCKET_TYPE_STREAM);
+  silent.keep_little_unread();
+  server.accept(silent);
+  server.play();
+  EXPECT_EQ(server.wait_for_end(), "");
+  server.wait_for_clients(0);
+  EXPECT_LE(server.number("buffers-queued"), 301U);
+}
+
+TEST(NdjsonSinks, FdSinkToMosquittoPub) {
+  const std::string mosquitto = program("mosquitto");
+  if (mosquitto.empty() || program("mosquitto_pub").empty()) {
+    GTEST_SKIP() << "mosquitto or mosquitto-clients is not installed";
+  }
+  const Broker broker(mosquitto);
+  ASSERT_TRUE(broker.subscribe());
+  FILE* publisher = popen(("mosquitto_pub -l" + broker.address()).c_str(), "w");
+  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(fileno(publisher))), "");
+  EXPECT_EQ(pclose(publisher), 0);
+  expect_frames(broker.read(kFrames), 0, kFrames);
+}
+
+// German, whose numbers have a comma; made for this test where the system does not have it.
+class German {
+ public:
+  German() {
+    if (std::setlocale(LC_ALL, kName) != nullptr) return;
+    const std::string command =
+        "localedef -i de_DE -f UTF-8 " + folder_.file(kName) + " > /dev/null 2>&1";
+    if (std::system(command.c_str()) != 0) return;
+    g_setenv("LOCPATH", folder_.file("").c_str(), TRUE);
+    std::setlocale(LC_ALL, kName);
+  }
+  ~German() {
+    g_unsetenv("LOCPATH");
+    std::setlocale(LC_ALL, before_.c_str());
+  }
+  German(const German&) = delete;
+  German& operator=(const German&) = delete;
+
+  [[nodiscard]] bool is_spoken() const { return *std::localeconv()->decimal_point == ','; }
+
+ private:
+  static constexpr char kName[] = "de_DE.UTF-8";
+  const std::string before_ = std::setlocale(LC_ALL, nullptr);
+  TemporaryFolder folder_;
+};
+
+// The lines without the time that was spent, which is another one each time.
+std::string lines_without_times() {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_pipeline(kLines + "filesink location=" + folder.file("lines")), "");
+  return std::regex_replace(
+      contents_of(folder.file("lines")), std::regex("\"processing_ns\":[0-9]+,"), "");
+}
+
+TEST(NdjsonLines, AreTheSameWhereNumbersHaveACommaAsPoint) {
+  const std::string expected = lines_without_times();
+  const German german;
+  if (!german.is_spoken()) GTEST_SKIP() << "neither de_DE.UTF-8 nor localedef is here";
+  const std::string lines = lines_without_times();
+  EXPECT_EQ(lines, expected);
+  expect_frames(lines, 0, kFrames);
+}
+
+}  // namespace
