@@ -29,6 +29,7 @@ esac
 if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev
+    gi-docgen
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
   )
 fi
