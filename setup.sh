@@ -29,6 +29,7 @@ esac
 if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev
+    python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
   )
