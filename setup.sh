@@ -12,8 +12,10 @@ packages=(
   dpkg-dev  # tells meson where Debian keeps libraries
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libopencv-dev libeigen3-dev
+  gobject-introspection libgirepository1.0-dev
   # examples
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
+  python3-gi gir1.2-gstreamer-1.0
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
@@ -31,6 +33,8 @@ if [ "${1:-}" != "--without-tests" ]; then
     gstreamer1.0-plugins-bad gstreamer1.0-plugins-ugly gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
+    python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
+    gi-docgen
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
   )
 fi

@@ -34,6 +34,14 @@ GType gst_ellipse_state_get_type(void) {
   return kType;
 }
 
+/**
+ * gst_ellipse_meta_api_get_type:
+ *
+ * The type that the ellipses of a buffer are counted and filtered by, as in
+ * [method@Gst.Buffer.get_n_meta]. Thread-safe.
+ *
+ * Returns: the type of the metadata's API
+ */
 GType gst_ellipse_meta_api_get_type(void) {
   static const gchar* kTags[] = {GST_META_TAG_VIDEO_STR,
                                  GST_META_TAG_VIDEO_SIZE_STR,
@@ -150,6 +158,13 @@ static gboolean ellipse_meta_transform(
   return TRUE;
 }
 
+/**
+ * gst_ellipse_meta_get_info:
+ *
+ * What GStreamer knows of the metadata: its size, and how it is copied and scaled. Thread-safe.
+ *
+ * Returns: (transfer none): the registration, never freed
+ */
 const GstMetaInfo* gst_ellipse_meta_get_info(void) {
   static const GstMetaInfo* kInfo = gst_meta_register(GST_ELLIPSE_META_API_TYPE,
                                                       "GstEllipseMeta",
@@ -162,13 +177,14 @@ const GstMetaInfo* gst_ellipse_meta_get_info(void) {
 
 /**
  * gst_buffer_add_ellipse_meta:
- * @buffer: (transfer none): a writable #GstBuffer
+ * @buffer: a writable buffer
  * @role: what the ellipse stands for
  *
  * Attaches an ellipse, all of whose numbers are still to be filled in: 0, the scale 1, the times
- * %GST_CLOCK_TIME_NONE.
+ * `GST_CLOCK_TIME_NONE`. Allocates the metadata; as all that writes to a buffer, for one thread at
+ * a time.
  *
- * Returns: (transfer none): the #GstEllipseMeta, owned by the buffer
+ * Returns: (transfer none): the ellipse, owned by the buffer
  */
 GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
@@ -180,12 +196,13 @@ GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 
 /**
  * gst_buffer_iterate_ellipse_meta:
- * @buffer: (transfer none): a #GstBuffer
- * @state: (inout): opaque, to be %NULL before the first call
+ * @buffer: a buffer
+ * @state: (inout) (transfer none) (nullable): opaque, to be `NULL` before the first call
  *
- * The ellipses of a buffer, one after the other.
+ * The ellipses of a buffer, one after the other, in the order in which they were attached.
+ * Allocates nothing.
  *
- * Returns: (transfer none) (nullable): the next #GstEllipseMeta, %NULL after the last one
+ * Returns: (transfer none) (nullable): the next ellipse, `NULL` after the last one
  */
 GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* state) {
   return reinterpret_cast<GstEllipseMeta*>(
@@ -193,11 +210,34 @@ GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* sta
 }
 
 /**
+ * gst_buffer_list_ellipse_meta:
+ * @buffer: a buffer
+ *
+ * The ellipses of a buffer, in the order in which they were attached. For languages in which a list
+ * is handier than [func@GstEllipse.buffer_iterate_ellipse_meta]; allocates the list alone.
+ *
+ * Returns: (transfer container) (element-type GstEllipseMeta): a new list of the ellipses, which
+ *   the buffer owns; empty where there are none. `g_list_free()` frees it
+ */
+GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  GList* list = nullptr;
+  gpointer state = nullptr;
+  while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    list = g_list_prepend(list, meta);
+  }
+  return g_list_reverse(list);
+}
+
+/**
  * gst_buffer_get_ellipse_meta:
- * @buffer: (transfer none): a #GstBuffer
+ * @buffer: a buffer
  * @role: the role that is looked for
  *
- * Returns: (transfer none) (nullable): the first ellipse with that role, %NULL where there is none
+ * The target of a frame, or the truth. Allocates nothing.
+ *
+ * Returns: (transfer none) (nullable): the first ellipse with that role, owned by the buffer;
+ *   `NULL` where there is none
  */
 GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
   gpointer state = nullptr;
@@ -209,7 +249,9 @@ GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 
 /**
  * gst_ellipse_meta_get_role_name:
- * @meta: a #GstEllipseMeta
+ * @meta: an ellipse
+ *
+ * Its role in a word. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "target", "candidate" or "truth"; "unknown" for any other number
  */
@@ -220,7 +262,9 @@ const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta) {
 
 /**
  * gst_ellipse_meta_get_state_name:
- * @meta: a #GstEllipseMeta
+ * @meta: an ellipse
+ *
+ * Its state in a word. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "detected", "tracked" or "predicted"; "unknown" for any other number
  */
@@ -231,11 +275,12 @@ const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
 
 /**
  * gst_ellipse_meta_to_structure:
- * @meta: a #GstEllipseMeta
+ * @meta: an ellipse
  *
- * All fields by their names in a structure named "ellipse"; role and state as their nicks.
+ * All fields by their names in a structure named "ellipse"; role and state as their nicks. What is
+ * to outlive the buffer is kept this way.
  *
- * Returns: (transfer full): a new #GstStructure
+ * Returns: (transfer full): a new structure, of the caller's
  */
 GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
@@ -277,13 +322,13 @@ static void append_number(GString* json, const gchar* name, const gchar* format,
 
 /**
  * gst_ellipse_meta_to_json:
- * @meta: a #GstEllipseMeta
+ * @meta: an ellipse
  *
  * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, visible, scale. The truth has neither state nor
- * overlaps.
+ * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians. The truth has
+ * neither state nor overlaps nor scale; a number that is not finite is null.
  *
- * Returns: (transfer full): a new string
+ * Returns: (transfer full): a new string, which `g_free()` frees
  */
 gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);

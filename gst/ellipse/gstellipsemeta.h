@@ -40,7 +40,7 @@ GType gst_ellipse_state_get_type(void);
 
 /**
  * GstEllipseMeta:
- * @meta: parent
+ * @meta: what all metadata have
  * @role: what the ellipse stands for
  * @state: how it came to be known
  * @id: number of the target, the same while it is not lost, from 1; 0 = none
@@ -53,17 +53,20 @@ GType gst_ellipse_state_get_type(void);
  * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale that it was found at, a power of two
- * @roi_x: search region in px
- * @roi_y: search region in px
- * @roi_width: search region in px
- * @roi_height: search region in px
+ * @roi_x: left edge of the region that was searched, in px
+ * @roi_y: upper edge of that region, in px
+ * @roi_width: width of that region, in px
+ * @roi_height: height of that region, in px
  * @frame_width: width in px of the frame that the numbers refer to
- * @frame_height: height in px of that frame
- * @pts: presentation time stamp of the frame that was analysed
- * @processing_time: time spent on that frame, in ns
+ * @frame_height: height in px of the frame that the numbers refer to
+ * @pts: presentation time stamp of the frame that was analysed, in ns; or `GST_CLOCK_TIME_NONE`
+ * @processing_time: time spent on that frame, in ns; or `GST_CLOCK_TIME_NONE`
  *
  * One ellipse on a video buffer; a buffer may have several. Survives copies, and follows scaling:
  * under a scale that is not the same in x and y the ellipse turns as the picture does.
+ *
+ * It belongs to its buffer and is gone with it, in every language: take its numbers while the
+ * buffer is at hand, or keep what [method@GstEllipse.EllipseMeta.to_structure] returns.
  */
 typedef struct _GstEllipseMeta GstEllipseMeta;
 struct _GstEllipseMeta {
@@ -102,6 +105,8 @@ GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole role);
 
 GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* state);
+
+GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer);
 
 const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The example programs as people start them.
+#include "tests/examples/programs.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -19,23 +19,11 @@
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int status = -1;
-  std::string text;  // standard output and standard error
-};
+using programs::Outcome;
 
 Outcome run(const std::string& program, const std::string& arguments) {
-  const std::string command = std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" + program + " " +
-                              arguments + " 2>&1 < /dev/null";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 4096> block{};
-  while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe)) {
-    outcome.text.append(block.data(), n);
-  }
-  outcome.status = WEXITSTATUS(pclose(pipe));
-  return outcome;
+  return programs::run(std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" + program + " " +
+                       arguments);
 }
 
 class Programs : public testing::Test {

@@ -71,6 +71,19 @@ TEST(EllipseMeta, SeveralStandOnABufferByRole) {
   EXPECT_EQ(count, 2);
 }
 
+TEST(EllipseMeta, AreListedInTheirOrder) {
+  const auto buffer = empty_buffer();
+  EXPECT_EQ(gst_buffer_list_ellipse_meta(buffer.get()), nullptr);
+  GstEllipseMeta* first = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH);
+  gst_buffer_add_video_region_of_interest_meta(buffer.get(), "other", 0, 0, 1, 1);
+  GstEllipseMeta* second = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
+  GList* list = gst_buffer_list_ellipse_meta(buffer.get());
+  ASSERT_EQ(g_list_length(list), 2U);
+  EXPECT_EQ(list->data, first);
+  EXPECT_EQ(list->next->data, second);
+  g_list_free(list);
+}
+
 TEST(EllipseMeta, IsCopiedWithTheBuffer) {
   const auto buffer = empty_buffer();
   add_example(buffer.get());
