@@ -143,7 +143,9 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   Eigen::Vector2d sum(0.0, 0.0);
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   Eigen::Vector2d gradient(0.0, 0.0);
-  for (const std::int32_t pixel : pixels) {
+  const auto corner = std::min(pixels.size() / 4, static_cast<std::size_t>(kShortened / kPixel));
+  const auto straight = pixels.subspan(corner, pixels.size() - 2 * corner);
+  for (const std::int32_t pixel : straight) {
     const Gradient* here = map_.gradients() + pixel;
     const bool is_flat = std::abs(here->x) > std::abs(here->y);
     const CrestVertex vertex = crest_vertex(here, is_flat ? 1 : map_.stride());
@@ -153,7 +155,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
     squares += place * place.transpose();
     gradient += Eigen::Vector2d(here->x, here->y);
   }
-  const auto count = static_cast<double>(pixels.size());
+  const auto count = static_cast<double>(straight.size());
   const Eigen::Vector2d mean = sum / count;
   squares -= sum * mean.transpose();
   const double turn = 0.5 * std::atan2(2.0 * squares(0, 1), squares(0, 0) - squares(1, 1));

@@ -52,7 +52,7 @@ PoseChange carried(const PoseChange& velocity,
   const auto here = usual_changes(from, frame_px, turn_rad, shift);
   const auto there = usual_changes(to, frame_px, turn_rad, shift);
   Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
-  normal.diagonal().array() += kLeast;
+  normal.diagonal().array() += kSlack * kSlack;
   const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
   return velocity + (there - here) * motion;
 }
