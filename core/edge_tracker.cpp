@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "core/coarse_search.hpp"
 #include "core/ellipse_fit.hpp"
@@ -25,12 +26,12 @@ constexpr double kLeastRatio = 0.5;  // by which one frame calms it down
 constexpr double kLeastSurprise = 0.25;
 constexpr double kMostSurprise = 64.0;
 constexpr double kEdgeSigmaPx = 0.6;
-constexpr int kNearSamples = 48;
 constexpr int kFineSamples = 72;
 constexpr int kWideSamples = 128;
 constexpr double kNearReachPx = 4.0;
 constexpr double kNearMostPx = 12.0;
 constexpr double kFineReachPx = 3.5;
+constexpr double kSmallChangePx = 1.0;  // the edges' normals are the same still
 constexpr double kTolerancePx = 1.2;
 constexpr double kToleranceRelative = 0.012;  // of the radius: crumpled pads
 constexpr double kNearCoverage = 0.7;
@@ -60,6 +61,13 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   Eigen::Matrix3d result = view;
   result.topRows<2>() += by_px * view.row(2);
   return result;
+}
+
+// How far a change moves the edges.
+double rms_px(std::span<const EdgeSample> samples, const PoseChange& change) {
+  double sum = 0.0;
+  for (const EdgeSample& sample : samples) sum += std::pow(sample.predicted_px(change), 2);
+  return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
 double tolerance_px(double radius_px) {
@@ -112,41 +120,52 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::finish(const LumaWindow& window
                                                         const PosePrior& prior,
                                                         const PoseChange& change,
                                                         double reach_px) {
-  Attempt attempt;
-  attempt.view = moved(start, change);
-  const Eigen::Matrix3d local = shifted(attempt.view, -window.origin_px);
-  search_.place(model_, local, window.luma, kFineSamples);
+  const Eigen::Matrix3d view = moved(start, change);
+  search_.place(model_, shifted(view, -window.origin_px), window.luma, kFineSamples);
   if (search_.samples().size() < kLeastMet) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
   const PosePrior here{prior.mean - change, prior.information};
   const auto estimate =
       solve_pose(search_.samples(), here, PoseChange::Zero(), reach_px, kEdgeSigmaPx, 3);
   if (!estimate) return std::nullopt;
-  attempt.view = moved(attempt.view, estimate->change);
-  attempt.support = support_of(search_.samples(),
-                               estimate->change,
-                               tolerance_px(radius_px()),
-                               static_cast<int>(model_.circles.size()));
-  attempt.last = estimate->change;
-  attempt.estimate = {change + estimate->change, estimate->information};
-  attempt.visible = search_.visible_fraction();
-  return attempt;
+  return attempt_of(
+      view, {change + estimate->change, estimate->information}, estimate->change);
 }
 
+EdgeTracker::Attempt EdgeTracker::attempt_of(const Eigen::Matrix3d& view,
+                                             const PoseEstimate& estimate,
+                                             const PoseChange& last) const {
+  const double radius = radius_px();
+  return {moved(view, last),
+          estimate,
+          last,
+          support_of(search_.samples(),
+                     last,
+                     tolerance_px(radius),
+                     static_cast<int>(model_.circles.size())),
+          search_.visible_fraction()};
+}
+
+// Where the prediction is good, one look tells all.
 std::optional<EdgeTracker::Attempt> EdgeTracker::look_near(const LumaWindow& window,
                                                            const Eigen::Matrix3d& start,
                                                            const PoseCovariance& covariance) {
   const PosePrior prior{PoseChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, shifted(start, -window.origin_px), window.luma, kNearSamples);
+  search_.place(model_, shifted(start, -window.origin_px), window.luma, kFineSamples);
   if (search_.samples().size() < kLeastMet) return std::nullopt;
   search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMostPx);
   auto estimate =
       solve_pose(search_.samples(), prior, PoseChange::Zero(), kNearMostPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
   estimate =
-      solve_pose(search_.samples(), prior, estimate->change, 0.4 * kNearMostPx, kEdgeSigmaPx, 2);
+      solve_pose(search_.samples(), prior, estimate->change, kFineReachPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
-  auto attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+  std::optional<Attempt> attempt;
+  if (rms_px(search_.samples(), estimate->change) <= kSmallChangePx) {
+    attempt = attempt_of(start, *estimate, estimate->change);
+  } else {
+    attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+  }
   if (attempt) last_coverage_ = attempt->support.coverage;
   const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&

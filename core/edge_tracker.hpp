@@ -79,6 +79,9 @@ class EdgeTracker {
                                               const PosePrior& prior,
                                               const PoseChange& change,
                                               double reach_px);
+  [[nodiscard]] Attempt attempt_of(const Eigen::Matrix3d& view,
+                                   const PoseEstimate& estimate,
+                                   const PoseChange& last) const;
   void accept(const Attempt& attempt, const PoseMotion& before);
   void learn_radii(const PoseChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
