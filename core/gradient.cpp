@@ -6,15 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define ELLIPSE_HAS_AVX2 1
-#define ELLIPSE_AVX2 __attribute__((target("avx2")))
-#else
-#define ELLIPSE_HAS_AVX2 0
-#define ELLIPSE_AVX2
-#endif
-#define ELLIPSE_INLINE inline __attribute__((always_inline))
-
 namespace ellipse {
 namespace {
 
@@ -197,14 +188,6 @@ void gradients_along(
     const auto athwart = static_cast<Int>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
     gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
   }
-}
-
-Simd best_simd() {
-#if ELLIPSE_HAS_AVX2
-  return __builtin_cpu_supports("avx2") ? Simd::kAvx2 : Simd::kBaseline;
-#else
-  return Simd::kBaseline;
-#endif
 }
 
 std::int16_t* GradientMap::row_of(std::vector<std::int16_t>& rows, int y) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image_view.hpp"
+#include "core/simd.hpp"
 
 namespace ellipse {
 
@@ -33,12 +34,6 @@ inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
 void gradients_along(
     const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
 inline constexpr std::size_t kLongestLine = 16;
-
-/// Which instructions the hot loops use. All give the same integers.
-enum class Simd { kBaseline, kAvx2 };
-
-/// The best that this processor has.
-[[nodiscard]] Simd best_simd();
 
 /// The gradient of a picture and its crests, in one pass over the rows.
 ///

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/ellipse_fit.hpp"
+#include "core/simd.hpp"
 
 namespace ellipse {
 namespace {
@@ -34,8 +35,6 @@ constexpr double kTukeyOfSigma = 4.7;
 constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution's absolute values
 constexpr double kLeastShare = 0.5;
 
-using Lanes = Eigen::Array<float, kLanes, 1>;
-
 // What is summed over a sector's pixels: the step s of height 1 between the two levels, its slope
 // g, its change w as it gets narrower, and the brightness i.
 enum Sum { k1, kS, kSS, kI, kIS, kII, kG, kGS, kGG, kIG, kW, kWS, kWG, kWW, kIW, kSums };
@@ -57,61 +56,102 @@ struct Crossing {
   float bend = 0.0F;                    // and half its second derivative
 };
 
+// The sums of a sector's lines, lane by lane.
+struct LaneSums {
+  alignas(32) float of[kSums][kLanes] = {};
+};
+
+// For every processor, and once more for those with wider registers: the same numbers.
+template <bool kWithWidth>
+ELLIPSE_INLINE void add_line(const Crossing& crossing,
+                             float inside_px,
+                             float inverse_step,
+                             LaneSums& sums) {
+  constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
+  alignas(16) std::uint8_t levels[kLanes];
+  const std::uint8_t* pixel = crossing.pixel - kBefore * crossing.along;
+  for (std::uint8_t& level : levels) {
+    level = *pixel;
+    pixel += crossing.along;
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const float t = static_cast<float>(lane - kBefore) - crossing.offset;
+    const float distance = t * (crossing.slope + crossing.bend * t);
+    const float one = distance >= -inside_px && distance <= kOutsidePx ? 1.0F : 0.0F;
+    // Its slope is (1 - x^2)^3: much like a Gaussian's, without an exponential.
+    const float x = std::min(1.0F, std::max(-1.0F, distance * inverse_step));
+    const float xx = x * x;
+    const float rest = 1.0F - xx;
+    const float g = 35.0F / 32.0F * inverse_step * (one * rest * rest * rest);
+    const float s =
+        one * (0.5F + x * (35.0F + xx * (-35.0F + xx * (21.0F - 5.0F * xx))) * (1.0F / 32.0F));
+    const float i = one * (static_cast<float>(levels[lane]) - 128.0F);
+    sums.of[k1][lane] += one;
+    sums.of[kS][lane] += s;
+    sums.of[kSS][lane] += s * s;
+    sums.of[kI][lane] += i;
+    sums.of[kIS][lane] += i * s;
+    sums.of[kII][lane] += i * i;
+    sums.of[kG][lane] += g;
+    sums.of[kGS][lane] += g * s;
+    sums.of[kGG][lane] += g * g;
+    sums.of[kIG][lane] += i * g;
+    if constexpr (kWithWidth) {
+      const float w = distance * g;
+      sums.of[kW][lane] += w;
+      sums.of[kWS][lane] += w * s;
+      sums.of[kWG][lane] += w * g;
+      sums.of[kWW][lane] += w * w;
+      sums.of[kIW][lane] += i * w;
+    }
+  }
+}
+
+using AddLine = void (*)(const Crossing&, float inside_px, float inverse_step, LaneSums&);
+
+template <bool kWithWidth>
+void add_line_baseline(const Crossing& crossing, float inside, float inverse, LaneSums& sums) {
+  add_line<kWithWidth>(crossing, inside, inverse, sums);
+}
+
+template <bool kWithWidth>
+ELLIPSE_AVX2 void add_line_avx2(const Crossing& crossing,
+                                float inside,
+                                float inverse,
+                                LaneSums& sums) {
+  add_line<kWithWidth>(crossing, inside, inverse, sums);
+}
+
 class Accumulator {
  public:
-  Accumulator(double inside_px, double step_px)
+  Accumulator(double inside_px, double step_px, bool tells_width)
       : inside_px_(static_cast<float>(std::min(inside_px, kPhotometricBandPx))),
-        inverse_step_(static_cast<float>(1.0 / step_px)) {}
-
-  // Without kW and what contains it, unless asked for.
-  template <bool kWithWidth>
-  void add(const Crossing& crossing) {
-    constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
-    Lanes i;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      i[lane] = static_cast<float>(crossing.pixel[(lane - kBefore) * crossing.along]);
-    }
-    const Lanes t = Lanes::LinSpaced(-kBefore, kLanes - 1 - kBefore) - crossing.offset;
-    const Lanes distance = t * (crossing.slope + crossing.bend * t);
-    const Lanes one = (distance >= -inside_px_ && distance <= kOutsidePx).cast<float>();
-    // Its slope is (1 - x^2)^3: much like a Gaussian's, without an exponential.
-    const Lanes x = (distance * inverse_step_).max(-1.0F).min(1.0F);
-    const Lanes xx = x * x;
-    const Lanes rest = 1.0F - xx;
-    const Lanes g = (35.0F / 32.0F * inverse_step_) * (one * rest * rest * rest);
-    const Lanes s =
-        one * (0.5F + x * (35.0F + xx * (-35.0F + xx * (21.0F - 5.0F * xx))) * (1.0F / 32.0F));
-    i = one * (i - 128.0F);
-    sums_.col(k1) += one;
-    sums_.col(kS) += s;
-    sums_.col(kSS) += s * s;
-    sums_.col(kI) += i;
-    sums_.col(kIS) += i * s;
-    sums_.col(kII) += i * i;
-    sums_.col(kG) += g;
-    sums_.col(kGS) += g * s;
-    sums_.col(kGG) += g * g;
-    sums_.col(kIG) += i * g;
-    if constexpr (kWithWidth) {
-      const Lanes w = distance * g;
-      sums_.col(kW) += w;
-      sums_.col(kWS) += w * s;
-      sums_.col(kWG) += w * g;
-      sums_.col(kWW) += w * w;
-      sums_.col(kIW) += i * w;
+        inverse_step_(static_cast<float>(1.0 / step_px)) {
+    if (best_simd() == Simd::kAvx2) {
+      add_ = tells_width ? add_line_avx2<true> : add_line_avx2<false>;
+    } else {
+      add_ = tells_width ? add_line_baseline<true> : add_line_baseline<false>;
     }
   }
 
+  void add(const Crossing& crossing) { add_(crossing, inside_px_, inverse_step_, sums_); }
+
   [[nodiscard]] Sums take() {
-    const Sums sums = sums_.colwise().sum().transpose().cast<double>();
-    sums_.setZero();
+    Sums sums;
+    for (int k = 0; k < kSums; ++k) {
+      float sum = 0.0F;
+      for (const float lane : sums_.of[k]) sum += lane;
+      sums[k] = sum;
+    }
+    sums_ = {};
     return sums;
   }
 
  private:
   float inside_px_;
   float inverse_step_;
-  Eigen::Array<float, kLanes, kSums> sums_ = Eigen::Array<float, kLanes, kSums>::Zero();
+  AddLine add_;
+  LaneSums sums_;
 };
 
 struct Pass {
@@ -128,14 +168,12 @@ class Band {
         center_(e.center()),
         shape_(shape_matrix(e)),
         conic_(shape_.inverse()),
-        accumulator_(inside_px, pass.step_px) {
+        accumulator_(inside_px, pass.step_px, pass.tells_width) {
     const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
     stride_ = static_cast<int>(std::ceil(lines / pass.most_lines));
     lines_of_sector_ =
         static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kUsualSectors)));
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      pass.tells_width ? read<true>(quarter) : read<false>(quarter);
-    }
+    for (int quarter = 0; quarter < 4; ++quarter) read(quarter);
     close_sector();
   }
 
@@ -150,7 +188,6 @@ class Band {
  private:
   // The quarter whose normals are within 45 degrees of an axis, by lines of pixels along it: the
   // top one by columns from left to right, the right one by rows downwards, and so on around.
-  template <bool kWithWidth>
   void read(int quarter) {
     const int axis = quarter % 2;  // from line to line
     const int other = 1 - axis;
@@ -170,7 +207,8 @@ class Band {
     const std::ptrdiff_t step = axis == 0 ? 1 : luma_.stride;
     const double c = 1.0 / conic_(other, other);
     const double slant = -conic_(0, 1) * c;
-    const double determinant = conic_.determinant() * c;
+    const double stretch = conic_.determinant();
+    const double determinant = stretch * c;
     for (int line = forth > 0 ? low : high; line >= low && line <= high; line += forth * stride_) {
       Eigen::Vector2d at;
       at[axis] = line - center_[axis];
@@ -182,16 +220,14 @@ class Band {
       const Eigen::Vector2d gradient = conic_ * at;
       const double inverse = 1.0 / gradient.norm();
       const Eigen::Vector2d outwards = inverse * gradient;
-      const Eigen::Vector2d tangent(-outwards.y(), outwards.x());
-      const double curvature = tangent.dot(conic_ * tangent) * inverse;
+      const double curvature = stretch * inverse * inverse * inverse;
       sectors_[count_].outwards += outwards;
       sectors_[count_].curvature += curvature;
-      accumulator_.add<kWithWidth>(
-          {luma_.data + nearest * along + line * step,
-           along,
-           static_cast<float>(crossing - nearest),
-           static_cast<float>(outwards[other]),
-           static_cast<float>(0.5 * curvature * tangent[other] * tangent[other])});
+      accumulator_.add({luma_.data + nearest * along + line * step,
+                        along,
+                        static_cast<float>(crossing - nearest),
+                        static_cast<float>(outwards[other]),
+                        static_cast<float>(0.5 * curvature * outwards[axis] * outwards[axis])});
       if (++sectors_[count_].lines >= lines_of_sector_) close_sector();
     }
   }
@@ -219,8 +255,9 @@ class Band {
 
 // The two levels and the step between them that explain a sector's pixels best.
 struct Step {
-  Eigen::Vector4d values;      // level inside, contrast, and contrast x (offset inwards, narrower)
-  Eigen::Matrix4d covariance;  // per variance of the noise
+  // Level inside, contrast, and contrast x (offset inwards, narrower).
+  Eigen::Vector4d values = Eigen::Vector4d::Zero();
+  double offset_variance = 0.0;  // of values[2], per variance of the noise
 };
 
 Eigen::Matrix4d normal_matrix(const Sums& sums) {
@@ -236,14 +273,20 @@ Eigen::Vector4d right_side(const Sums& sums) {
   return {sums[kI], sums[kIS], sums[kIG], sums[kIW]};
 }
 
-Step fitted(const Sums& sums) {
-  Eigen::Matrix4d normal = normal_matrix(sums);
+template <int kValues>
+Step solved(const Sums& sums) {
+  Eigen::Matrix<double, kValues, kValues> normal =
+      normal_matrix(sums).topLeftCorner<kValues, kValues>();
   normal.diagonal() *= 1.0 + 1e-9;
-  normal(3, 3) += 1e-9;  // where no width is told
+  const Eigen::Matrix<double, kValues, kValues> covariance = normal.inverse();
   Step step;
-  step.covariance = normal.inverse();
-  step.values = step.covariance * right_side(sums);
+  step.values.template head<kValues>() = covariance * right_side(sums).head<kValues>();
+  step.offset_variance = covariance(2, 2);
   return step;
+}
+
+Step fitted(const Sums& sums) {
+  return sums[kWW] > 0.0 ? solved<4>(sums) : solved<3>(sums);
 }
 
 // Sum of the squared differences between the pixels and a step.
@@ -284,7 +327,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
   const double noise = kNoiseFloor + rest / std::max(1.0, own[k1] - 3.0);
   const bool is_alike = squares(own, shared.values) - rest < kAlike * noise;
   const Eigen::Vector4d& values = is_alike ? shared.values : alone.values;
-  const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.covariance(2, 2));
+  const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.offset_variance);
   return Edge{&sectors[i],
               -values[2] / values[1],
               variance / (values[1] * values[1]),
