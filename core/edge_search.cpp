@@ -161,45 +161,52 @@ void EdgeSearch::look(const ImageView& luma,
   }
 }
 
-// Differences of box averages along the normal: from dark to bright they are above 0.
+// Differences of box averages across the edge, from dark to bright above 0. Read along the row or
+// column of pixels that is closest to the normal: no pixel has to be interpolated.
 void EdgeSearch::look_along(const ImageView& luma,
                             double gain,
                             double reach_px,
                             EdgeSample& sample) const {
   sample.count = 0;
-  const double step = std::max(1.0, reach_px / kMostSteps);
-  const int steps = static_cast<int>(std::ceil(reach_px / step));
+  sample.is_seen = false;
+  const Eigen::Vector2d& normal = sample.view.normal;
+  const int axis = std::abs(normal.x()) > std::abs(normal.y()) ? 0 : 1;
+  const int other = 1 - axis;
+  const double slope = normal[axis];
+  const Eigen::Array2i size(luma.width, luma.height);
+  const Eigen::Vector2d& point = sample.view.point;
+  const double line = std::floor(point[other] + 0.5);
+  if (!(line >= 0.0 && line < size[other])) return;
+  const double crossing = point[axis] + normal[other] / slope * (point[other] - line);
+  if (!(crossing >= 0.0 && crossing <= size[axis] - 1.0)) return;
+  const int middle = static_cast<int>(crossing + 0.5);
+
+  const double reach = reach_px / std::abs(slope);
+  const int step = std::max(1, static_cast<int>(std::ceil(reach / kMostSteps)));
+  const int steps = static_cast<int>(std::ceil(reach / step));
+  const double step_px = step * std::abs(slope);
   const double gap_px = narrowest_ * sample.view.px_per_unit;
-  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step, 1.0, double(kMostBox)));
-  // As much of the normal as is inside the picture.
-  const Eigen::Vector2d across = step * sample.view.normal;
-  int first = -steps - box;
-  int last = steps + box;
-  const double rest = 1.05;  // 1, and what steps add up to in floats
-  const Eigen::Vector2d high(luma.width - rest, luma.height - rest);
-  for (int axis = 0; axis < 2; ++axis) {
-    const double at = sample.view.point[axis];
-    const double slope = across[axis];
-    if (std::abs(slope) < 1e-6) continue;
-    const double to_low = (0.0 - at) / slope;
-    const double to_high = (high[axis] - at) / slope;
-    first = std::max(first, static_cast<int>(std::ceil(std::min(to_low, to_high))));
-    last = std::min(last, static_cast<int>(std::floor(std::max(to_low, to_high))));
-  }
+  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step_px, 1.0, double(kMostBox)));
+  const bool is_forth = slope > 0.0;
+  const int before = (is_forth ? middle : size[axis] - 1 - middle) / step;
+  const int behind = (is_forth ? size[axis] - 1 - middle : middle) / step;
+  const int first = -std::min(steps + box, before);
+  const int last = std::min(steps + box, behind);
   sample.is_seen = first <= -box && last >= box;
   if (!sample.is_seen) return;
 
-  const int levels = last - first + 1;
-  const auto n = static_cast<std::size_t>(levels);
+  const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
+  const std::ptrdiff_t stride = (is_forth ? step : -step) * along;
+  const std::uint8_t* pixel = luma.data + middle * along +
+                              static_cast<int>(line) * (axis == 0 ? luma.stride : 1) +
+                              first * stride;
+  const auto n = static_cast<std::size_t>(last - first + 1);
   std::array<float, kLongestProfile + 1> sums;  // of all levels before
   sums[0] = 0.0F;
-  auto x = static_cast<float>(sample.view.point.x() + first * across.x());
-  auto y = static_cast<float>(sample.view.point.y() + first * across.y());
-  for (std::size_t i = 0; i < n; ++i) {
-    sums[i + 1] = sums[i] + luma.at(x, y);
-    x += static_cast<float>(across.x());
-    y += static_cast<float>(across.y());
+  for (std::size_t i = 0; i < n; ++i, pixel += stride) {
+    sums[i + 1] = sums[i] + static_cast<float>(*pixel);
   }
+  const auto middle_px = static_cast<float>(slope * (middle - crossing));
   const auto half = static_cast<std::size_t>(box);
   const float scale = 1.0F / static_cast<float>(box);
   std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
@@ -214,7 +221,7 @@ void EdgeSearch::look_along(const ImageView& luma,
     const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
     const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
     const float at = static_cast<float>(first) + static_cast<float>(i) - 0.5F + vertex;
-    EdgeCandidate candidate{at * static_cast<float>(step), here};
+    EdgeCandidate candidate{at * static_cast<float>(step_px) + middle_px, here};
     if (std::abs(candidate.distance_px) > reach_px) continue;
     for (int k = 0; k < sample.count; ++k) {  // the strongest first
       EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];

@@ -91,7 +91,7 @@ class EdgeTracker {
                                               const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
-  Refinement refinement_ = Refinement::kPhotometric;
+  Refinement refinement_ = Refinement::kEdges;
   double ring_ratio_ = 0.0;
   PadModel model_;
   EdgeSearch search_;

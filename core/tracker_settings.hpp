@@ -19,7 +19,7 @@ enum class TrackingMode {
 struct TrackerSettings {
   DetectorKind detector = DetectorKind::kArcs;
   TrackingMode tracking = TrackingMode::kEdges;
-  Refinement refine = Refinement::kPhotometric;  ///< Of the ellipse while its edges are followed.
+  Refinement refine = Refinement::kEdges;  ///< Of the ellipse while its edges are followed.
   Overlaps detect_overlaps = {};                 ///< Each 0 = the detector's own.
   Overlaps track_overlaps = {};                  ///< Each 0 = the detector's own.
   Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
