@@ -18,6 +18,8 @@ constexpr int kMostShift = static_cast<int>((kExtent - 1.0) * kRadius);
 constexpr int kAngles = 32;
 constexpr std::array<double, 3> kSizes = {0.88, 1.0, 1.14};
 constexpr double kSaturation = 0.6;  // of the outer circle's contrast
+constexpr std::size_t kFewer = 6;    // one of these points, at first
+constexpr double kWorthwhile = 0.4;  // of the best score so far, to look at all
 constexpr double kFarPenalty = 0.15;
 constexpr double kLeastScore = 0.3;
 constexpr int kLeastSeen = 6;
@@ -88,10 +90,13 @@ class Patch {
   }
 
   // Mean agreement of a circle around a cell, 0 to 1; 0 where too little of it is inside.
-  [[nodiscard]] double agreement(const Template& circle, int x, int y) const {
+  // @param step  1 = all of its points count.
+  [[nodiscard]] double agreement(const Template& circle, int x, int y, std::size_t step = 1) const {
     float sum = 0.0F;
     int seen = 0;
-    for (const TemplatePoint& point : circle) {
+    const int least = std::max(1, kLeastSeen / static_cast<int>(step));
+    for (std::size_t k = 0; k < circle.size(); k += step) {
+      const TemplatePoint& point = circle[k];
       const int i = x + point.x;
       const int j = y + point.y;
       if (i < 1 || j < 1 || i + 1 >= kCells || j + 1 >= kCells || !is_known_[index(i, j)]) continue;
@@ -99,7 +104,7 @@ class Patch {
       const CellGradient& g = gradients_[index(i, j)];
       sum += std::max(0.0F, g.x * point.nx + g.y * point.ny);
     }
-    return seen >= kLeastSeen ? static_cast<double>(sum) / (seen + kLeastSeen) : 0.0;
+    return seen >= least ? static_cast<double>(sum) / (seen + least) : 0.0;
   }
 
  private:
@@ -132,6 +137,7 @@ std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
       for (int dx = -kMostShift; dx <= kMostShift; ++dx) {
         const int x = kCells / 2 + dx;
         const int y = kCells / 2 + dy;
+        if (patch.agreement(outer, x, y, kFewer) <= kWorthwhile * best) continue;
         double score = patch.agreement(outer, x, y);
         if (score <= 0.5 * best) continue;
         if (has_ring) score = 0.5 * (score + std::min(score, patch.agreement(inner, x, y)));
