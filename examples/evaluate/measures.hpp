@@ -16,7 +16,7 @@ enum class Outcome {
   kFalsePositive,  ///< One, though there is none.
   kFalseNegative,  ///< None, though the target is visible.
   kWrong,          ///< Another one, though the target is visible.
-  kNotJudged,      ///< Not labelled, or too little visible and the answer is wrong.
+  kNotJudged,      ///< Not labelled, or too little visible to tell that the answer is right.
 };
 inline constexpr int kOutcomes = 6;
 inline constexpr std::array<const char*, kOutcomes> kOutcomeNames = {
@@ -35,6 +35,12 @@ struct FrameSize {
   int width = 0;
   int height = 0;
 };
+
+/// Share of the target's perimeter inside the frame, 0 to 1; 0 where there is no target.
+[[nodiscard]] double visible_part(const Truth& truth, const FrameSize& frame);
+
+/// Whether the frame shows anything of the target: a part of its perimeter, or its inside alone.
+[[nodiscard]] bool is_in_view(const Truth& truth, const FrameSize& frame);
 
 [[nodiscard]] bool is_right(const ellipse::Ellipse& answer,
                             const ellipse::Ellipse& truth,
