@@ -55,7 +55,9 @@ void add_options(CLI::App& app, Options& options) {
           ->excludes(datasets)
           ->excludes(sweep);
   for (CLI::Option* option :
-       {app.add_option("--methods", options.methods, "Separated by commas; none = all of them")
+       {app.add_option("--methods",
+                       options.methods,
+                       "Separated by commas; none = all but those that are told the target")
             ->delimiter(','),
         app.add_option("--peer",
                        options.peers,

@@ -16,7 +16,7 @@ enum class Outcome {
   kFalsePositive,  ///< One, though there is none.
   kFalseNegative,  ///< None, though the target is visible.
   kWrong,          ///< Another one, though the target is visible.
-  kNotJudged,      ///< Not labelled, or too little visible to tell that the answer is right.
+  kNotJudged,      ///< Not labelled, told, or too little visible to tell that it is right.
 };
 inline constexpr int kOutcomes = 6;
 inline constexpr std::array<const char*, kOutcomes> kOutcomeNames = {
@@ -30,6 +30,9 @@ enum class Rule {
 
 /// A target with less of its perimeter than this inside the frame may go unseen.
 inline constexpr double kLeastVisible = 0.3;
+
+/// A target with this much of its perimeter inside the frame can be followed from there on.
+inline constexpr double kLeastToStart = 0.5;
 
 struct FrameSize {
   int width = 0;
@@ -60,6 +63,7 @@ struct Result {
   double centre_error_px = 0.0;  ///< Where the outcome is kTruePositive.
   int scale = 1;                 ///< Frame scale at which the answer was found.
   std::optional<ellipse::Ellipse> answer;
+  bool is_given = false;  ///< The answer is the truth that the method was told.
 };
 
 /// The results of many frames.

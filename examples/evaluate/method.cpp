@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/target_selection.hpp"
+#include "examples/evaluate/box_peers.hpp"
 #include "examples/evaluate/command_peer.hpp"
 #include "examples/evaluate/peer_detection.hpp"
 #include "examples/evaluate/peers.hpp"
@@ -101,10 +102,16 @@ std::unique_ptr<Method> make_tracker_method(const std::string& name,
   return std::make_unique<TrackerMethod>(name, settings);
 }
 
-std::vector<std::string> method_names() {
+std::vector<std::string> unaided_method_names() {
   std::vector<std::string> names;
   for (const OwnMethod& own : own_methods()) names.push_back(own.name);
   for (const char* peer : peer_names()) names.emplace_back(peer);
+  return names;
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names = unaided_method_names();
+  for (const char* peer : box_peer_names()) names.emplace_back(peer);
   return names;
 }
 
@@ -120,6 +127,9 @@ std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSet
     ellipse::TrackerSettings single_frames;
     single_frames.tracking = ellipse::TrackingMode::kNone;
     return std::make_unique<TrackerMethod>(name, single_frames, make_peer(peer));
+  }
+  for (const char* peer : box_peer_names()) {
+    if (name == peer) return make_box_method(peer);
   }
   std::string names;
   for (const std::string& known : method_names()) names += (names.empty() ? "" : ", ") + known;

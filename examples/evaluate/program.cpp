@@ -180,7 +180,7 @@ class Program {
 
   std::vector<std::unique_ptr<Method>> make_methods() {
     std::vector<std::string> names = options_.methods;
-    if (names.empty()) names = method_names();
+    if (names.empty()) names = unaided_method_names();
     std::vector<std::unique_ptr<Method>> methods;
     for (const std::string& name : names) methods.push_back(make_method(name, settings_));
     if (!peers_.empty()) {
