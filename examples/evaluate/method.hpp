@@ -52,7 +52,9 @@ class Method {
 [[nodiscard]] std::vector<std::string> method_names();
 
 /// One of them by its name. The packaged detectors look at single frames, and choose their target
-/// as ours do.
+/// as ours do. The packaged trackers are told the truth in the first frame that shows at least
+/// kLeastToStart of the perimeter, and again after they report a loss; such an answer is given, and
+/// has no time.
 /// @param settings  All but detector and tracking mode, of those of ours.
 /// Throws std::invalid_argument that lists the names, where it is unknown.
 [[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name,

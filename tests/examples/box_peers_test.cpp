@@ -11,6 +11,7 @@
 #include <string>
 
 #include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/method.hpp"
 #include "tests/support/picture.hpp"
 
 namespace evaluate {
@@ -29,7 +30,7 @@ ellipse::Scene marked_pad() {
 // A sequence in which the pad is where it is put.
 class EachBoxPeer : public testing::TestWithParam<const char*> {
  protected:
-  EachBoxPeer() : method_(make_box_method(GetParam())) { method_->start(); }
+  EachBoxPeer() : method_(make_method(GetParam(), {})) { method_->start(); }
 
   Answer see(const ellipse::Ellipse& pad) {
     support::Picture picture = support::rendered(marked_pad(), pad);
@@ -127,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(BoxPeers,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(BoxPeers, CsrtCarriesTheEllipseToALargerBox) {
-  const auto csrt = make_box_method("csrt");
+  const auto csrt = make_method("csrt", {});
   csrt->start();
   ellipse::Ellipse pad{160.0, 120.0, 40.0, 30.0, 0.4};
   std::optional<ellipse::Ellipse> last;
@@ -148,7 +149,7 @@ TEST(BoxPeers, CsrtCarriesTheEllipseToALargerBox) {
 
 TEST(BoxPeers, AnUnknownOneIsNamed) {
   try {
-    (void)make_box_method("goturn");
+    (void)make_box_peer("goturn");
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("\"goturn\""), std::string::npos);
