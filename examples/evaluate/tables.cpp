@@ -95,8 +95,8 @@ Table measures_table(const Evaluation& evaluation, const std::string& dataset) {
   }
   table.note = std::to_string(frames) + " frames";
   if (not_judged > 0) {
-    table.note +=
-        "; not judged, because not labelled or hardly visible: up to " + std::to_string(not_judged);
+    table.note += "; not judged, because not labelled, told or hardly visible: up to " +
+                  std::to_string(not_judged);
   }
   return table;
 }
