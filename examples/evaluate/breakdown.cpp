@@ -56,10 +56,7 @@ std::vector<Axis> axes() {
        "perimeter inside the frame [%]",
        100.0,
        {0.3, 0.5, 0.7, 0.9, 1.0},
-       of_target([](const SeenFrame& seen) {
-         return seen.frame->truth.visible_fraction.value_or(ellipse::visible_fraction(
-             *seen.frame->truth.target, seen.size.width, seen.size.height));
-       })},
+       of_target([](const SeenFrame& seen) { return visible_part(seen.frame->truth, seen.size); })},
       {"Recall by noise",
        "standard deviation [grey levels]",
        1.0,

@@ -16,9 +16,10 @@ namespace evaluate {
 
 /// What a frame shows, according to its data set.
 struct Truth {
-  /// The target's outer edge [px]. nullopt where the frame shows none.
+  /// The target's outer edge [px]. nullopt where the frame shows nothing of the target.
   std::optional<ellipse::Ellipse> target;
-  /// Share of the perimeter inside the frame. nullopt where the data set does not say.
+  /// Share of the perimeter inside the frame, 0 where the target is larger than the frame. nullopt
+  /// where the data set does not say.
   std::optional<double> visible_fraction;
   /// False where the target is known to be there, but not where: such a frame is not judged.
   bool is_labelled = true;

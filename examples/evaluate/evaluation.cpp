@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/scene/random.hpp"
+#include "examples/evaluate/text.hpp"
 
 namespace evaluate {
 namespace {
@@ -41,7 +42,9 @@ Result judged(const Answer& answer, const SeenFrame& seen, double reference_ms, 
   result.processing_ms = answer.processing_ms;
   result.reference_ms = reference_ms;
   result.scale = answer.scale;
-  result.outcome = judge(answer.target, seen.frame->truth, seen.size, rule);
+  result.is_given = answer.is_given;
+  result.outcome = answer.is_given ? Outcome::kNotJudged
+                                   : judge(answer.target, seen.frame->truth, seen.size, rule);
   if (result.outcome == Outcome::kTruePositive) {
     result.centre_error_px = (answer.target->center() - seen.frame->truth.target->center()).norm();
   }
@@ -165,7 +168,8 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
     } else {
       out << "null";
     }
-    out << ",\"ms\":[" << result.processing_ms << "],\"outcome\":\""
+    out << ",\"visible\":" << visible_part(seen.frame->truth, seen.size) << ",\"ms\":["
+        << json_number(result.processing_ms) << "],\"outcome\":\""
         << kOutcomeNames[static_cast<std::size_t>(result.outcome)] << "\"}\n";
   }
 }

@@ -56,7 +56,8 @@ struct Evaluation {
                                                     const std::string& dataset);
 
 /// One JSON line a frame, of one method:
-/// {"image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"ms":[..],"outcome":"TP"}.
+/// {"image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,"ms":[..],
+/// "outcome":"TP"}, visible being the share of the true perimeter inside the frame.
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method);
 
 }  // namespace evaluate

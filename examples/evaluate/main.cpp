@@ -24,7 +24,16 @@ void add_options(CLI::App& app, Options& options) {
   CLI::Option* datasets =
       app.add_option("DATASET",
                      options.datasets,
-                     "Folders with gt.csv or ground_truth.txt; none = the rendered twin");
+                     "Folders with gt.csv or ground_truth.txt; scenes:SEED, scenes:FROM-TO or a "
+                     "list of them = all scenes of the catalog; none = the rendered twin");
+  app.add_option("--seconds", options.pace.seconds, "How long each of scenes:SEED is")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber)
+      ->needs(datasets);
+  app.add_option("--fps", options.pace.frames_per_second, "Frames a second of scenes:SEED")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber)
+      ->needs(datasets);
   app.add_option("--set", options.settings, "property=value, as of the element ellipsetrack")
       ->allow_extra_args(false);
   app.add_option("--rule", options.rule, "When an answer is right")
@@ -46,7 +55,9 @@ void add_options(CLI::App& app, Options& options) {
           ->excludes(datasets)
           ->excludes(sweep);
   for (CLI::Option* option :
-       {app.add_option("--methods", options.methods, "Separated by commas; none = all of them")
+       {app.add_option("--methods",
+                       options.methods,
+                       "Separated by commas; none = all but those that are told the target")
             ->delimiter(','),
         app.add_option("--peer",
                        options.peers,

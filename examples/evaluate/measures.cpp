@@ -31,13 +31,22 @@ bool is_within_tenth(double answer, double truth) {
   return std::abs(answer - truth) <= 0.1 * truth;
 }
 
-double visible_fraction(const Truth& truth, const FrameSize& frame) {
+}  // namespace
+
+double visible_part(const Truth& truth, const FrameSize& frame) {
   if (!truth.target) return 0.0;
   return truth.visible_fraction.value_or(
       ellipse::visible_fraction(*truth.target, frame.width, frame.height));
 }
 
-}  // namespace
+bool is_in_view(const Truth& truth, const FrameSize& frame) {
+  if (!truth.target) return false;
+  if (visible_part(truth, frame) > 0.0) return true;
+  // Without any of its perimeter the frame is inside or outside as a whole.
+  const ellipse::Interval inside = chord(*truth.target, 0.5 * (frame.height - 1));
+  const double middle = 0.5 * (frame.width - 1);
+  return inside.begin < middle && middle < inside.end;
+}
 
 bool is_right(const ellipse::Ellipse& answer,
               const ellipse::Ellipse& truth,
@@ -57,11 +66,16 @@ Outcome judge(const std::optional<ellipse::Ellipse>& answer,
               const FrameSize& frame,
               Rule rule) {
   if (!truth.is_labelled) return Outcome::kNotJudged;
-  const double visible = visible_fraction(truth, frame);
-  if (!(visible > 0.0)) return answer ? Outcome::kFalsePositive : Outcome::kTrueNegative;
+  if (!is_in_view(truth, frame)) {
+    return answer ? Outcome::kFalsePositive : Outcome::kTrueNegative;
+  }
+  const double visible = visible_part(truth, frame);
   const bool may_go_unseen = visible < kLeastVisible;
   if (!answer) return may_go_unseen ? Outcome::kTrueNegative : Outcome::kFalseNegative;
-  if (is_right(*answer, *truth.target, frame, rule)) return Outcome::kTruePositive;
+  // Where the target is larger than the frame, anything larger overlaps it.
+  if (visible > 0.0 && is_right(*answer, *truth.target, frame, rule)) {
+    return Outcome::kTruePositive;
+  }
   return may_go_unseen ? Outcome::kNotJudged : Outcome::kWrong;
 }
 

@@ -16,7 +16,7 @@ enum class Outcome {
   kFalsePositive,  ///< One, though there is none.
   kFalseNegative,  ///< None, though the target is visible.
   kWrong,          ///< Another one, though the target is visible.
-  kNotJudged,      ///< Not labelled, or too little visible and the answer is wrong.
+  kNotJudged,      ///< Not labelled, told, or too little visible to tell that it is right.
 };
 inline constexpr int kOutcomes = 6;
 inline constexpr std::array<const char*, kOutcomes> kOutcomeNames = {
@@ -31,10 +31,19 @@ enum class Rule {
 /// A target with less of its perimeter than this inside the frame may go unseen.
 inline constexpr double kLeastVisible = 0.3;
 
+/// A target with this much of its perimeter inside the frame can be followed from there on.
+inline constexpr double kLeastToStart = 0.5;
+
 struct FrameSize {
   int width = 0;
   int height = 0;
 };
+
+/// Share of the target's perimeter inside the frame, 0 to 1; 0 where there is no target.
+[[nodiscard]] double visible_part(const Truth& truth, const FrameSize& frame);
+
+/// Whether the frame shows anything of the target: a part of its perimeter, or its inside alone.
+[[nodiscard]] bool is_in_view(const Truth& truth, const FrameSize& frame);
 
 [[nodiscard]] bool is_right(const ellipse::Ellipse& answer,
                             const ellipse::Ellipse& truth,
@@ -54,6 +63,7 @@ struct Result {
   double centre_error_px = 0.0;  ///< Where the outcome is kTruePositive.
   int scale = 1;                 ///< Frame scale at which the answer was found.
   std::optional<ellipse::Ellipse> answer;
+  bool is_given = false;  ///< The answer is the truth that the method was told.
 };
 
 /// The results of many frames.

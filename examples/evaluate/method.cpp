@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "core/target_selection.hpp"
+#include "examples/evaluate/box_peers.hpp"
 #include "examples/evaluate/command_peer.hpp"
+#include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/peer_detection.hpp"
 #include "examples/evaluate/peers.hpp"
 
@@ -44,6 +46,36 @@ class TrackerMethod : public Method {
 
  private:
   ellipse::Tracker tracker_;
+};
+
+// Cannot find a target, so that it is told one: in the first frame that shows enough of it, and
+// again after each loss.
+class BoxMethod : public Method {
+ public:
+  explicit BoxMethod(const char* peer) : Method(peer), peer_(make_box_peer(peer)) {}
+
+  void start() override { peer_.stop(); }
+
+  Answer find(const Frame& frame, const cv::Mat& picture, std::int64_t /*pts_ns*/) override {
+    Answer answer;
+    if (peer_.is_following()) {
+      const BoxPeer::Step step = peer_.follow(picture);
+      answer.target = step.target;
+      answer.processing_ms = step.ms;
+      return answer;
+    }
+    answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
+    const bool is_enough = frame.truth.is_labelled &&
+                           visible_part(frame.truth, {picture.cols, picture.rows}) >= kLeastToStart;
+    if (is_enough && peer_.begin(picture, *frame.truth.target)) {
+      answer.target = frame.truth.target;
+      answer.is_given = true;
+    }
+    return answer;
+  }
+
+ private:
+  BoxPeer peer_;
 };
 
 // Answers that were all given before.
@@ -101,10 +133,16 @@ std::unique_ptr<Method> make_tracker_method(const std::string& name,
   return std::make_unique<TrackerMethod>(name, settings);
 }
 
-std::vector<std::string> method_names() {
+std::vector<std::string> unaided_method_names() {
   std::vector<std::string> names;
   for (const OwnMethod& own : own_methods()) names.push_back(own.name);
   for (const char* peer : peer_names()) names.emplace_back(peer);
+  return names;
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names = unaided_method_names();
+  for (const char* peer : box_peer_names()) names.emplace_back(peer);
   return names;
 }
 
@@ -120,6 +158,9 @@ std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSet
     ellipse::TrackerSettings single_frames;
     single_frames.tracking = ellipse::TrackingMode::kNone;
     return std::make_unique<TrackerMethod>(name, single_frames, make_peer(peer));
+  }
+  for (const char* peer : box_peer_names()) {
+    if (name == peer) return std::make_unique<BoxMethod>(peer);
   }
   std::string names;
   for (const std::string& known : method_names()) names += (names.empty() ? "" : ", ") + known;

@@ -20,6 +20,7 @@ struct Answer {
   std::optional<ellipse::Ellipse> target;
   int scale = 1;               ///< Frame scale at which it was found.
   double processing_ms = 0.0;  ///< NaN where nothing was answered.
+  bool is_given = false;       ///< The truth, told to a method that cannot find its target.
 };
 
 /// A way to find the target in a sequence.
@@ -43,10 +44,17 @@ class Method {
 [[nodiscard]] std::unique_ptr<Method> make_tracker_method(const std::string& name,
                                                           const ellipse::TrackerSettings& settings);
 
-/// The names of all methods: "contours+redetect" and so on, then the packaged peers.
+/// The names of the methods that find their target themselves: "contours+redetect" and so on, then
+/// the packaged detectors.
+[[nodiscard]] std::vector<std::string> unaided_method_names();
+
+/// The names of all methods: those, then the packaged trackers, which are told their target.
 [[nodiscard]] std::vector<std::string> method_names();
 
-/// One of them by its name. Peers look at single frames, and choose their target as ours do.
+/// One of them by its name. The packaged detectors look at single frames, and choose their target
+/// as ours do. The packaged trackers are told the truth in the first frame that shows at least
+/// kLeastToStart of the perimeter, and again after they report a loss; such an answer is given, and
+/// has no time.
 /// @param settings  All but detector and tracking mode, of those of ours.
 /// Throws std::invalid_argument that lists the names, where it is unknown.
 [[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name,

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -17,6 +18,7 @@
 #include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/progress.hpp"
 #include "examples/evaluate/report.hpp"
+#include "examples/evaluate/scenes.hpp"
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
@@ -69,11 +71,19 @@ ellipse::TrackerSettings settings_from(const Options& options) {
   return settings;
 }
 
+bool is_rendered(const Sequence& sequence) {
+  return !sequence.frames.empty() && sequence.frames.front().image.empty();
+}
+
 // Writes rendered frames to files, where another program needs files.
 void write_files(std::vector<Sequence>& sequences, const fs::path& folder) {
-  ProgressBar progress(frames_of(sequences));
-  write_dataset(sequences, folder, [&](const Frame& frame) { return advance(progress, frame); });
+  std::vector<Sequence> rendered;
+  std::copy_if(sequences.begin(), sequences.end(), std::back_inserter(rendered), is_rendered);
+  if (rendered.empty()) return;
+  ProgressBar progress(frames_of(rendered));
+  write_dataset(rendered, folder, [&](const Frame& frame) { return advance(progress, frame); });
   for (Sequence& sequence : sequences) {
+    if (!is_rendered(sequence)) continue;
     for (Frame& frame : sequence.frames) frame.image = folder / "images" / frame.name;
   }
   if (interrupted)
@@ -132,9 +142,11 @@ class Program {
       if (!options_.ground_file.empty()) ground = PictureReader().read(options_.ground_file);
       sequences_ = make_twin(ground);
     }
-    for (const std::string& folder : options_.datasets) {
-      Dataset dataset = read_dataset(folder);
-      make_names_unique(dataset, folder);
+    for (const std::string& name : options_.datasets) {
+      const auto seeds = scene_seeds(name);
+      Dataset dataset =
+          seeds ? Dataset{make_scenes(*seeds, options_.pace), {}, 0} : read_dataset(name);
+      make_names_unique(dataset, name);
       missing_frames_ += dataset.missing_frames;
       problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
       for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
@@ -142,13 +154,13 @@ class Program {
   }
 
   // Figures are given by the data set's name: two of one name must not become one.
-  void make_names_unique(Dataset& dataset, const std::string& folder) const {
+  void make_names_unique(Dataset& dataset, const std::string& name) const {
     for (Sequence& sequence : dataset.sequences) {
       const bool is_taken =
           std::any_of(sequences_.begin(), sequences_.end(), [&](const auto& known) {
             return known.dataset == sequence.dataset;
           });
-      if (is_taken) sequence.dataset = folder + ":" + sequence.dataset;
+      if (is_taken) sequence.dataset = name + ":" + sequence.dataset;
     }
   }
 
@@ -168,10 +180,10 @@ class Program {
 
   std::vector<std::unique_ptr<Method>> make_methods() {
     std::vector<std::string> names = options_.methods;
-    if (names.empty()) names = method_names();
+    if (names.empty()) names = unaided_method_names();
     std::vector<std::unique_ptr<Method>> methods;
     for (const std::string& name : names) methods.push_back(make_method(name, settings_));
-    if (!peers_.empty() && options_.datasets.empty()) {
+    if (!peers_.empty()) {
       files_.emplace();
       write_files(sequences_, files_->path());
     }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "examples/evaluate/scenes.hpp"
+
 namespace evaluate {
 
 /// What was asked for on the command line.
@@ -12,6 +14,7 @@ struct Options {
   std::vector<std::string> peers;
   std::vector<std::string> settings;
   std::vector<std::string> sweeps;
+  ScenePace pace;
   std::string rule = "iou";
   std::string ground_file;
   std::string frames_file;

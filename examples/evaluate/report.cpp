@@ -16,6 +16,7 @@
 #include "examples/evaluate/plots.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/text.hpp"
+#include "examples/evaluate/tracking_tables.hpp"
 
 namespace evaluate {
 namespace {
@@ -164,6 +165,8 @@ void write_report(const Evaluation& evaluation,
     write_tiles(out, evaluation, dataset);
     write_table(out, measures_table(evaluation, dataset), false);
     write_table(out, sequences_table(evaluation, dataset), true);
+    write_table(out, visibility_table(evaluation, dataset), false);
+    write_table(out, following_table(evaluation, dataset), false);
     out << "<h3>Where it is good, and where not</h3>\n"
         << inline_svg(plot(breakdown(evaluation, dataset), PlotFormat::kSvg)) << '\n';
     write_table(out, times_table(evaluation, dataset), false);

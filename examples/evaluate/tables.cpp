@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "examples/evaluate/text.hpp"
+#include "examples/evaluate/tracking_tables.hpp"
 
 namespace evaluate {
 namespace {
@@ -94,8 +95,8 @@ Table measures_table(const Evaluation& evaluation, const std::string& dataset) {
   }
   table.note = std::to_string(frames) + " frames";
   if (not_judged > 0) {
-    table.note +=
-        "; not judged, because not labelled or hardly visible: up to " + std::to_string(not_judged);
+    table.note += "; not judged, because not labelled, told or hardly visible: up to " +
+                  std::to_string(not_judged);
   }
   return table;
 }
@@ -177,7 +178,9 @@ std::vector<Table> all_tables(const Evaluation& evaluation, const std::string& d
   return {measures_table(evaluation, dataset),
           times_table(evaluation, dataset),
           centre_table(evaluation, dataset),
-          sequences_table(evaluation, dataset)};
+          sequences_table(evaluation, dataset),
+          visibility_table(evaluation, dataset),
+          following_table(evaluation, dataset)};
 }
 
 void print(std::ostream& out, const Table& table) {
@@ -226,6 +229,17 @@ void write_json(std::ostream& out, const Evaluation& evaluation) {
         write(i, dataset, sequence, measures_of(evaluation, i, claim));
       }
       write(i, dataset, "total", measures_of(evaluation, i, in_dataset(dataset)));
+    }
+  }
+  out << "\n],\"tracking\":[";
+  separator = "";
+  for (std::size_t i = 0; i < evaluation.methods.size(); ++i) {
+    for (const std::string& dataset : datasets_of(evaluation)) {
+      out << separator << "\n{\"method\":" << std::quoted(evaluation.methods[i].name)
+          << ",\"dataset\":" << std::quoted(dataset) << ',';
+      write_json_tracking(out, tracking_measures_of(evaluation, i, dataset));
+      out << '}';
+      separator = ",";
     }
   }
   out << "\n]}\n";

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "examples/evaluate/twin.hpp"
 
-#include <cmath>
-#include <cstdio>
-#include <optional>
-#include <string>
+#include <cstdint>
 
 #include "core/scene/catalog.hpp"
-#include "core/scene/renderer.hpp"
+#include "examples/evaluate/rendered.hpp"
 
 namespace evaluate {
 namespace {
 
 using ellipse::GroundKind;
 using ellipse::Scene;
-
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
-constexpr double kFramesPerSecond = 30.0;
 
 // What is varied among clips that are otherwise the same.
 enum Family { kNone = 0, kNoise = 1, kCrumple = 2, kBoth = 3 };
@@ -107,47 +100,6 @@ constexpr Clip kClips[] = {
     {"thin", "thin-hover", "hover", 134, 0.0, 100, 2, thin_ring},
 };
 
-// Renders the frames of one clip.
-class Rendered : public PictureSource {
- public:
-  Rendered(const Clip& clip, const Scene& scene) : clip_(clip), scene_(scene) {}
-
-  [[nodiscard]] double time_of(std::size_t frame) const {
-    return clip_.from_s + static_cast<double>(frame) * clip_.stride / kFramesPerSecond;
-  }
-
-  [[nodiscard]] std::int64_t pts_ns_of(std::size_t frame) const {
-    return std::llround(1e9 * time_of(frame));
-  }
-
-  [[nodiscard]] Truth truth_of(std::size_t frame) const {
-    const Eigen::Matrix3d view = image_from_pad(scene_, time_of(frame), kWidth, kHeight);
-    const ellipse::Truth shown = ellipse::truth_of(scene_.pad, view, kWidth, kHeight);
-    if (!(shown.visible_fraction > 0.0)) return {};
-    return {shown.outer_edge, shown.visible_fraction, true};
-  }
-
-  cv::Mat picture(const Frame& frame) override {
-    if (!renderer_) renderer_.emplace(scene_);
-    cv::Mat picture(kHeight, kWidth, CV_8UC1);
-    renderer_->render(time_of(frame.number),
-                      frame.number,
-                      {picture.data, kWidth, kHeight, static_cast<std::ptrdiff_t>(picture.step)});
-    return picture;
-  }
-
- private:
-  const Clip& clip_;
-  Scene scene_;
-  std::optional<ellipse::SceneRenderer> renderer_;  // its ground takes time and memory
-};
-
-std::string frame_name(const Clip& clip, int number) {
-  char name[96];
-  std::snprintf(name, sizeof name, "%s/frame%04d.png", clip.name, number);
-  return name;
-}
-
 Sequence make_sequence(const Clip& clip, const cv::Mat& ground) {
   Scene scene = ellipse::scene_by_name(clip.scene, clip.seed);
   clip.change(scene);
@@ -155,21 +107,11 @@ Sequence make_sequence(const Clip& clip, const cv::Mat& ground) {
     scene.ground.kind = GroundKind::kPicture;
     scene.ground.picture = ground;
   }
-  const auto rendered = std::make_shared<Rendered>(clip, scene);
   Conditions conditions;
   if ((clip.family & kNoise) != 0) conditions.noise = scene.sensor.read_noise;
   if ((clip.family & kCrumple) != 0) conditions.crumple = scene.pad.crumple;
-  Sequence sequence{clip.dataset, clip.name, {}, rendered};
-  for (int i = 0; i < clip.frames; ++i) {
-    const auto number = static_cast<std::size_t>(i);
-    sequence.frames.push_back({frame_name(clip, i),
-                               {},
-                               number,
-                               rendered->pts_ns_of(number),
-                               rendered->truth_of(number),
-                               conditions});
-  }
-  return sequence;
+  const FrameTimes times{clip.from_s, clip.frames, clip.stride};
+  return make_rendered(clip.dataset, clip.name, scene, times, conditions);
 }
 
 }  // namespace

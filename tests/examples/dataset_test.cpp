@@ -15,12 +15,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/scene/catalog.hpp"
 #include "examples/evaluate/breakdown.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"
 #include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/report.hpp"
+#include "examples/evaluate/scenes.hpp"
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
@@ -218,6 +220,51 @@ TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
     contrast += (level(out) - level(in)) / 36.0;
   }
   EXPECT_GT(contrast, 100.0);
+}
+
+TEST(Scenes, AreNamedBySeedsRangesAndLists) {
+  using Seeds = std::vector<std::uint64_t>;
+  EXPECT_EQ(scene_seeds("scenes:7"), Seeds{7});
+  EXPECT_EQ(scene_seeds("scenes:901-903,7"), (Seeds{901, 902, 903, 7}));
+  EXPECT_FALSE(scene_seeds("some/folder"));
+  for (const char* bad :
+       {"scenes:", "scenes:x", "scenes:1x", "scenes:1,", "scenes:2-1", "scenes:1-99999"}) {
+    EXPECT_THROW((void)scene_seeds(bad), std::invalid_argument) << bad;
+  }
+}
+
+TEST(Scenes, AreWholeSequencesOfTheCatalog) {
+  const std::vector<Sequence> scenes = make_scenes({5, 6}, {2.0, 15.0});
+  ASSERT_EQ(scenes.size(), 2 * ellipse::scene_catalog().size());
+  EXPECT_EQ(scenes[0].name, "approach-5");
+  EXPECT_EQ(scenes[1].name, "approach-6");
+  for (const Sequence& sequence : scenes) {
+    ASSERT_EQ(sequence.frames.size(), 30U);
+    EXPECT_EQ(sequence.dataset, "scenes");
+    EXPECT_EQ(sequence.frames[0].pts_ns, 0);
+    EXPECT_EQ(sequence.frames[29].pts_ns, 1'933'333'333);
+  }
+  const cv::Mat first = scenes[0].pictures->picture(scenes[0].frames[0]);
+  const cv::Mat last = scenes[0].pictures->picture(scenes[0].frames[29]);
+  EXPECT_GT(cv::norm(first, last, cv::NORM_INF), 0.0);
+  // Also after the last frame, when the renderer is given up.
+  EXPECT_EQ(cv::norm(first, scenes[0].pictures->picture(scenes[0].frames[0]), cv::NORM_INF), 0.0);
+  EXPECT_THROW((void)make_scenes({5}, {0.01, 15.0}), std::invalid_argument);
+}
+
+TEST(Scenes, KeepTheTruthOfAPadThatIsLargerThanThePicture) {
+  int inside_only = 0;
+  int empty = 0;
+  for (const Sequence& sequence : make_scenes({5}, {16.0, 10.0})) {
+    for (const Frame& frame : sequence.frames) {
+      inside_only += frame.truth.target && frame.truth.visible_fraction == 0.0 ? 1 : 0;
+      const bool may_be_empty = sequence.name == "negative-5" || sequence.name == "reenter-5";
+      EXPECT_TRUE(frame.truth.target || may_be_empty) << frame.name;
+      empty += frame.truth.target ? 0 : 1;
+    }
+  }
+  EXPECT_GT(inside_only, 10);
+  EXPECT_GT(empty, 160);  // all of "negative", some of "reenter"
 }
 
 TEST(PictureReader, NamesWhatItCannotRead) {

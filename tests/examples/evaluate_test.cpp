@@ -9,9 +9,11 @@
 #include <fstream>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "examples/evaluate/box_peers.hpp"
 #include "examples/evaluate/breakdown.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/evaluation.hpp"
@@ -49,6 +51,19 @@ TEST(Measures, JudgesEachOutcome) {
   EXPECT_EQ(of(std::optional<ellipse::Ellipse>(), truth_of(kTarget, 0.2)), Outcome::kTrueNegative);
   EXPECT_EQ(of(std::optional(other), truth_of(kTarget, 0.2)), Outcome::kNotJudged);
   EXPECT_EQ(of(std::optional(kTarget), Truth{{}, {}, false}), Outcome::kNotJudged);
+}
+
+TEST(Measures, ATargetLargerThanTheFrameIsNotJudged) {
+  const ellipse::Ellipse around{160.0, 120.0, 400.0, 350.0, 0.3};
+  const Truth inside = truth_of(around, 0.0);
+  EXPECT_TRUE(is_in_view(inside, kFrame));
+  EXPECT_EQ(judge(around, inside, kFrame, Rule::kIou), Outcome::kNotJudged);
+  EXPECT_EQ(judge(kTarget, inside, kFrame, Rule::kIou), Outcome::kNotJudged);
+  EXPECT_EQ(judge(std::nullopt, inside, kFrame, Rule::kIou), Outcome::kTrueNegative);
+  ellipse::Ellipse aside = around;
+  aside.cx += 1000.0;
+  EXPECT_FALSE(is_in_view(truth_of(aside, 0.0), kFrame));
+  EXPECT_EQ(judge(aside, truth_of(aside, 0.0), kFrame, Rule::kIou), Outcome::kFalsePositive);
 }
 
 TEST(Measures, RulesDifferAtTheirLimits) {
@@ -233,6 +248,22 @@ TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
   EXPECT_TRUE(m.all_times_ms().empty());
 }
 
+TEST_F(HandMade, WhatIsToldIsNotJudged) {
+  class Told : public Method {
+   public:
+    Told() : Method("told") {}
+    Answer find(const Frame&, const cv::Mat&, std::int64_t) override {
+      return {kTarget, 1, std::nan(""), true};
+    }
+  };
+  methods_[0] = std::make_unique<Told>();
+  const Evaluation evaluation = run(Rule::kIou);
+  EXPECT_EQ(measures(evaluation).count(Outcome::kNotJudged), static_cast<int>(kFrames));
+  std::ostringstream lines;
+  write_frames(lines, evaluation, 0);
+  EXPECT_NE(lines.str().find("\"visible\":1,\"ms\":[null]"), std::string::npos) << lines.str();
+}
+
 TEST_F(HandMade, BreakdownLeavesOutWhatIsHardlyVisible) {
   for (Frame& frame : sequence_.frames) frame.truth = truth_of(kTarget, 0.2);
   sequence_.frames[1].truth = truth_of(kTarget, 0.4);
@@ -273,6 +304,8 @@ TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
   EXPECT_EQ(method_names().front(), "arcs+edges");
   for (const std::string& name : method_names()) EXPECT_EQ(make_method(name, {})->name(), name);
   EXPECT_THROW((void)make_method("magic", {}), std::invalid_argument);
+  // Those that are told the truth are there by their names only.
+  EXPECT_EQ(method_names().size(), unaided_method_names().size() + box_peer_names().size());
 }
 
 TEST(Quantile, IsAnElementOfTheValues) {

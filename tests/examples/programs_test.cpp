@@ -149,6 +149,26 @@ TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", place), std::string::npos) << json;
 }
 
+TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
+  const Outcome outcome =
+      run("ellipse-evaluate",
+          "scenes:7 --seconds 0.1 --fps 30 --methods arcs+edges,kcf,csrt --json " +
+              (folder_ / "json").string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  for (const char* part : {"\n51 frames",  // 17 scenes
+                           "Tracking on scenes, by the visible part of the perimeter",
+                           "Following through scenes",
+                           "touchdown-7"}) {
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
+  }
+  std::ifstream in(folder_ / "json");
+  const std::string json((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  EXPECT_NE(json.find("{\"method\":\"csrt\",\"dataset\":\"scenes\",\"visible\":{"),
+            std::string::npos)
+      << json;
+  EXPECT_EQ(run("ellipse-evaluate", "scenes:seven").status, 1);
+}
+
 TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
   for (const char* bad : {"--methods magic", "--sweep magic=1:2:1", "--peer magic"}) {
     const Outcome outcome = run("ellipse-evaluate", bad);

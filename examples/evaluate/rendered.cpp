@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/rendered.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/scene/renderer.hpp"
+#include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/text.hpp"
+
+namespace evaluate {
+namespace {
+
+constexpr FrameSize kSize{640, 360};
+
+Truth truth_at(const ellipse::Scene& scene, double time_s) {
+  const Eigen::Matrix3d view = image_from_pad(scene, time_s, kSize.width, kSize.height);
+  const ellipse::Truth shown = ellipse::truth_of(scene.pad, view, kSize.width, kSize.height);
+  const Truth truth{shown.outer_edge, shown.visible_fraction, true};
+  return is_in_view(truth, kSize) ? truth : Truth{};
+}
+
+class RenderedPictures : public PictureSource {
+ public:
+  RenderedPictures(const ellipse::Scene& scene, const FrameTimes& times)
+      : scene_(scene), times_(times) {}
+
+  cv::Mat picture(const Frame& frame) override {
+    if (!renderer_) renderer_.emplace(scene_);
+    cv::Mat picture(kSize.height, kSize.width, CV_8UC1);
+    renderer_->render(
+        times_.at_s(frame.number),
+        frame.number,
+        {picture.data, kSize.width, kSize.height, static_cast<std::ptrdiff_t>(picture.step)});
+    const bool is_last = frame.number + 1 == static_cast<std::size_t>(times_.frames);
+    if (is_last) renderer_.reset();
+    return picture;
+  }
+
+ private:
+  ellipse::Scene scene_;
+  FrameTimes times_;
+  // Its ground takes time and memory: there from the first frame to the last.
+  std::optional<ellipse::SceneRenderer> renderer_;
+};
+
+}  // namespace
+
+Sequence make_rendered(const std::string& dataset,
+                       const std::string& name,
+                       const ellipse::Scene& scene,
+                       const FrameTimes& times,
+                       const Conditions& conditions) {
+  Sequence sequence{dataset, name, {}, std::make_shared<RenderedPictures>(scene, times)};
+  for (int i = 0; i < times.frames; ++i) {
+    const auto number = static_cast<std::size_t>(i);
+    const double time_s = times.at_s(number);
+    sequence.frames.push_back({format("%s/frame%04d.png", name.c_str(), i),
+                               {},
+                               number,
+                               std::llround(1e9 * time_s),
+                               truth_at(scene, time_s),
+                               conditions});
+  }
+  return sequence;
+}
+
+}  // namespace evaluate

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/scenes.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/scene/catalog.hpp"
+#include "examples/evaluate/rendered.hpp"
+
+namespace evaluate {
+namespace {
+
+constexpr std::string_view kPrefix = "scenes:";
+constexpr std::size_t kMostSeeds = 1000;
+constexpr double kMostFrames = 1e6;
+
+[[noreturn]] void fail(const std::string& text, const std::string& what) {
+  throw std::invalid_argument(text + ": " + what);
+}
+
+// Takes a number from the beginning of the rest.
+std::uint64_t take_seed(std::string_view& rest, const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), seed);
+  if (error != std::errc{}) fail(text, "expected scenes:SEED, scenes:FROM-TO, or a list of them");
+  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  return seed;
+}
+
+bool take(std::string_view& rest, char separator) {
+  const bool is_there = rest.starts_with(separator);
+  if (is_there) rest.remove_prefix(1);
+  return is_there;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text) {
+  if (!text.starts_with(kPrefix)) return std::nullopt;
+  std::string_view rest = std::string_view(text).substr(kPrefix.size());
+  std::vector<std::uint64_t> seeds;
+  do {
+    const std::uint64_t from = take_seed(rest, text);
+    const std::uint64_t to = take(rest, '-') ? take_seed(rest, text) : from;
+    if (to < from) fail(text, "a range must go up");
+    if (to - from >= kMostSeeds - seeds.size()) fail(text, "more than 1000 seeds");
+    for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
+  } while (take(rest, ','));
+  if (!rest.empty()) fail(text, "\"" + std::string(rest) + "\" is no seed");
+  return seeds;
+}
+
+std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds, const ScenePace& pace) {
+  const double frames = std::round(pace.seconds * pace.frames_per_second);
+  if (!(frames >= 1.0 && frames <= kMostFrames && pace.frames_per_second > 0.0)) {
+    throw std::invalid_argument("scenes: seconds and frames a second give no sequence");
+  }
+  const FrameTimes times{0.0, static_cast<int>(frames), 1, pace.frames_per_second};
+  std::vector<Sequence> sequences;
+  for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
+    for (const std::uint64_t seed : seeds) {
+      const std::string name = scene.name + ("-" + std::to_string(seed));
+      sequences.push_back(make_rendered("scenes", name, scene.make(seed), times));
+    }
+  }
+  return sequences;
+}
+
+}  // namespace evaluate

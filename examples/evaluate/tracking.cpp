@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/tracking.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace evaluate {
+namespace {
+
+constexpr std::array kRangeBegins = {0.6, 0.3, 0.15, 0.05};
+
+std::size_t range_of(double visible) {
+  std::size_t range = 0;
+  while (range < kRangeBegins.size() && visible < kRangeBegins[range]) ++range;
+  return visible > 0.0 ? range : kVisibleRanges - 1;
+}
+
+// What one answer is worth.
+struct Verdict {
+  bool is_right = false;
+  double centre_error_px = 0.0;
+  double centre_error = std::numeric_limits<double>::infinity();  // in semi-major axes
+
+  [[nodiscard]] bool is_near() const { return centre_error <= 0.05; }
+  [[nodiscard]] bool is_good() const { return is_right || is_near(); }
+};
+
+Verdict verdict_on(const Result& result, const SeenFrame& seen) {
+  if (!result.answer) return {};
+  const ellipse::Ellipse& truth = *seen.frame->truth.target;
+  const double error_px = (result.answer->center() - truth.center()).norm();
+  return {is_right(*result.answer, truth, seen.size, Rule::kIou),
+          error_px,
+          error_px / truth.semi_major};
+}
+
+// Goes through one sequence at a time.
+class Follower {
+ public:
+  explicit Follower(TrackingMeasures& measures) : measures_(measures) {}
+
+  void see(const SeenFrame& seen, const Result& result) {
+    if (!seen.frame->truth.is_labelled) return;
+    if (result.is_given) ++measures_.given;
+    const bool is_in_view = evaluate::is_in_view(seen.frame->truth, seen.size);
+    if (is_in_view) {
+      see_target(visible_part(seen.frame->truth, seen.size), verdict_on(result, seen), result);
+    } else {
+      see_nothing(result);
+    }
+  }
+
+  void end() {
+    if (waited_ > 0) measures_.returns.push_back(std::numeric_limits<double>::infinity());
+    waited_ = 0;
+  }
+
+ private:
+  void see_nothing(const Result& result) {
+    ++measures_.empty_frames;
+    measures_.locks_on_nothing += result.answer ? 1 : 0;
+    end();
+    was_lost_ = true;
+    was_visible_ = false;
+  }
+
+  void see_target(double visible, const Verdict& verdict, const Result& result) {
+    const bool is_visible = visible >= kLeastToStart;
+    const bool is_first = is_visible && !has_begun_;
+    has_begun_ = has_begun_ || is_visible;
+    if (!has_begun_) return;
+    if (is_visible) {
+      if (!was_visible_ && was_lost_ && !is_first) waited_ = 1;
+      see_return(verdict, result);
+      was_lost_ = false;
+    } else {
+      end();
+      was_lost_ = was_lost_ || !verdict.is_good();
+    }
+    was_visible_ = is_visible;
+    if (!result.is_given) count(range_of(visible), verdict, result);
+  }
+
+  void see_return(const Verdict& verdict, const Result& result) {
+    if (waited_ == 0) return;
+    if (verdict.is_right && !result.is_given) measures_.returns.push_back(waited_);
+    waited_ = verdict.is_right ? 0 : waited_ + 1;
+  }
+
+  void count(std::size_t range, const Verdict& verdict, const Result& result) {
+    RangeCounts& counts = measures_.ranges[range];
+    ++counts.frames;
+    counts.right += verdict.is_right ? 1 : 0;
+    counts.centre_5 += verdict.is_near() ? 1 : 0;
+    counts.centre_2 += verdict.centre_error <= 0.02 ? 1 : 0;
+    counts.none += result.answer ? 0 : 1;
+    counts.wrong += result.answer && !verdict.is_good() ? 1 : 0;
+    if (range == 0 && verdict.is_right) {
+      measures_.centre_errors_px.push_back(verdict.centre_error_px);
+    }
+  }
+
+  TrackingMeasures& measures_;
+  bool has_begun_ = false;
+  bool was_visible_ = false;  // to kLeastToStart, in the frame before
+  bool was_lost_ = false;     // since then
+  int waited_ = 0;            // frames since a return; 0 = for none
+};
+
+}  // namespace
+
+int TrackingMeasures::wrong() const {
+  int sum = 0;
+  for (const RangeCounts& counts : ranges) sum += counts.wrong;
+  return sum;
+}
+
+TrackingMeasures tracking_measures_of(const Evaluation& evaluation,
+                                      std::size_t method,
+                                      const std::string& dataset) {
+  TrackingMeasures measures;
+  const Sequence* sequence = nullptr;
+  std::optional<Follower> follower;
+  for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
+    const SeenFrame& seen = evaluation.frames[i];
+    if (seen.sequence->dataset != dataset) continue;
+    const Result& result = evaluation.methods[method].results[i];
+    if (seen.sequence != sequence) {
+      if (follower) follower->end();
+      follower.emplace(measures);
+      sequence = seen.sequence;
+    }
+    follower->see(seen, result);
+    if (std::isfinite(result.processing_ms)) measures.times_ms.push_back(result.processing_ms);
+  }
+  if (follower) follower->end();
+  return measures;
+}
+
+}  // namespace evaluate
