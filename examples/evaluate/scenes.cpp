@@ -8,6 +8,7 @@
 
 #include "core/scene/catalog.hpp"
 #include "examples/evaluate/rendered.hpp"
+#include "examples/evaluate/text.hpp"
 
 namespace evaluate {
 namespace {
@@ -48,7 +49,7 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text) {
     if (to - from >= kMostSeeds - seeds.size()) fail(text, "more than 1000 seeds");
     for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
   } while (take(rest, ','));
-  if (!rest.empty()) fail(text, "\"" + std::string(rest) + "\" is no seed");
+  if (!rest.empty()) fail(text, format("\"%s\" is no seed", std::string(rest).c_str()));
   return seeds;
 }
 
@@ -61,7 +62,7 @@ std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds, const
   std::vector<Sequence> sequences;
   for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
     for (const std::uint64_t seed : seeds) {
-      const std::string name = scene.name + ("-" + std::to_string(seed));
+      const std::string name = format("%s-%llu", scene.name, static_cast<unsigned long long>(seed));
       sequences.push_back(make_rendered("scenes", name, scene.make(seed), times));
     }
   }
