@@ -18,6 +18,7 @@ constexpr int kMostTrust = 4;             // one for each look that finds the ta
 constexpr int kLossOfTrust = 2;           // for each that does not; below 0 it is given up
 constexpr double kEnoughToBeFound = 0.5;  // of the perimeter in view, for the detector to find it
 constexpr double kEnoughToLock = 0.45;    // the same, to follow what was found
+constexpr double kEnoughAlone = 0.6;      // the same, of an edge without another, to report it
 constexpr double kFartherOut = 1.1;
 constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
 constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
@@ -121,10 +122,17 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   lock_edges(frame, target);
   trust_ = 0;  // it must be confirmed at once
   next_look_ = 1;
+  if (!is_followed && is_doubtful(target)) return followed;
   return target;
 }
 
-// A part of an ellipse may be part of anything: it is reported, but not followed.
+// Half an outline by itself may be anything: edges that can be followed have to confirm it.
+bool Tracker::is_doubtful(const Target& target) const {
+  return target.visible_fraction < kEnoughAlone &&
+         !set_around(target.ellipse, candidates_).has_two_edges;
+}
+
+// A part of an ellipse may be part of anything: it is not followed.
 void Tracker::lock_edges(const PixelView& frame, const Target& target) {
   edge_tracker_.release();
   if (target.visible_fraction < kEnoughToLock) return;

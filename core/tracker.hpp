@@ -65,6 +65,7 @@ class Tracker {
   [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);
   [[nodiscard]] std::optional<Target> look_at_all(const PixelView& frame,
                                                   const std::optional<Target>& followed);
+  [[nodiscard]] bool is_doubtful(const Target& target) const;
   void lock_edges(const PixelView& frame, const Target& target);
   [[nodiscard]] std::optional<Target> search_target(const PixelView& frame);
   [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
@@ -88,7 +89,7 @@ class Tracker {
   int scale_ = 1;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
-  int trust_ = 0;  // in what is followed, from the detector's looks
+  int trust_ = 0;                   // in what is followed, from the detector's looks
   bool is_tracking_ = false;
   bool had_target_ = false;
   bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it

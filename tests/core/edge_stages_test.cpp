@@ -610,7 +610,8 @@ TEST(Support, TellsTheLight) {
     search.place(model, image_from_pad(kPad), picture.view(), 64);
     search.look(picture.view(), gain, 4.0);
     const PoseSupport support = support_of(search.samples(), PoseChange::Zero(), 1.5, 2);
-    EXPECT_NEAR(support.gain / gain, 1.0, 0.15) << gain;
+    // Circles are learned from levels farther apart than those that a sample compares.
+    EXPECT_NEAR(support.gain / gain, 1.0, 0.2) << gain;
   }
   EXPECT_EQ(support_of({}, PoseChange::Zero(), 1.5, 1).coverage, 0.0);
 }
