@@ -87,10 +87,6 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   search_region_ =
       intersect(edge_tracker_.region_after(frames, frame.width, frame.height), searchable_);
   candidates_.clear();
-  if (search_region_.empty()) {
-    edge_tracker_.release();
-    return std::nullopt;
-  }
   const LumaWindow window{luma_reader_.read(frame, search_region_),
                           Eigen::Vector2d(search_region_.x, search_region_.y),
                           Eigen::Vector2d(frame.width, frame.height)};

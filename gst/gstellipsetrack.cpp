@@ -116,9 +116,10 @@ static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* na
   gboolean is_loaded = load_one_by_one(preset, name);
   std::string refusal;
   GST_OBJECT_LOCK(self);
+  const TrackProperties wanted = shared.preset.value_or(shared.properties);
   try {
-    shared.preset->tracker.validate();
-    if (is_loaded) shared.properties = *shared.preset;
+    wanted.tracker.validate();
+    if (is_loaded) shared.properties = wanted;
   } catch (const std::exception& error) {
     refusal = error.what();
     is_loaded = FALSE;
