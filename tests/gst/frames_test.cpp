@@ -101,6 +101,35 @@ TEST_P(EachFormat, SharedPixelsStayTheSameMemory) {
   EXPECT_EQ(support::bytes_of(out.get()), before);
 }
 
+TEST_P(EachFormat, RowsAndPlanesMayLieAnywhere) {
+  const Picture ring = ring_picture();
+  const GstVideoInfo plain = info_of(GetParam(), ring.width, ring.height);
+  GstVideoInfo info = plain;
+  GstVideoAlignment around;
+  gst_video_alignment_reset(&around);
+  around.padding_left = 8;
+  around.padding_right = 24;
+  around.padding_top = 4;
+  around.padding_bottom = 2;
+  ASSERT_TRUE(gst_video_info_align(&info, &around));
+  EXPECT_GT(GST_VIDEO_INFO_PLANE_OFFSET(&info, 0), 0U);
+  auto padded = buffer_of(ring, info);
+  gst_buffer_add_video_meta_full(padded.get(),
+                                 GST_VIDEO_FRAME_FLAG_NONE,
+                                 GST_VIDEO_INFO_FORMAT(&info),
+                                 static_cast<guint>(ring.width),
+                                 static_cast<guint>(ring.height),
+                                 GST_VIDEO_INFO_N_PLANES(&info),
+                                 info.offset,
+                                 info.stride);
+  const std::string caps = caps_of(GetParam(), ring.width, ring.height);
+  const auto out = push(tracker("", caps), std::move(padded));
+  const auto expected = push(tracker("", caps), buffer_of(ring, plain));
+  ASSERT_NE(target_on(out), nullptr);
+  EXPECT_EQ(target_on(out)->cx, target_on(expected)->cx);
+  EXPECT_EQ(target_on(out)->semi_major, target_on(expected)->semi_major);
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats,
                          EachFormat,
                          testing::Values("GRAY8",
