@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "core/tracker.hpp"
 #include "core/tracker_settings.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/video_view.hpp"
 #include "tests/bench/allocations.hpp"
 #include "tests/bench/frames.hpp"
 #include "tests/gst/support.hpp"
@@ -81,6 +83,85 @@ void add_elements() {
                     element,
                     format);
       }
+    }
+  }
+}
+
+// One buffer after another through an element, a copy of each around the same memory.
+class BufferLoop {
+ public:
+  BufferLoop(const std::string& element, const std::string& caps)
+      : harness_(harness_of(element, caps)) {}
+
+  double run_s(GstBuffer* original, GstClockTime pts) {
+    GstBuffer* buffer = gst_buffer_copy(original);
+    GST_BUFFER_PTS(buffer) = pts;
+    const double elapsed_s =
+        bench::seconds([&] { buffer = gst_harness_push_and_pull(harness_.get(), buffer); });
+    gst_buffer_unref(buffer);
+    return elapsed_s;
+  }
+
+ private:
+  Owned<GstHarness> harness_;
+};
+
+// A tracker on the same buffers without an element around it.
+class CoreLoop {
+ public:
+  explicit CoreLoop(const GstVideoInfo& info) : info_(info) {}
+
+  double run_s(GstBuffer* buffer, GstClockTime pts) {
+    MappedFrame mapped(info_, buffer, GST_MAP_READ);
+    return bench::seconds([&] {
+      benchmark::DoNotOptimize(
+          tracker_.process(pixel_view_of(mapped.frame()), static_cast<std::int64_t>(pts)));
+    });
+  }
+
+ private:
+  GstVideoInfo info_;
+  ellipse::Tracker tracker_;
+};
+
+// "ratio_core" is what the element takes, of what its tracker alone takes beside it;
+// "ratio_less_pads" the same without what "identity" takes.
+void run_beside_core(State& state, const std::string& format, const bench::Size& size) {
+  const Frames& frames = bench::frames_of(size);
+  const std::vector<Owned<GstBuffer>> buffers = buffers_of(frames, format);
+  const std::string caps = support::caps_of(format, size.width, size.height);
+  CoreLoop core(support::info_of(format, size.width, size.height));
+  BufferLoop element("ellipsetrack", caps);
+  BufferLoop pads("identity", caps);
+  double core_s = 0.0;
+  double element_s = 0.0;
+  double pads_s = 0.0;
+  std::uint64_t turn = 0;
+  for (auto _ : state) {
+    GstBuffer* buffer = buffers[bench::there_and_back(turn, frames.size())].get();
+    const GstClockTime pts = gst_util_uint64_scale(turn, GST_SECOND, 30);
+    // Whoever comes second finds the pixels in the cache.
+    const bool is_core_first = turn++ / 3 % 2 == 0;
+    if (is_core_first) core_s += core.run_s(buffer, pts);
+    const double elapsed_s = element.run_s(buffer, pts);
+    if (!is_core_first) core_s += core.run_s(buffer, pts);
+    pads_s += pads.run_s(buffer, pts);
+    state.SetIterationTime(elapsed_s);
+    element_s += elapsed_s;
+  }
+  state.counters["ratio_core"] = element_s / core_s;
+  state.counters["ratio_less_pads"] = (element_s - pads_s) / core_s;
+}
+
+void add_beside_core() {
+  for (const char* format : {"I420", "BGR"}) {
+    for (const bench::Size& size : bench::kSizes) {
+      benchmark::RegisterBenchmark(
+          (std::string("ellipsetrack/beside_core/") + format + "/" + size.name()).c_str(),
+          [=](State& state) { run_beside_core(state, format, size); })
+          ->Iterations(600)
+          ->UseManualTime()
+          ->Unit(benchmark::kMicrosecond);
     }
   }
 }
@@ -180,6 +261,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   add_elements();
+  add_beside_core();
   add_overlays();
   return bench::run_benchmarks(argc, argv);
 }
