@@ -5,9 +5,13 @@
 // harness around an element cost.
 #include <gst/check/gstharness.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -124,6 +128,24 @@ class CoreLoop {
   ellipse::Tracker tracker_;
 };
 
+// The shortest times of each turn of a round, after which frames and looks of the detector come as
+// before: what else the machine does meanwhile is left out.
+class Round {
+ public:
+  Round() { shortest_s_.fill(std::numeric_limits<double>::max()); }
+
+  void add(std::uint64_t turn, double elapsed_s) {
+    double& shortest_s = shortest_s_[turn % shortest_s_.size()];
+    shortest_s = std::min(shortest_s, elapsed_s);
+  }
+  [[nodiscard]] double sum_s() const {
+    return std::accumulate(shortest_s_.begin(), shortest_s_.end(), 0.0);
+  }
+
+ private:
+  std::array<double, 40> shortest_s_;  // 10 frames there and back, a look at every eighth
+};
+
 // "ratio_core" is what the element takes, of what its tracker alone takes beside it;
 // "ratio_less_pads" the same without what "identity" takes.
 void run_beside_core(State& state, const std::string& format, const bench::Size& size) {
@@ -133,33 +155,34 @@ void run_beside_core(State& state, const std::string& format, const bench::Size&
   CoreLoop core(support::info_of(format, size.width, size.height));
   BufferLoop element("ellipsetrack", caps);
   BufferLoop pads("identity", caps);
-  double core_s = 0.0;
-  double element_s = 0.0;
-  double pads_s = 0.0;
+  Round of_core;
+  Round of_element;
+  Round of_pads;
   std::uint64_t turn = 0;
   for (auto _ : state) {
     GstBuffer* buffer = buffers[bench::there_and_back(turn, frames.size())].get();
     const GstClockTime pts = gst_util_uint64_scale(turn, GST_SECOND, 30);
     // Whoever comes second finds the pixels in the cache.
-    const bool is_core_first = turn++ / 3 % 2 == 0;
-    if (is_core_first) core_s += core.run_s(buffer, pts);
+    const bool is_core_first = turn / 3 % 2 == 0;
+    if (is_core_first) of_core.add(turn, core.run_s(buffer, pts));
     const double elapsed_s = element.run_s(buffer, pts);
-    if (!is_core_first) core_s += core.run_s(buffer, pts);
-    pads_s += pads.run_s(buffer, pts);
+    if (!is_core_first) of_core.add(turn, core.run_s(buffer, pts));
+    of_element.add(turn, elapsed_s);
+    of_pads.add(turn, pads.run_s(buffer, pts));
     state.SetIterationTime(elapsed_s);
-    element_s += elapsed_s;
+    ++turn;
   }
-  state.counters["ratio_core"] = element_s / core_s;
-  state.counters["ratio_less_pads"] = (element_s - pads_s) / core_s;
+  state.counters["ratio_core"] = of_element.sum_s() / of_core.sum_s();
+  state.counters["ratio_less_pads"] = (of_element.sum_s() - of_pads.sum_s()) / of_core.sum_s();
 }
 
 void add_beside_core() {
   for (const char* format : {"I420", "BGR"}) {
-    for (const bench::Size& size : bench::kSizes) {
+    for (const bench::Size& size : {bench::kSizes[0], bench::kSizes[2]}) {
       benchmark::RegisterBenchmark(
           (std::string("ellipsetrack/beside_core/") + format + "/" + size.name()).c_str(),
           [=](State& state) { run_beside_core(state, format, size); })
-          ->Iterations(600)
+          ->Iterations(2400)
           ->UseManualTime()
           ->Unit(benchmark::kMicrosecond);
     }
