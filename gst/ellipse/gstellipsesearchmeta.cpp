@@ -61,6 +61,8 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
  * gst_buffer_get_ellipse_search_meta:
  * @buffer: (transfer none): a #GstBuffer
  *
+ * Tells whether the frame of a buffer was searched.
+ *
  * Returns: (transfer none) (nullable): what is known of the frame's search, %NULL where it was not
  * searched or an element has lost its metadata
  */
