@@ -17,6 +17,7 @@ constexpr int kNextLook = 2;              // the same, after one that did not fi
 constexpr int kMostTrust = 4;             // one for each look that finds the target, and
 constexpr int kLossOfTrust = 2;           // for each that does not; below 0 it is given up
 constexpr double kEnoughToBeFound = 0.5;  // of the perimeter in view, for the detector to find it
+constexpr double kCoarsePx = 20.0;        // full minor axis at a coarse scale, for the same
 constexpr double kEnoughToLock = 0.45;    // the same, to follow what was found
 constexpr double kEnoughAlone = 0.6;      // the same, of an edge without another, to report it
 constexpr double kFartherOut = 1.1;
@@ -34,6 +35,12 @@ bool is_better(const ConcentricSet& chosen, const ConcentricSet& followed) {
 bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
   return (chosen.center() - followed.center()).norm() < 0.15 * chosen.semi_major &&
          chosen.semi_major > kFartherOut * followed.semi_major;
+}
+
+// Whether the detector, looking at this scale, should find what is followed.
+bool can_be_found(const Target& followed, int scale) {
+  const bool is_too_coarse = scale > 1 && 2.0 * followed.ellipse.semi_minor < kCoarsePx * scale;
+  return followed.visible_fraction >= kEnoughToBeFound && !is_too_coarse;
 }
 
 double or_own(double setting, double own) {
@@ -54,7 +61,14 @@ Tracker::Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> dete
 Tracker::~Tracker() = default;
 
 std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_ns) {
-  start_over_if_resized(frame);
+  return process(frame, pts_ns, {.within = frame.bounds()});
+}
+
+std::optional<Target> Tracker::process(const PixelView& frame,
+                                       std::int64_t pts_ns,
+                                       const SearchScope& scope) {
+  take_in(frame, scope);
+  if (searchable_.empty()) return std::nullopt;
   std::optional<Target> target;
   if (edge_tracker_.is_locked()) target = follow_edges(frame, pts_ns);
   const bool is_seen = target && target->state == TargetState::kTracked;
@@ -71,7 +85,8 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   // Streams without time stamps are taken for even ones.
   const double elapsed = static_cast<double>(pts_ns - last_pts_ns_) / kFrameNs;
   const double frames = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
-  search_region_ = edge_tracker_.region_after(frames, frame.width, frame.height);
+  search_region_ =
+      intersect(edge_tracker_.region_after(frames, frame.width, frame.height), searchable_);
   candidates_.clear();
   const LumaWindow window{luma_reader_.read(frame, search_region_),
                           Eigen::Vector2d(search_region_.x, search_region_.y),
@@ -108,7 +123,7 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
     const bool is_new = chosen && (is_outside_of(chosen->ellipse, followed->ellipse) ||
                                    is_better(set_around(chosen->ellipse, candidates_), old_set));
     if (!is_new) {
-      if (is_found || followed->visible_fraction < kEnoughToBeFound) return followed;
+      if (is_found || !can_be_found(*followed, scale_)) return followed;
       next_look_ = kNextLook;
       trust_ -= kLossOfTrust;
       if (trust_ >= 0) return followed;
@@ -136,17 +151,17 @@ bool Tracker::is_doubtful(const Target& target) const {
 void Tracker::lock_edges(const PixelView& frame, const Target& target) {
   edge_tracker_.release();
   if (target.visible_fraction < kEnoughToLock) return;
-  const LumaWindow window{luma_reader_.read(frame, frame_bounds_),
-                          Eigen::Vector2d::Zero(),
+  const LumaWindow window{luma_reader_.read(frame, searchable_),
+                          Eigen::Vector2d(searchable_.x, searchable_.y),
                           Eigen::Vector2d(frame.width, frame.height)};
   (void)edge_tracker_.lock(window, target.ellipse);
 }
 
 // [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.
 std::optional<Target> Tracker::search_target(const PixelView& frame) {
-  search_region_ = is_tracking_ ? roi_ : frame_bounds_;
+  search_region_ = is_tracking_ ? intersect(roi_, searchable_) : searchable_;
   std::optional<Target> target = detect_target(frame, is_tracking_);
-  if (!target && scale_ > 1) {
+  if (!target && scale_ > finest_scale_) {
     scale_ /= 2;
     target = detect_target(frame, false);
   } else if (target && settings_.tracking == TrackingMode::kRedetect) {
@@ -210,10 +225,14 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
       target->ellipse, settings_.roi_expansion, scale_, frame_bounds_.width, frame_bounds_.height);
 }
 
-void Tracker::start_over_if_resized(const PixelView& frame) {
-  if (frame.bounds() == frame_bounds_) return;
-  reset();
+void Tracker::take_in(const PixelView& frame, const SearchScope& scope) {
+  searchable_ = intersect(scope.within, frame.bounds());
+  if (frame.bounds() != frame_bounds_ || searchable_.empty()) reset();
   frame_bounds_ = frame.bounds();
+  finest_scale_ = scope.finest_scale;
+  while (finest_scale_ > settings_.max_scale) finest_scale_ /= 2;
+  const bool adapts = settings_.tracking == TrackingMode::kRedetect;
+  scale_ = adapts ? std::max(scale_, finest_scale_) : finest_scale_;
 }
 
 void Tracker::reset() {
@@ -221,6 +240,8 @@ void Tracker::reset() {
   had_target_ = false;
   scale_ = 1;
   roi_ = {};
+  search_region_ = {};
+  candidates_.clear();
   edge_tracker_.release();
 }
 

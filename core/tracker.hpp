@@ -32,6 +32,12 @@ struct Target {
   std::int64_t pts_ns = 0;        ///< Of its frame.
 };
 
+/// What of one frame is searched, and how finely.
+struct SearchScope {
+  Rect within;           ///< [px] of the frame; clipped to it. Empty: nothing is searched.
+  int finest_scale = 1;  ///< Frame scale that is not gone below: a power of two, up to 128.
+};
+
 /// Follows one elliptical target through a stream: TrackTarget of [Keipour2021] Algorithm 2.
 ///
 /// One object serves one stream, one thread at a time. The same frames give the same targets.
@@ -50,6 +56,12 @@ class Tracker {
   /// @param pts_ns  Its time stamp; copied into the target.
   /// @return The target, or nullopt where none was found.
   [[nodiscard]] std::optional<Target> process(const PixelView& frame, std::int64_t pts_ns);
+
+  /// The same, where the frame is searched: no pixel outside is read, and what is followed is
+  /// looked for inside only. Where nothing is searched the target is forgotten.
+  [[nodiscard]] std::optional<Target> process(const PixelView& frame,
+                                              std::int64_t pts_ns,
+                                              const SearchScope& scope);
 
   /// Forgets the target, the scale and the region. Numbers of targets go on.
   void reset();
@@ -70,7 +82,7 @@ class Tracker {
   [[nodiscard]] std::optional<Target> search_target(const PixelView& frame);
   [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
   [[nodiscard]] Thresholds determine_thresholds(bool is_tracking) const;
-  void start_over_if_resized(const PixelView& frame);
+  void take_in(const PixelView& frame, const SearchScope& scope);
   void prepare_next_frame(const std::optional<Target>& target);
 
   TrackerSettings settings_;
@@ -83,10 +95,12 @@ class Tracker {
   Rect roi_;  // where the target is expected, while it is being tracked
   Rect search_region_;
   Rect frame_bounds_;
+  Rect searchable_;  // of this frame
   Ellipse last_ellipse_;
   std::uint64_t last_id_ = 0;
   std::int64_t last_pts_ns_ = 0;
   int scale_ = 1;
+  int finest_scale_ = 1;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
   int trust_ = 0;                   // in what is followed, from the detector's looks

@@ -353,13 +353,13 @@ static void install_properties(GObjectClass* object_class) {
   install(PROP_SEED,
           g_param_spec_uint(
               "seed", "Seed", "Of all that is random: ground and noise", 0, G_MAXUINT32, 1, flags));
-  install(
-      PROP_IS_LIVE,
-      g_param_spec_boolean("is-live",
-                           "Is live",
-                           "Give each frame at its time, as a camera does",
-                           FALSE,
-                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS)));
+  install(PROP_IS_LIVE,
+          g_param_spec_boolean("is-live",
+                               "Is live",
+                               "Give each frame at its time, as a camera does",
+                               FALSE,
+                               static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                        GST_PARAM_MUTABLE_READY)));
 }
 
 static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {

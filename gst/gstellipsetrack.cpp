@@ -12,29 +12,19 @@
  * gst-launch-1.0 ellipsetestsrc ! ellipsetrack overlay=ellipse+centre ! videoconvert !
  * autovideosink
  * ]|
+ *
+ * Since: 0.1
  */
 
 #include "gst/gstellipsetrack.h"
 
-#include <cmath>
 #include <exception>
-#include <memory>
-#include <optional>
 #include <string>
 
-#include "core/tracker.hpp"
-#include "gst/blend.hpp"
-#include "gst/ellipse/gstellipsemeta.h"
-#include "gst/overlay.hpp"
-#include "gst/target_meta.hpp"
-#include "gst/track_properties.hpp"
-#include "gst/track_stats.hpp"
+#include "gst/track_frame.hpp"
 #include "gst/video_view.hpp"
 
-GST_DEBUG_CATEGORY_STATIC(gst_ellipse_track_debug);
-#define GST_CAT_DEFAULT gst_ellipse_track_debug
-
-enum { SIGNAL_TARGET_ACQUIRED, SIGNAL_TARGET_LOST, SIGNAL_RESET, N_SIGNALS };
+GST_DEBUG_CATEGORY(gst_ellipse_track_debug);
 
 enum {
   PROP_0,
@@ -43,42 +33,12 @@ enum {
   PROP_FIRST_SETTING,  // those of TrackProperties from here on
 };
 
-static guint signals[N_SIGNALS];
-
-namespace {
-
-// Skipping helps where the analysis is what is late. Where another element is, the target must not
-// be out of sight for good: after so many late frames one is analysed all the same.
-constexpr guint kMostLateFrames = 4;
-
-// What the streaming thread keeps from frame to frame.
-struct Stream {
-  ellipse::Tracker tracker;
-  Overlay overlay;
-  guint64 frame = 0;
-  guint late_frames = 0;  // in a row
-  std::optional<ellipse::Target> last_target;
-};
-
-}  // namespace
-
-struct _GstEllipseTrack {
-  GstVideoFilter parent;
-
-  // Under the object lock.
-  TrackProperties* properties;
-  TrackStats* stats;
-  GstStructure* target;
-  GstClockTime earliest_time;
-  bool reset_is_due;
-
-  Stream* stream;
-};
+static void gst_ellipse_track_preset_init(gpointer iface, gpointer data);
 
 G_DEFINE_TYPE_WITH_CODE(GstEllipseTrack,
                         gst_ellipse_track,
                         GST_TYPE_VIDEO_FILTER,
-                        G_IMPLEMENT_INTERFACE(GST_TYPE_PRESET, nullptr))
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_PRESET, gst_ellipse_track_preset_init))
 
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
     ellipsetrack,
@@ -88,6 +48,13 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
     GST_DEBUG_CATEGORY_INIT(gst_ellipse_track_debug, "ellipsetrack", 0, "ellipse tracker"))
 
 /* Properties */
+
+static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
+  if (refusal.empty()) return;
+  g_warning("%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
+  GST_ELEMENT_WARNING(
+      self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
+}
 
 // Refuses what does not fit together, names it, and keeps the old value.
 static void gst_ellipse_track_set_property(GObject* object,
@@ -101,16 +68,21 @@ static void gst_ellipse_track_set_property(GObject* object,
   }
   std::string refusal;
   GST_OBJECT_LOCK(self);
+  TrackShared& shared = *self->shared;
   try {
-    self->properties->set(id - PROP_FIRST_SETTING, value);
+    TrackProperties wanted = shared.preset.value_or(shared.properties);
+    wanted.set(id - PROP_FIRST_SETTING, value);
+    if (shared.preset) {
+      shared.preset = wanted;
+    } else {
+      wanted.tracker.validate();
+      shared.properties = wanted;
+    }
   } catch (const std::exception& error) {
     refusal = error.what();
   }
   GST_OBJECT_UNLOCK(self);
-  if (refusal.empty()) return;
-  g_warning("%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
-  GST_ELEMENT_WARNING(
-      self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
+  tell_refusal(self, refusal);
 }
 
 static void gst_ellipse_track_get_property(GObject* object,
@@ -120,15 +92,48 @@ static void gst_ellipse_track_get_property(GObject* object,
   auto* self = GST_ELLIPSE_TRACK(object);
   GST_OBJECT_LOCK(self);
   if (id == PROP_TARGET) {
-    g_value_set_boxed(value, self->target);
+    g_value_set_boxed(value, self->shared->target);
   } else if (id == PROP_STATS) {
-    g_value_take_boxed(value, self->stats->to_structure());
+    g_value_take_boxed(value, self->shared->stats.to_structure());
   } else if (id >= PROP_FIRST_SETTING) {
-    self->properties->get(id - PROP_FIRST_SETTING, value);
+    self->shared->properties.get(id - PROP_FIRST_SETTING, value);
   } else {
     G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
   }
   GST_OBJECT_UNLOCK(self);
+}
+
+static gboolean (*load_one_by_one)(GstPreset* preset, const gchar* name);
+
+// The values of a preset fit each other, but not those that they replace one by one: they come into
+// force together.
+static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* name) {
+  auto* self = GST_ELLIPSE_TRACK(preset);
+  TrackShared& shared = *self->shared;
+  GST_OBJECT_LOCK(self);
+  shared.preset = shared.properties;
+  GST_OBJECT_UNLOCK(self);
+  gboolean is_loaded = load_one_by_one(preset, name);
+  std::string refusal;
+  GST_OBJECT_LOCK(self);
+  const TrackProperties wanted = shared.preset.value_or(shared.properties);
+  try {
+    wanted.tracker.validate();
+    if (is_loaded) shared.properties = wanted;
+  } catch (const std::exception& error) {
+    refusal = error.what();
+    is_loaded = FALSE;
+  }
+  shared.preset.reset();
+  GST_OBJECT_UNLOCK(self);
+  tell_refusal(self, refusal);
+  return is_loaded;
+}
+
+static void gst_ellipse_track_preset_init(gpointer iface, gpointer /*data*/) {
+  auto* preset = static_cast<GstPresetInterface*>(iface);
+  load_one_by_one = preset->load_preset;
+  preset->load_preset = gst_ellipse_track_load_preset;
 }
 
 static void install_properties(GObjectClass* object_class) {
@@ -145,192 +150,16 @@ static void install_properties(GObjectClass* object_class) {
                                   PROP_STATS,
                                   g_param_spec_boxed("stats",
                                                      "Statistics",
-                                                     "Counts of frames, and processing times in ns",
+                                                     "What became of the frames; times in ns",
                                                      GST_TYPE_STRUCTURE,
                                                      readable));
   TrackProperties::install(object_class, PROP_FIRST_SETTING);
 }
 
-/* What goes out with a frame */
-
-// NONE where the segment is not in time, as behind a filesrc of raw frames.
-static GstClockTime stream_time_of(GstEllipseTrack* self, GstClockTime pts) {
-  const GstSegment& segment = GST_BASE_TRANSFORM(self)->segment;
-  if (segment.format != GST_FORMAT_TIME) return GST_CLOCK_TIME_NONE;
-  return gst_segment_to_stream_time(&segment, GST_FORMAT_TIME, pts);
-}
-
-static GstClockTime running_time_of(GstEllipseTrack* self, GstClockTime pts) {
-  const GstSegment& segment = GST_BASE_TRANSFORM(self)->segment;
-  if (segment.format != GST_FORMAT_TIME) return GST_CLOCK_TIME_NONE;
-  return gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
-}
-
-// @param details  The target's structure; NULL where there is none.
-static void post_message(GstEllipseTrack* self,
-                         GstClockTime pts,
-                         GstClockTime duration,
-                         const std::optional<ellipse::Target>& target,
-                         const GstStructure* details) {
-  GstStructure* structure =
-      details != nullptr ? gst_structure_copy(details) : gst_structure_new_empty("ellipse");
-  // clang-format off
-  gst_structure_set(
-      structure,
-      "state", G_TYPE_STRING, state_nick(target),
-      "timestamp", G_TYPE_UINT64, pts,
-      "stream-time", G_TYPE_UINT64, stream_time_of(self, pts),
-      "running-time", G_TYPE_UINT64, running_time_of(self, pts),
-      "duration", G_TYPE_UINT64, duration,
-      nullptr);
-  // clang-format on
-  gst_element_post_message(GST_ELEMENT(self), gst_message_new_element(GST_OBJECT(self), structure));
-}
-
-static void emit_change(GstEllipseTrack* self,
-                        const std::optional<ellipse::Target>& before,
-                        const std::optional<ellipse::Target>& now,
-                        GstStructure* details) {
-  const bool is_same_target = before && now && before->id == now->id;
-  if (before && !is_same_target) g_signal_emit(self, signals[SIGNAL_TARGET_LOST], 0);
-  if (now && !is_same_target) g_signal_emit(self, signals[SIGNAL_TARGET_ACQUIRED], 0, details);
-}
-
-// @return The metadata of the target, owned by the buffer; nullptr where there is none.
-static const GstEllipseMeta* publish(GstEllipseTrack* self,
-                                     GstBuffer* buffer,
-                                     const TrackProperties& properties,
-                                     const std::optional<ellipse::Target>& target,
-                                     GstClockTime processing_time) {
-  const GstEllipseMeta* meta = attach_metas(buffer,
-                                            target,
-                                            self->stream->tracker.candidates(),
-                                            properties,
-                                            GST_VIDEO_FILTER(self)->in_info,
-                                            processing_time);
-  GstStructure* details = meta != nullptr ? gst_ellipse_meta_to_structure(meta) : nullptr;
-  const std::optional<ellipse::Target> before = self->stream->last_target;
-  self->stream->last_target = target;
-
-  GST_OBJECT_LOCK(self);
-  self->stats->add_analysed(target, processing_time);
-  gst_clear_structure(&self->target);
-  if (details != nullptr) self->target = gst_structure_copy(details);
-  GST_OBJECT_UNLOCK(self);
-
-  const bool has_changed = before.has_value() != target.has_value() ||
-                           (target && (before->id != target->id || before->state != target->state));
-  if (properties.messages == MESSAGES_EVERY_FRAME ||
-      (properties.messages == MESSAGES_ON_CHANGE && has_changed)) {
-    post_message(self, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer), target, details);
-  }
-  emit_change(self, before, target, details);
-  gst_clear_structure(&details);
-  return meta;
-}
-
 /* Streaming */
 
-// Starts over, and says so to those who still count on the target.
-static void forget_target(GstEllipseTrack* self, const TrackProperties& properties) {
-  self->stream->tracker.reset();
-  const std::optional<ellipse::Target> before = self->stream->last_target;
-  self->stream->last_target.reset();
-  GST_OBJECT_LOCK(self);
-  self->stats->forget_target();
-  gst_clear_structure(&self->target);
-  GST_OBJECT_UNLOCK(self);
-  if (!before) return;
-  if (properties.messages != MESSAGES_NONE) {
-    post_message(self, GST_CLOCK_TIME_NONE, GST_CLOCK_TIME_NONE, std::nullopt, nullptr);
-  }
-  emit_change(self, before, std::nullopt, nullptr);
-}
-
-static TrackProperties take_properties(GstEllipseTrack* self) {
-  GST_OBJECT_LOCK(self);
-  const TrackProperties properties = *self->properties;
-  const bool reset_is_due = self->reset_is_due;
-  self->reset_is_due = false;
-  GST_OBJECT_UNLOCK(self);
-  if (reset_is_due) forget_target(self, properties);
-  return properties;
-}
-
-static bool is_too_late(GstEllipseTrack* self, GstBuffer* buffer) {
-  auto* base = GST_BASE_TRANSFORM(self);
-  if (!gst_base_transform_is_qos_enabled(base)) return false;
-  const GstClockTime running_time = running_time_of(self, GST_BUFFER_PTS(buffer));
-  GST_OBJECT_LOCK(self);
-  const GstClockTime earliest_time = self->earliest_time;
-  GST_OBJECT_UNLOCK(self);
-  return GST_CLOCK_TIME_IS_VALID(running_time) && GST_CLOCK_TIME_IS_VALID(earliest_time) &&
-         running_time <= earliest_time;
-}
-
-static bool must_hurry(GstEllipseTrack* self, GstBuffer* buffer) {
-  guint& late_frames = self->stream->late_frames;
-  if (is_too_late(self, buffer) && late_frames < kMostLateFrames) {
-    ++late_frames;
-    return true;
-  }
-  late_frames = 0;
-  return false;
-}
-
-static void skip(GstEllipseTrack* self) {
-  GST_OBJECT_LOCK(self);
-  self->stats->add_skipped();
-  GST_OBJECT_UNLOCK(self);
-}
-
-static void draw(GstEllipseTrack* self,
-                 GstVideoFrame& frame,
-                 const GstEllipseMeta& meta,
-                 const OverlayStyle& style) {
-  Overlay& overlay = self->stream->overlay;
-  overlay.begin(GST_VIDEO_FRAME_WIDTH(&frame), GST_VIDEO_FRAME_HEIGHT(&frame));
-  overlay.draw(meta, style);
-  blend(overlay.canvas(), frame);
-}
-
-static void analyse(GstEllipseTrack* self, GstBuffer* buffer, const TrackProperties& properties) {
-  const bool draws = properties.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
-  MappedFrame mapped(
-      GST_VIDEO_FILTER(self)->in_info, buffer, draws ? GST_MAP_READWRITE : GST_MAP_READ);
-  if (!mapped.is_mapped()) {
-    GST_ELEMENT_WARNING(self, RESOURCE, READ, ("A buffer cannot be read."), ("it passes as it is"));
-    skip(self);
-    return;
-  }
-  const GstClockTime start = gst_util_get_timestamp();
-  ellipse::Tracker& tracker = self->stream->tracker;
-  tracker.configure(properties.tracker);
-  const auto target =
-      tracker.process(pixel_view_of(mapped.frame()), static_cast<gint64>(GST_BUFFER_PTS(buffer)));
-  const GstEllipseMeta* meta =
-      publish(self, buffer, properties, target, gst_util_get_timestamp() - start);
-  if (draws && meta != nullptr) draw(self, mapped.frame(), *meta, properties.overlay);
-}
-
 static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
-  auto* self = GST_ELLIPSE_TRACK(base);
-  const GstClockTime stream_time = stream_time_of(self, GST_BUFFER_PTS(buffer));
-  if (GST_CLOCK_TIME_IS_VALID(stream_time)) gst_object_sync_values(GST_OBJECT(self), stream_time);
-
-  const TrackProperties properties = take_properties(self);
-  const bool is_turn = self->stream->frame++ % properties.interval == 0;
-  if (!is_turn || must_hurry(self, buffer)) {
-    skip(self);
-    return GST_FLOW_OK;
-  }
-  try {
-    analyse(self, buffer, properties);
-  } catch (const std::exception& error) {
-    GST_ELEMENT_WARNING(
-        self, STREAM, FAILED, ("A frame could not be analysed: %s", error.what()), ("it passes"));
-    skip(self);
-  }
+  track_frame(GST_ELLIPSE_TRACK(base), buffer);
   return GST_FLOW_OK;
 }
 
@@ -340,25 +169,39 @@ static gboolean gst_ellipse_track_src_event(GstBaseTransform* base, GstEvent* ev
   if (GST_EVENT_TYPE(event) != GST_EVENT_QOS) {
     return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->src_event(base, event);
   }
-  GstClockTimeDiff lateness = 0;
+  GstClockTimeDiff jitter = 0;
   GstClockTime timestamp = GST_CLOCK_TIME_NONE;
-  gst_event_parse_qos(event, nullptr, nullptr, &lateness, &timestamp);
+  gst_event_parse_qos(event, nullptr, nullptr, &jitter, &timestamp);
   GST_OBJECT_LOCK(self);
-  self->earliest_time = GST_CLOCK_TIME_IS_VALID(timestamp) && lateness > 0
-                            ? timestamp + 2 * static_cast<GstClockTime>(lateness)
-                            : GST_CLOCK_TIME_NONE;
+  self->shared->lateness.observe(timestamp, jitter);
   GST_OBJECT_UNLOCK(self);
   return gst_pad_push_event(GST_BASE_TRANSFORM_SINK_PAD(base), event);
 }
 
-static void forget_stream(GstEllipseTrack* self) {
+static void add_latency(GstEllipseTrack* self, GstQuery* query) {
+  gboolean is_live = FALSE;
+  GstClockTime min = 0;
+  GstClockTime max = GST_CLOCK_TIME_NONE;
+  gst_query_parse_latency(query, &is_live, &min, &max);
+  TrackShared& shared = *self->shared;
   GST_OBJECT_LOCK(self);
-  const TrackProperties properties = *self->properties;
-  self->earliest_time = GST_CLOCK_TIME_NONE;
+  shared.is_live = is_live != FALSE;
+  shared.told_latency = shared.stats.latency();
+  const GstClockTime own = shared.told_latency;
   GST_OBJECT_UNLOCK(self);
-  forget_target(self, properties);
-  self->stream->frame = 0;
-  self->stream->late_frames = 0;
+  if (is_live == FALSE) return;
+  gst_query_set_latency(query, TRUE, min + own, GST_CLOCK_TIME_IS_VALID(max) ? max + own : max);
+}
+
+static gboolean gst_ellipse_track_query(GstBaseTransform* base,
+                                        GstPadDirection direction,
+                                        GstQuery* query) {
+  const gboolean is_answered =
+      GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->query(base, direction, query);
+  if (is_answered && direction == GST_PAD_SRC && GST_QUERY_TYPE(query) == GST_QUERY_LATENCY) {
+    add_latency(GST_ELLIPSE_TRACK(base), query);
+  }
+  return is_answered;
 }
 
 static gboolean gst_ellipse_track_sink_event(GstBaseTransform* base, GstEvent* event) {
@@ -370,7 +213,7 @@ static gboolean gst_ellipse_track_start(GstBaseTransform* base) {
   auto* self = GST_ELLIPSE_TRACK(base);
   forget_stream(self);
   GST_OBJECT_LOCK(self);
-  *self->stats = TrackStats();
+  self->shared->stats = TrackStats();
   GST_OBJECT_UNLOCK(self);
   return TRUE;
 }
@@ -388,9 +231,33 @@ static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
       ->propose_allocation(base, decide_query, query);
 }
 
+// Cropping by metadata is offered upstream where those downstream know it too.
+static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
+                                              GstQuery* /*query*/,
+                                              GType api,
+                                              const GstStructure* /*params*/) {
+  return api == GST_VIDEO_CROP_META_API_TYPE;
+}
+
+// Two fields are two moments: where something moves, its edges are combs.
+static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
+                                           GstCaps* /*in_caps*/,
+                                           GstVideoInfo* in_info,
+                                           GstCaps* /*out_caps*/,
+                                           GstVideoInfo* /*out_info*/) {
+  if (GST_VIDEO_INFO_INTERLACE_MODE(in_info) == GST_VIDEO_INTERLACE_MODE_INTERLEAVED) {
+    GST_ELEMENT_WARNING(filter,
+                        STREAM,
+                        FORMAT,
+                        ("Interlaced frames are searched as if they were whole ones."),
+                        ("put a deinterlacer in front"));
+  }
+  return TRUE;
+}
+
 static void gst_ellipse_track_reset(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
-  self->reset_is_due = true;
+  self->shared->reset_is_due = true;
   GST_OBJECT_UNLOCK(self);
 }
 
@@ -398,45 +265,41 @@ static void gst_ellipse_track_reset(GstEllipseTrack* self) {
 
 static void gst_ellipse_track_finalize(GObject* object) {
   auto* self = GST_ELLIPSE_TRACK(object);
-  gst_clear_structure(&self->target);
   delete self->stream;
-  delete self->stats;
-  delete self->properties;
+  delete self->shared;
   G_OBJECT_CLASS(gst_ellipse_track_parent_class)->finalize(object);
 }
 
 static void gst_ellipse_track_init(GstEllipseTrack* self) {
-  self->properties = new TrackProperties();
-  self->stats = new TrackStats();
-  self->stream = new Stream();
-  self->earliest_time = GST_CLOCK_TIME_NONE;
+  self->shared = new TrackShared();
+  self->stream = new TrackStream();
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
 }
 
 static void install_signals(GstEllipseTrackClass* klass) {
   const GType type = G_TYPE_FROM_CLASS(klass);
-  signals[SIGNAL_TARGET_ACQUIRED] = g_signal_new("target-acquired",
-                                                 type,
-                                                 G_SIGNAL_RUN_LAST,
-                                                 0,
-                                                 nullptr,
-                                                 nullptr,
-                                                 nullptr,
-                                                 G_TYPE_NONE,
-                                                 1,
-                                                 GST_TYPE_STRUCTURE);
-  signals[SIGNAL_TARGET_LOST] = g_signal_new(
+  g_signal_new("target-acquired",
+               type,
+               G_SIGNAL_RUN_LAST,
+               0,
+               nullptr,
+               nullptr,
+               nullptr,
+               G_TYPE_NONE,
+               1,
+               GST_TYPE_STRUCTURE);
+  g_signal_new(
       "target-lost", type, G_SIGNAL_RUN_LAST, 0, nullptr, nullptr, nullptr, G_TYPE_NONE, 0);
-  signals[SIGNAL_RESET] =
-      g_signal_new_class_handler("reset",
-                                 type,
-                                 static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION),
-                                 G_CALLBACK(gst_ellipse_track_reset),
-                                 nullptr,
-                                 nullptr,
-                                 nullptr,
-                                 G_TYPE_NONE,
-                                 0);
+
+  g_signal_new_class_handler("reset",
+                             type,
+                             static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION),
+                             G_CALLBACK(gst_ellipse_track_reset),
+                             nullptr,
+                             nullptr,
+                             nullptr,
+                             G_TYPE_NONE,
+                             0);
 }
 
 static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
@@ -461,5 +324,8 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
   base_class->sink_event = gst_ellipse_track_sink_event;
   base_class->start = gst_ellipse_track_start;
   base_class->stop = gst_ellipse_track_stop;
+  base_class->query = gst_ellipse_track_query;
   base_class->propose_allocation = gst_ellipse_track_propose_allocation;
+  base_class->filter_meta = gst_ellipse_track_filter_meta;
+  GST_VIDEO_FILTER_CLASS(klass)->set_info = gst_ellipse_track_set_info;
 }

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track_properties.hpp"
 
+#include <array>
+#include <stdexcept>
+
+#include "gst/track_enums.hpp"
+
 namespace {
 
 // In the order of their ids.
@@ -12,60 +17,15 @@ enum {
   PROP_MESSAGES,
   PROP_ATTACH_ROI_META,
   PROP_CANDIDATES,
+  PROP_ROI_SOURCE,
+  PROP_ROI,
+  PROP_ROI_TYPE,
+  PROP_MAX_PROCESSING_TIME,
   PROP_OVERLAY,
   PROP_OVERLAY_COLOR,
   PROP_LINE_WIDTH,
   PROP_FIRST_NUMBER,
 };
-
-GType gst_ellipse_detector_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::DetectorKind::kContours), "Contours: Keipour et al. 2021", "contours"},
-      {int(ellipse::DetectorKind::kArcs), "Arcs of edges, fitted together", "arcs"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseDetector", kValues);
-  return kType;
-}
-
-GType gst_ellipse_tracking_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::TrackingMode::kNone), "Each frame by itself", "none"},
-      {int(ellipse::TrackingMode::kRedetect),
-       "Detect again around the last place: Keipour et al. 2021",
-       "redetect"},
-      {int(ellipse::TrackingMode::kEdges),
-       "Follow the learned edges of the pad from its predicted place",
-       "edges"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseTracking", kValues);
-  return kType;
-}
-
-GType gst_ellipse_refinement_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {int(ellipse::Refinement::kNone), "Where the edges that it is followed by put it", "none"},
-      {int(ellipse::Refinement::kEdges), "By the crests along its outer edge", "edges"},
-      {int(ellipse::Refinement::kPhotometric),
-       "By the brightness of all pixels along its outer edge",
-       "photometric"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseRefinement", kValues);
-  return kType;
-}
-
-GType gst_ellipse_messages_get_type(void) {
-  static const GEnumValue kValues[] = {
-      {MESSAGES_NONE, "No messages", "none"},
-      {MESSAGES_ON_CHANGE, "When the state or the id of the target changes", "on-change"},
-      {MESSAGES_EVERY_FRAME, "For every analysed frame", "every-frame"},
-      {0, nullptr, nullptr},
-  };
-  static const GType kType = g_enum_register_static("GstEllipseMessages", kValues);
-  return kType;
-}
 
 GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
   const double initial = info.get(ellipse::TrackerSettings{});
@@ -83,6 +43,28 @@ GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
   }
   return g_param_spec_double(
       info.name, info.name, info.description, info.range.min, info.range.max, initial, flags);
+}
+
+ellipse::Rect rect_from(const GValue* value) {
+  std::array<int, 4> numbers{};
+  if (gst_value_array_get_size(value) != numbers.size()) {
+    throw std::invalid_argument("roi has not the form <x, y, width, height>");
+  }
+  for (guint i = 0; i < numbers.size(); ++i) {
+    const GValue* number = gst_value_array_get_value(value, i);
+    if (!G_VALUE_HOLDS_INT(number)) throw std::invalid_argument("roi is not made of ints");
+    numbers[i] = g_value_get_int(number);
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+void write_rect(const ellipse::Rect& rect, GValue* value) {
+  for (const int number : {rect.x, rect.y, rect.width, rect.height}) {
+    GValue element = G_VALUE_INIT;
+    g_value_init(&element, G_TYPE_INT);
+    g_value_set_int(&element, number);
+    gst_value_array_append_and_take_value(value, &element);
+  }
 }
 
 // nullptr where the property is none of the tracker's numbers.
@@ -146,9 +128,42 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   install(first_id + PROP_CANDIDATES,
           g_param_spec_boolean("candidates",
                                "Candidates",
-                               "Also attach all other ellipses of the frame, as \"candidate\"",
+                               "Also attach all other ellipses of the frame, as \"candidate\"; the "
+                               "detector then looks at every frame",
                                initial.tracker.wants_candidates ? TRUE : FALSE,
                                playing));
+  install(first_id + PROP_ROI_SOURCE,
+          g_param_spec_enum("roi-source",
+                            "ROI source",
+                            "Who says where in a frame is searched",
+                            gst_ellipse_roi_source_get_type(),
+                            initial.roi_source,
+                            playing));
+  install(
+      first_id + PROP_ROI,
+      gst_param_spec_array(
+          "roi",
+          "ROI",
+          "The region that roi-source=property searches, as <x, y, width, "
+          "height> in px of the frame",
+          g_param_spec_int(
+              "number", "Number", "x, y, width or height in px", G_MININT, G_MAXINT, 0, playing),
+          playing));
+  install(first_id + PROP_ROI_TYPE,
+          g_param_spec_string("roi-type",
+                              "ROI type",
+                              "The regions that roi-source=meta counts; empty = of any type",
+                              "",
+                              playing));
+  install(first_id + PROP_MAX_PROCESSING_TIME,
+          g_param_spec_uint64("max-processing-time",
+                              "Maximum processing time",
+                              "Time for a frame in ns: beyond it the search gets coarser, then "
+                              "frames pass without analysis; 0 = any",
+                              0,
+                              G_MAXUINT64,
+                              initial.max_processing_time,
+                              playing));
   install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
   guint id = first_id + PROP_FIRST_NUMBER;
   for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
@@ -162,34 +177,37 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   mark(gst_ellipse_tracking_get_type());
   mark(gst_ellipse_refinement_get_type());
   mark(gst_ellipse_messages_get_type());
+  mark(gst_ellipse_roi_source_get_type());
   mark(GST_TYPE_ELLIPSE_OVERLAY_FLAGS);
 }
 
 void TrackProperties::set(guint which, const GValue* value) {
-  TrackProperties wanted = *this;
   if (const ellipse::SettingInfo* info = number_info(which)) {
-    info->set(wanted.tracker,
-              info->is_integer ? g_value_get_uint(value) : g_value_get_double(value));
+    info->set(tracker, info->is_integer ? g_value_get_uint(value) : g_value_get_double(value));
   }
   if (which == PROP_DETECTOR) {
-    wanted.tracker.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
+    tracker.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
   }
   if (which == PROP_TRACKING) {
-    wanted.tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
+    tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
   }
   if (which == PROP_REFINE) {
-    wanted.tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
+    tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
   }
-  if (which == PROP_INTERVAL) wanted.interval = g_value_get_uint(value);
-  if (which == PROP_MESSAGES) wanted.messages = g_value_get_enum(value);
-  if (which == PROP_ATTACH_ROI_META) wanted.attach_roi_meta = g_value_get_boolean(value) != FALSE;
-  if (which == PROP_CANDIDATES)
-    wanted.tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
+  if (which == PROP_INTERVAL) interval = g_value_get_uint(value);
+  if (which == PROP_MESSAGES) messages = g_value_get_enum(value);
+  if (which == PROP_ATTACH_ROI_META) attach_roi_meta = g_value_get_boolean(value) != FALSE;
+  if (which == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
+  if (which == PROP_ROI_SOURCE) roi_source = g_value_get_enum(value);
+  if (which == PROP_ROI) roi = rect_from(value);
+  if (which == PROP_ROI_TYPE) {
+    const gchar* type = g_value_get_string(value);
+    roi_type = type != nullptr && *type != '\0' ? g_quark_from_string(type) : 0;
+  }
+  if (which == PROP_MAX_PROCESSING_TIME) max_processing_time = g_value_get_uint64(value);
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
-    set_overlay_property(wanted.overlay, which - PROP_OVERLAY, value);
+    set_overlay_property(overlay, which - PROP_OVERLAY, value);
   }
-  wanted.tracker.validate();
-  *this = wanted;
 }
 
 void TrackProperties::get(guint which, GValue* value) const {
@@ -208,6 +226,12 @@ void TrackProperties::get(guint which, GValue* value) const {
   if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
   if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
   if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
+  if (which == PROP_ROI_SOURCE) g_value_set_enum(value, roi_source);
+  if (which == PROP_ROI) write_rect(roi, value);
+  if (which == PROP_ROI_TYPE) {
+    g_value_set_string(value, roi_type != 0 ? g_quark_to_string(roi_type) : "");
+  }
+  if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     get_overlay_property(overlay, which - PROP_OVERLAY, value);
   }

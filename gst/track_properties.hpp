@@ -4,9 +4,7 @@
 
 #include "core/tracker_settings.hpp"
 #include "gst/overlay_style.hpp"
-
-/// When an element message is posted.
-enum { MESSAGES_NONE, MESSAGES_ON_CHANGE, MESSAGES_EVERY_FRAME };
+#include "gst/track_enums.hpp"
 
 /// All that the properties of ellipsetrack set. A value: the streaming thread takes one copy a
 /// frame.
@@ -16,12 +14,17 @@ struct TrackProperties {
   guint interval = 1;
   int messages = MESSAGES_ON_CHANGE;
   bool attach_roi_meta = true;
+  int roi_source = ROI_SOURCE_NONE;
+  ellipse::Rect roi;                     ///< [px] of the frame; clipped to it where it is used.
+  GQuark roi_type = 0;                   ///< Of the regions that count; 0 = all.
+  GstClockTime max_processing_time = 0;  ///< [ns] a frame; 0 = any.
 
   /// Installs them all, with ids from first_id on; the last ones are those of setting_infos().
   static void install(GObjectClass* object_class, guint first_id);
 
   /// @param which  The property's id minus first_id.
-  /// Throws std::invalid_argument and changes nothing, where the value does not fit the others.
+  /// Does not check how the value fits the others: that is tracker.validate(). Throws
+  /// std::invalid_argument and changes nothing, where the value has no meaning.
   void set(guint which, const GValue* value);
   void get(guint which, GValue* value) const;
 };

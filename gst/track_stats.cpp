@@ -2,9 +2,10 @@
 #include "gst/track_stats.hpp"
 
 #include <algorithm>
+#include <numeric>
 
-void TrackStats::add_skipped() {
-  ++skipped_;
+void TrackStats::add_skipped(Skip reason) {
+  ++skipped_[static_cast<std::size_t>(reason)];
 }
 
 void TrackStats::forget_target() {
@@ -19,7 +20,17 @@ void TrackStats::add_analysed(const std::optional<ellipse::Target>& target,
   if (had_target_ && !target) ++lost_;
   had_target_ = target.has_value();
   if (!target) return;
-  ++(target->state == ellipse::TargetState::kDetected ? detected_ : tracked_);
+  switch (target->state) {
+    case ellipse::TargetState::kDetected:
+      ++detected_;
+      break;
+    case ellipse::TargetState::kTracked:
+      ++tracked_;
+      break;
+    case ellipse::TargetState::kPredicted:
+      ++predicted_;
+      break;
+  }
 }
 
 GstClockTime TrackStats::quantile(double q) const {
@@ -32,17 +43,33 @@ GstClockTime TrackStats::quantile(double q) const {
   return sorted[static_cast<std::size_t>(rank)];
 }
 
+GstClockTime TrackStats::latency() const {
+  return (quantile(0.99) + GST_MSECOND - 1) / GST_MSECOND * GST_MSECOND;
+}
+
 GstStructure* TrackStats::to_structure() const {
+  const guint64 skipped = std::accumulate(skipped_.begin(), skipped_.end(), guint64{0});
+  const auto skipped_for = [this](Skip reason) {
+    return skipped_[static_cast<std::size_t>(reason)];
+  };
   // clang-format off
   return gst_structure_new("ellipse-stats",
-                           "frames", G_TYPE_UINT64, analysed_ + skipped_,
+                           "frames", G_TYPE_UINT64, analysed_ + skipped,
                            "analysed", G_TYPE_UINT64, analysed_,
-                           "skipped", G_TYPE_UINT64, skipped_,
+                           "skipped", G_TYPE_UINT64, skipped,
+                           "skipped-interval", G_TYPE_UINT64, skipped_for(Skip::kInterval),
+                           "skipped-late", G_TYPE_UINT64, skipped_for(Skip::kLate),
+                           "skipped-load", G_TYPE_UINT64, skipped_for(Skip::kLoad),
+                           "skipped-region", G_TYPE_UINT64, skipped_for(Skip::kRegion),
+                           "skipped-failed", G_TYPE_UINT64, skipped_for(Skip::kFailed),
                            "detected", G_TYPE_UINT64, detected_,
                            "tracked", G_TYPE_UINT64, tracked_,
+                           "predicted", G_TYPE_UINT64, predicted_,
                            "lost", G_TYPE_UINT64, lost_,
                            "processing-time-median", GST_TYPE_CLOCK_TIME, quantile(0.5),
                            "processing-time-p99", GST_TYPE_CLOCK_TIME, quantile(0.99),
+                           "processing-time-max", GST_TYPE_CLOCK_TIME, quantile(1.0),
+                           "latency", GST_TYPE_CLOCK_TIME, latency(),
                            nullptr);
   // clang-format on
 }

@@ -8,16 +8,31 @@
 
 #include "core/tracker.hpp"
 
+/// Why a frame passed without analysis.
+enum class Skip {
+  kInterval,  ///< It was not its turn.
+  kLate,      ///< The sink was late (QoS).
+  kLoad,      ///< Analyses take longer than they may.
+  kRegion,    ///< Nothing of it was to be searched.
+  kFailed,    ///< It could not be read or analysed.
+};
+
 /// Counts what becomes of the frames of a stream. Not thread-safe: the element's lock guards it.
 class TrackStats {
  public:
-  void add_skipped();
+  void add_skipped(Skip reason);
   /// Whatever was followed counts as lost.
   void forget_target();
+  /// @param processing_time  [ns]
   void add_analysed(const std::optional<ellipse::Target>& target, GstClockTime processing_time);
 
-  /// frames, analysed, skipped, detected, tracked, lost; median and 99th percentile of the
-  /// processing times [ns] of the last kWindow analysed frames. (transfer full)
+  /// What the analysis adds to a live pipeline's latency [ns]: the 99th percentile of the
+  /// processing times, in whole ms from above, so that it seldom changes. 0 before the first frame.
+  [[nodiscard]] GstClockTime latency() const;
+  [[nodiscard]] guint64 analysed() const { return analysed_; }
+
+  /// Counts, and times [ns] over the last kWindow analysed frames; docs/elements.md names the
+  /// fields. (transfer full)
   [[nodiscard]] GstStructure* to_structure() const;
 
  private:
@@ -26,9 +41,10 @@ class TrackStats {
   [[nodiscard]] GstClockTime quantile(double q) const;
 
   guint64 analysed_ = 0;
-  guint64 skipped_ = 0;
+  std::array<guint64, 5> skipped_{};  // by Skip
   guint64 detected_ = 0;
   guint64 tracked_ = 0;
+  guint64 predicted_ = 0;
   guint64 lost_ = 0;
   bool had_target_ = false;
   std::array<GstClockTime, kWindow> times_{};

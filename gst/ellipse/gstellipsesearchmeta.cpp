@@ -4,6 +4,13 @@
 #include <gst/video/gstvideometa.h>
 #include <gst/video/video.h>
 
+/**
+ * gst_ellipse_search_meta_api_get_type:
+ *
+ * The type that this metadata is filtered by, as in [method@Gst.Buffer.get_meta]. Thread-safe.
+ *
+ * Returns: the type of the metadata's API
+ */
 GType gst_ellipse_search_meta_api_get_type(void) {
   // Those of the ellipses, though a time has no size: where they are lost, "nothing was found" must
   // not be what remains.
@@ -29,6 +36,13 @@ static gboolean search_meta_transform(
   return gst_buffer_add_ellipse_search_meta(to, source->processing_time) != nullptr;
 }
 
+/**
+ * gst_ellipse_search_meta_get_info:
+ *
+ * What GStreamer knows of the metadata: its size, and how it is copied. Thread-safe.
+ *
+ * Returns: (transfer none): the registration, never freed
+ */
 const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
   static const GstMetaInfo* kInfo = gst_meta_register(GST_ELLIPSE_SEARCH_META_API_TYPE,
                                                       "GstEllipseSearchMeta",
@@ -60,6 +74,8 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
 /**
  * gst_buffer_get_ellipse_search_meta:
  * @buffer: (transfer none): a #GstBuffer
+ *
+ * Tells whether the frame of a buffer was searched.
  *
  * Returns: (transfer none) (nullable): what is known of the frame's search, %NULL where it was not
  * searched or an element has lost its metadata

@@ -5,14 +5,20 @@
 // harness around an element cost.
 #include <gst/check/gstharness.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
+#include "core/tracker.hpp"
 #include "core/tracker_settings.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/video_view.hpp"
 #include "tests/bench/allocations.hpp"
 #include "tests/bench/frames.hpp"
 #include "tests/gst/support.hpp"
@@ -81,6 +87,104 @@ void add_elements() {
                     element,
                     format);
       }
+    }
+  }
+}
+
+// One buffer after another through an element, a copy of each around the same memory.
+class BufferLoop {
+ public:
+  BufferLoop(const std::string& element, const std::string& caps)
+      : harness_(harness_of(element, caps)) {}
+
+  double run_s(GstBuffer* original, GstClockTime pts) {
+    GstBuffer* buffer = gst_buffer_copy(original);
+    GST_BUFFER_PTS(buffer) = pts;
+    const double elapsed_s =
+        bench::seconds([&] { buffer = gst_harness_push_and_pull(harness_.get(), buffer); });
+    gst_buffer_unref(buffer);
+    return elapsed_s;
+  }
+
+ private:
+  Owned<GstHarness> harness_;
+};
+
+// A tracker on the same buffers without an element around it.
+class CoreLoop {
+ public:
+  explicit CoreLoop(const GstVideoInfo& info) : info_(info) {}
+
+  double run_s(GstBuffer* buffer, GstClockTime pts) {
+    MappedFrame mapped(info_, buffer, GST_MAP_READ);
+    return bench::seconds([&] {
+      benchmark::DoNotOptimize(
+          tracker_.process(pixel_view_of(mapped.frame()), static_cast<std::int64_t>(pts)));
+    });
+  }
+
+ private:
+  GstVideoInfo info_;
+  ellipse::Tracker tracker_;
+};
+
+// The shortest times of each turn of a round, after which frames and looks of the detector come as
+// before: what else the machine does meanwhile is left out.
+class Round {
+ public:
+  Round() { shortest_s_.fill(std::numeric_limits<double>::max()); }
+
+  void add(std::uint64_t turn, double elapsed_s) {
+    double& shortest_s = shortest_s_[turn % shortest_s_.size()];
+    shortest_s = std::min(shortest_s, elapsed_s);
+  }
+  [[nodiscard]] double sum_s() const {
+    return std::accumulate(shortest_s_.begin(), shortest_s_.end(), 0.0);
+  }
+
+ private:
+  std::array<double, 40> shortest_s_;  // 10 frames there and back, a look at every eighth
+};
+
+// "ratio_core" is what the element takes, of what its tracker alone takes beside it;
+// "ratio_less_pads" the same without what "identity" takes.
+void run_beside_core(State& state, const std::string& format, const bench::Size& size) {
+  const Frames& frames = bench::frames_of(size);
+  const std::vector<Owned<GstBuffer>> buffers = buffers_of(frames, format);
+  const std::string caps = support::caps_of(format, size.width, size.height);
+  CoreLoop core(support::info_of(format, size.width, size.height));
+  BufferLoop element("ellipsetrack", caps);
+  BufferLoop pads("identity", caps);
+  Round of_core;
+  Round of_element;
+  Round of_pads;
+  std::uint64_t turn = 0;
+  for (auto _ : state) {
+    GstBuffer* buffer = buffers[bench::there_and_back(turn, frames.size())].get();
+    const GstClockTime pts = gst_util_uint64_scale(turn, GST_SECOND, 30);
+    // Whoever comes second finds the pixels in the cache.
+    const bool is_core_first = turn / 3 % 2 == 0;
+    if (is_core_first) of_core.add(turn, core.run_s(buffer, pts));
+    const double elapsed_s = element.run_s(buffer, pts);
+    if (!is_core_first) of_core.add(turn, core.run_s(buffer, pts));
+    of_element.add(turn, elapsed_s);
+    of_pads.add(turn, pads.run_s(buffer, pts));
+    state.SetIterationTime(elapsed_s);
+    ++turn;
+  }
+  state.counters["ratio_core"] = of_element.sum_s() / of_core.sum_s();
+  state.counters["ratio_less_pads"] = (of_element.sum_s() - of_pads.sum_s()) / of_core.sum_s();
+}
+
+void add_beside_core() {
+  for (const char* format : {"I420", "BGR"}) {
+    for (const bench::Size& size : {bench::kSizes[0], bench::kSizes[2]}) {
+      benchmark::RegisterBenchmark(
+          (std::string("ellipsetrack/beside_core/") + format + "/" + size.name()).c_str(),
+          [=](State& state) { run_beside_core(state, format, size); })
+          ->Iterations(2400)
+          ->UseManualTime()
+          ->Unit(benchmark::kMicrosecond);
     }
   }
 }
@@ -180,6 +284,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   add_elements();
+  add_beside_core();
   add_overlays();
   return bench::run_benchmarks(argc, argv);
 }

@@ -20,13 +20,6 @@ constexpr std::size_t kFrames = 6;
 constexpr double kStart_s = 3.5;
 constexpr std::int64_t kPixelsPerBenchmark = 100'000'000;
 
-template <class Call>
-double seconds(const Call& call) {
-  const auto start = Clock::now();
-  call();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 std::vector<Frame> render(const Size& size) {
   ellipse::SceneRenderer renderer(scene());
   ellipse::ContourDetector detector;
@@ -40,12 +33,6 @@ std::vector<Frame> render(const Size& size) {
     frame.chosen_thresholds = detector.edge_thresholds();
   }
   return frames;
-}
-
-// 0 1 2 3 2 1 0 1 ...
-std::size_t there_and_back(std::size_t i, std::size_t count) {
-  const std::size_t place = i % (2 * count - 2);
-  return std::min(place, 2 * count - 2 - place);
 }
 
 std::size_t period(const std::vector<Frame>& frames) {
@@ -81,6 +68,17 @@ std::int64_t iterations_at(const Size& size) {
 }
 
 }  // namespace
+
+std::size_t there_and_back(std::size_t turn, std::size_t count) {
+  const std::size_t place = turn % (2 * count - 2);
+  return std::min(place, 2 * count - 2 - place);
+}
+
+double seconds(const std::function<void()>& call) {
+  const auto start = Clock::now();
+  call();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 ellipse::Scene scene() {
   return ellipse::scene_by_name("approach");

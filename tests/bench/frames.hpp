@@ -66,6 +66,12 @@ class Reference {
   Contours contours_;
 };
 
+/// The frames forwards and backwards without end, 0 1 2 3 2 1 0 1 ...: no jump loses a target.
+[[nodiscard]] std::size_t there_and_back(std::size_t turn, std::size_t count);
+
+/// How long a call takes [s].
+[[nodiscard]] double seconds(const std::function<void()>& call);
+
 /// What is measured, on the frame of this number.
 using Work = std::function<void(std::size_t frame)>;
 
@@ -76,7 +82,7 @@ enum class SameEdges { kNo, kYes };
 /// reference's, frame by frame in turn, so that both meet the same machine in the same mood.
 /// OpenCV runs in one thread.
 ///
-/// The frames come forwards and backwards without end: no jump loses a target.
+/// The frames come as by there_and_back().
 /// Counters: "ratio" and, where asked for, "ratio_same_edges" of the times; "allocations" per frame
 /// once everything has its size; "peak_mb" of the heap and "bytes_per_pixel" from the beginning on.
 void compare(benchmark::State& state,

@@ -42,7 +42,8 @@ class ScriptedDetector final : public Detector {
     answer_ = script_.answers[turn];
     const Rect& region = script_.tracker->search_region();
     for (Detection& detection : answer_) {
-      detection.ellipse = to_region(detection.ellipse, region, region.width / luma.width);
+      detection.ellipse =
+          to_region(detection.ellipse, region, luma.empty() ? 1 : region.width / luma.width);
     }
     return answer_;
   }
@@ -68,6 +69,9 @@ class ScriptedTracker : public testing::Test {
  protected:
   void SetUp() override { script_.tracker = &tracker_; }
   std::optional<Target> process() { return tracker_.process(picture_.view(), 0); }
+  std::optional<Target> process(const SearchScope& scope) {
+    return tracker_.process(picture_.view(), 0, scope);
+  }
 
   TrackerSettings settings_ = redetecting();
   ScriptedDetector::Script script_;
@@ -183,6 +187,49 @@ TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
   EXPECT_EQ(target->state, TargetState::kDetected);
   EXPECT_EQ(target->pts_ns, 5);
   EXPECT_EQ(script_.calls.back().width, 320);
+}
+
+TEST_F(ScriptedTracker, SearchesOnlyInsideTheScope) {
+  const Rect within{80, 60, 200, 100};
+  script_.answers = {{at(100, 100, 30)}};
+  process({within});
+  EXPECT_EQ(tracker_.search_region(), within);
+  // Around the target it would be from 40 to 161, and from 43 to 158.
+  EXPECT_EQ(process({within})->search_region, (Rect{80, 60, 81, 98}));
+  process({{600, 300, 200, 100}});
+  EXPECT_EQ(script_.calls.back().width, 0);  // the target's region is elsewhere
+  EXPECT_EQ(script_.calls.size(), 3U);
+}
+
+TEST_F(ScriptedTracker, WhereNothingIsSearchedTheTargetIsForgotten) {
+  script_.answers = {{at(100, 100, 30)}};
+  process();
+  for (const Rect& nowhere : {Rect{}, Rect{640, 0, 9, 9}, Rect{10, 10, -5, 9}}) {
+    EXPECT_FALSE(process({nowhere}));
+    EXPECT_TRUE(tracker_.search_region().empty());
+  }
+  EXPECT_EQ(script_.calls.size(), 1U);
+  EXPECT_EQ(process()->state, TargetState::kDetected);
+  EXPECT_EQ(tracker_.search_region(), (Rect{0, 0, 640, 360}));
+}
+
+TEST_F(ScriptedTracker, TheFinestScaleIsNotGoneBelow) {
+  script_.answers = {{at(320, 180, 60)}, {}};
+  const Rect all{0, 0, 640, 360};
+  EXPECT_EQ(process({all, 4})->scale, 4);
+  EXPECT_EQ(script_.calls[0].width, 160);
+  EXPECT_FALSE(process({all, 4}));
+  EXPECT_EQ(script_.calls.size(), 2U);  // a loss is not tried again
+  process({all, 1});
+  process({all, 1});
+  EXPECT_EQ(script_.calls.back().width, 640);
+}
+
+TEST_F(ScriptedTracker, TheFinestScaleStaysBelowTheCoarsest) {
+  settings_.max_scale = 3;
+  tracker_.configure(settings_);
+  script_.answers = {{at(320, 180, 60)}};
+  EXPECT_EQ(process({{0, 0, 640, 360}, 8})->scale, 2);
 }
 
 TEST(Tracker, RefusesSettingsAndKeepsTheOldOnes) {
@@ -313,6 +360,45 @@ TEST(FollowingTracker, FollowsWithoutTimeStamps) {
     const auto target = tracker.process(film.at(frame).view(), -1);
     ASSERT_TRUE(target) << frame;
     EXPECT_EQ(target->state, frame == 0 ? TargetState::kDetected : TargetState::kTracked) << frame;
+  }
+}
+
+TEST(FollowingTracker, FollowsInsideTheScopeOnly) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  const Rect left{0, 0, 180, 240};  // the pad's right edge is at 160 + 2 px a frame
+  for (int frame = 0; frame < 10; ++frame) {
+    const auto target = tracker.process(film.at(frame).view(), frame * kFrameNs, {left});
+    ASSERT_TRUE(target) << frame;
+    EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), 0.3) << frame;
+    EXPECT_EQ(intersect(target->search_region, left), target->search_region) << frame;
+  }
+  const auto elsewhere = tracker.process(film.at(10).view(), 10 * kFrameNs, {{240, 180, 80, 60}});
+  EXPECT_FALSE(elsewhere);
+}
+
+TEST(FollowingTracker, FollowsASmallTargetAlsoWhereTheDetectorLooksTooCoarsely) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  (void)tracker.process(film.at(0).view(), 0);
+  for (int frame = 1; frame < 40; ++frame) {
+    const auto target =
+        tracker.process(film.at(frame).view(), frame * kFrameNs, {{0, 0, 320, 240}, 16});
+    ASSERT_TRUE(target) << frame;
+    EXPECT_EQ(target->id, 1U) << frame;
+    EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), 0.3) << frame;
+  }
+}
+
+TEST(FollowingTracker, LocksExactlyOntoWhatWasFoundAtACoarseScale) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  for (int frame = 0; frame < 10; ++frame) {
+    const auto target =
+        tracker.process(film.at(frame).view(), frame * kFrameNs, {{0, 0, 320, 240}, 2});
+    ASSERT_TRUE(target) << frame;
+    const double tolerance_px = frame == 0 ? 1.0 : 0.3;
+    EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), tolerance_px) << frame;
   }
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <gst/controller/controller.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,61 +8,25 @@
 #include <thread>
 
 #include "tests/gst/support.hpp"
+#include "tests/gst/tracking.hpp"
 
 namespace {
 
 using support::buffer_of;
 using support::BusTap;
 using support::caps_of;
+using support::element_of;
 using support::gray_buffer_of;
 using support::info_of;
+using support::kRing;
 using support::Owned;
 using support::Picture;
-using support::plain_ring;
-using support::rendered;
-
-const ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
-
-Picture ring_picture(int width = 320, int height = 240) {
-  return rendered(plain_ring(), kRing, width, height);
-}
-
-Owned<GstHarness> tracker(const std::string& settings = "",
-                          const std::string& caps = caps_of("GRAY8", 320, 240)) {
-  Owned<GstHarness> harness(gst_harness_new_parse(("ellipsetrack name=t " + settings).c_str()));
-  gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
-  return harness;
-}
-
-// The element itself: gst_harness_new_parse wraps it in a bin.
-GstElement* element_of(const Owned<GstHarness>& harness) {
-  GstElement* found = GST_IS_BIN(harness->element)
-                          ? gst_bin_get_by_name(GST_BIN(harness->element), "t")
-                          : GST_ELEMENT(gst_object_ref(harness->element));
-  gst_object_unref(found);  // the harness keeps it
-  return found;
-}
-
-Owned<GstBuffer> push(const Owned<GstHarness>& harness, Owned<GstBuffer> buffer) {
-  return Owned<GstBuffer>(gst_harness_push_and_pull(harness.get(), buffer.release()));
-}
-
-GstEllipseMeta* target_on(const Owned<GstBuffer>& buffer) {
-  return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
-}
-
-GstStructure* structure_property(GstElement* element, const char* name) {
-  GstStructure* structure = nullptr;
-  g_object_get(element, name, &structure, nullptr);
-  return structure;
-}
-
-guint64 stat(GstElement* element, const char* name) {
-  const Owned<GstStructure> stats(structure_property(element, "stats"));
-  guint64 value = 0;
-  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), name, &value)) << name;
-  return value;
-}
+using support::push;
+using support::ring_picture;
+using support::stat;
+using support::structure_property;
+using support::target_on;
+using support::tracker;
 
 TEST(EllipseTrack, AttachesTheTarget) {
   const auto harness = tracker();
@@ -204,19 +167,6 @@ TEST(EllipseTrack, HonoursStrideAndOffsetOfTheVideoMeta) {
   EXPECT_EQ(meta->cx, found_in("GRAY8", 321).cx);
 }
 
-TEST(EllipseTrack, SharedPixelsStayTheSameMemory) {
-  const auto harness = tracker();
-  auto buffer = gray_buffer_of(ring_picture());
-  GstBuffer* shared = gst_buffer_ref(buffer.get());  // as after a tee
-  GstMemory* memory = gst_buffer_peek_memory(shared, 0);
-  const auto out = push(harness, std::move(buffer));
-  EXPECT_NE(out.get(), shared);
-  EXPECT_NE(target_on(out), nullptr);
-  EXPECT_EQ(gst_buffer_peek_memory(out.get(), 0), memory);
-  EXPECT_EQ(gst_buffer_get_ellipse_meta(shared, GST_ELLIPSE_ROLE_TARGET), nullptr);
-  gst_buffer_unref(shared);
-}
-
 TEST(EllipseTrack, DrawsOnACopyOfSharedPixels) {
   const auto harness = tracker("overlay=ellipse");
   auto buffer = gray_buffer_of(ring_picture());
@@ -343,24 +293,6 @@ TEST(EllipseTrack, TakesPropertiesFromOtherThreads) {
   is_done = true;
   writer.join();
   EXPECT_EQ(stat(element, "frames"), 60U);
-}
-
-TEST(EllipseTrack, FollowsAController) {
-  const auto harness = tracker();
-  GstElement* element = element_of(harness);
-  GstControlSource* source = gst_interpolation_control_source_new();
-  g_object_set(source, "mode", GST_INTERPOLATION_MODE_NONE, nullptr);
-  gst_object_add_control_binding(
-      GST_OBJECT(element),
-      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "max-axis", source));
-  auto* values = GST_TIMED_VALUE_CONTROL_SOURCE(source);
-  gst_timed_value_control_source_set(values, 0, 700.0);
-  gst_timed_value_control_source_set(values, GST_SECOND, 20.0);
-  gst_object_unref(source);
-  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
-  auto later = gray_buffer_of(ring_picture());
-  GST_BUFFER_PTS(later.get()) = 2 * GST_SECOND;
-  EXPECT_EQ(target_on(push(harness, std::move(later))), nullptr);
 }
 
 TEST(EllipseTrack, PostsAMessageOnChange) {
@@ -588,26 +520,6 @@ TEST(EllipseTrack, OffersVideoMetaUpstream) {
   gst_object_unref(sink);
   gst_query_unref(query);
   gst_caps_unref(caps);
-}
-
-TEST(EllipseTrack, HasThePapersPreset) {
-  const auto harness = tracker("detect-contour-overlap=0.5 min-axis=9");
-  GstElement* element = element_of(harness);
-  ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Keipour 2021"));
-  double overlap = 0.0;
-  double min_axis = 0.0;
-  guint max_scale = 0;
-  g_object_get(element,
-               "detect-contour-overlap",
-               &overlap,
-               "min-axis",
-               &min_axis,
-               "max-scale",
-               &max_scale,
-               nullptr);
-  EXPECT_EQ(overlap, 0.95);
-  EXPECT_EQ(min_axis, 5.0);
-  EXPECT_EQ(max_scale, 100U);
 }
 
 }  // namespace

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+//
+// Writes the tables of properties in a document from what the elements themselves say, between
+//   <!-- properties of ELEMENT -->   and   <!-- end of properties -->
+// With --check it writes nothing, and fails where the document says something else.
+#include <gst/base/gstbasetransform.h>
+#include <gst/gst.h>
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr char kBegin[] = "<!-- properties of ";
+constexpr char kEnd[] = "<!-- end of properties -->";
+
+std::string quoted(const std::string& text) {
+  return "`" + text + "`";
+}
+
+template <class Value>
+std::string nicks_of(const Value* values, guint count) {
+  std::string nicks;
+  for (guint i = 0; i < count; ++i) nicks += (i > 0 ? ", " : "") + quoted(values[i].value_nick);
+  return nicks;
+}
+
+std::string number(double value) {
+  std::ostringstream out;
+  out.precision(10);
+  out << value;
+  return out.str();
+}
+
+std::string flags_of(const GValue& value) {
+  const auto* type = static_cast<const GFlagsClass*>(g_type_class_peek(G_VALUE_TYPE(&value)));
+  const guint set = g_value_get_flags(&value);
+  std::string nicks;
+  for (guint i = 0; i < type->n_values; ++i) {
+    const GFlagsValue& flag = type->values[i];
+    const bool is_set = flag.value == 0 ? set == 0 : (set & flag.value) == flag.value;
+    if (is_set) nicks += (nicks.empty() ? "" : "+") + std::string(flag.value_nick);
+  }
+  return quoted(nicks);
+}
+
+// Angle brackets would be taken for markup.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return result;
+}
+
+template <class Spec>
+std::string range_of(const char* type, const Spec* spec) {
+  return std::string(type) + " " + number(static_cast<double>(spec->minimum)) + " - " +
+         number(static_cast<double>(spec->maximum));
+}
+
+std::string type_of(GParamSpec* spec) {
+  if (G_IS_PARAM_SPEC_ENUM(spec)) {
+    const GEnumClass* type = G_PARAM_SPEC_ENUM(spec)->enum_class;
+    return "enum: " + nicks_of(type->values, type->n_values);
+  }
+  if (G_IS_PARAM_SPEC_FLAGS(spec)) {
+    const GFlagsClass* type = G_PARAM_SPEC_FLAGS(spec)->flags_class;
+    return "flags: " + nicks_of(type->values, type->n_values);
+  }
+  if (G_IS_PARAM_SPEC_DOUBLE(spec)) return range_of("double", G_PARAM_SPEC_DOUBLE(spec));
+  if (G_IS_PARAM_SPEC_UINT(spec)) return range_of("uint", G_PARAM_SPEC_UINT(spec));
+  if (G_IS_PARAM_SPEC_UINT64(spec)) return "uint64";
+  if (G_IS_PARAM_SPEC_BOOLEAN(spec)) return "boolean";
+  if (G_IS_PARAM_SPEC_STRING(spec)) return "string";
+  if (GST_IS_PARAM_SPEC_ARRAY_LIST(spec)) return "`GstValueArray` of int";
+  if (spec->value_type == GST_TYPE_STRUCTURE) return "`GstStructure`";
+  throw std::runtime_error(std::string("a property of a type without a name here: ") + spec->name);
+}
+
+// What a new element has, as people write it on a command line.
+std::string default_of(GstElement* element, GParamSpec* spec) {
+  if (G_IS_PARAM_SPEC_BOXED(spec) || GST_IS_PARAM_SPEC_ARRAY_LIST(spec)) return "-";
+  GValue value = G_VALUE_INIT;
+  g_object_get_property(G_OBJECT(element), spec->name, &value);
+  std::string text;
+  if (G_VALUE_HOLDS_FLAGS(&value)) {
+    text = flags_of(value);
+  } else if (G_VALUE_HOLDS_UINT(&value) && g_str_has_suffix(spec->name, "-color")) {
+    char hexadecimal[16];
+    std::snprintf(hexadecimal, sizeof hexadecimal, "0x%08x", g_value_get_uint(&value));
+    text = hexadecimal;
+  } else if (G_VALUE_HOLDS_DOUBLE(&value)) {
+    text = number(g_value_get_double(&value));
+  } else if (G_VALUE_HOLDS_STRING(&value)) {
+    const gchar* content = g_value_get_string(&value);
+    text = content != nullptr && *content != '\0' ? content : "empty";
+  } else {
+    const std::unique_ptr<gchar, decltype(&g_free)> serialized(gst_value_serialize(&value), g_free);
+    text = G_VALUE_HOLDS_ENUM(&value) ? quoted(serialized.get()) : serialized.get();
+  }
+  g_value_unset(&value);
+  return text;
+}
+
+std::string changeable(const GParamSpec* spec) {
+  if ((spec->flags & G_PARAM_WRITABLE) == 0) return "read only";
+  if ((spec->flags & GST_PARAM_CONTROLLABLE) != 0) return "playing, C";
+  if ((spec->flags & GST_PARAM_MUTABLE_PLAYING) != 0) return "playing";
+  if ((spec->flags & GST_PARAM_MUTABLE_READY) != 0) return "ready";
+  return "-";
+}
+
+std::string table_of(const std::string& name) {
+  const std::unique_ptr<GstElement, decltype(&gst_object_unref)> element(
+      gst_element_factory_make(name.c_str(), nullptr), gst_object_unref);
+  if (!element) throw std::runtime_error("no element " + name);
+  std::string table =
+      "| property | type, range | default | changeable | what it is |\n|---|---|---|---|---|\n";
+  guint count = 0;
+  const std::unique_ptr<GParamSpec*, decltype(&g_free)> specs(
+      g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count), g_free);
+  for (guint i = 0; i < count; ++i) {
+    GParamSpec* spec = specs.get()[i];
+    const bool is_qos = spec->owner_type == GST_TYPE_BASE_TRANSFORM;
+    if (spec->owner_type != G_OBJECT_TYPE(element.get()) && !is_qos) continue;
+    table += "| " + quoted(spec->name) + " | " + type_of(spec) + " | " +
+             default_of(element.get(), spec) + " | " + changeable(spec) + " | " +
+             escaped(g_param_spec_get_blurb(spec)) + " |\n";
+  }
+  return table;
+}
+
+std::string with_tables(std::istream& document) {
+  std::string result;
+  std::string line;
+  bool is_in_table = false;
+  while (std::getline(document, line)) {
+    if (line == kEnd) is_in_table = false;
+    if (!is_in_table) result += line + "\n";
+    if (line.rfind(kBegin, 0) != 0) continue;
+    const std::string name = line.substr(std::strlen(kBegin));
+    result += table_of(name.substr(0, name.find(' ')));
+    is_in_table = true;
+  }
+  if (is_in_table) throw std::runtime_error(std::string("a table without ") + kEnd);
+  return result;
+}
+
+int run(const std::string& file, bool is_check) {
+  std::ifstream in(file);
+  std::stringstream before;
+  before << in.rdbuf();
+  const std::string after = with_tables(before);
+  if (after == before.str()) return 0;
+  if (!is_check) {
+    std::ofstream(file) << after;
+    return 0;
+  }
+  std::fprintf(stderr,
+               "%s is not what the elements say: run \"meson compile property-tables-update\"\n",
+               file.c_str());
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  const bool is_check = argc == 3 && std::strcmp(argv[1], "--check") == 0;
+  if (argc != 2 && !is_check) {
+    std::fputs("usage: property-tables [--check] FILE\n", stderr);
+    return 2;
+  }
+  try {
+    return run(argv[argc - 1], is_check);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

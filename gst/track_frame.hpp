@@ -1,0 +1,57 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gst/video/video.h>
+
+#include <optional>
+
+#include "core/tracker.hpp"
+#include "gst/gstellipsetrack.h"
+#include "gst/lateness.hpp"
+#include "gst/load_watch.hpp"
+#include "gst/overlay.hpp"
+#include "gst/track_properties.hpp"
+#include "gst/track_stats.hpp"
+
+GST_DEBUG_CATEGORY_EXTERN(gst_ellipse_track_debug);
+#define GST_CAT_DEFAULT gst_ellipse_track_debug
+
+/// What the streaming thread keeps from frame to frame.
+struct TrackStream {
+  ellipse::Tracker tracker;
+  Overlay overlay;
+  LoadWatch load;
+  guint64 frame = 0;
+  std::optional<ellipse::Target> last_target;
+};
+
+/// What several threads touch, under the object lock.
+struct TrackShared {
+  TrackProperties properties;
+  std::optional<TrackProperties> preset;  ///< While one is being loaded.
+  TrackStats stats;
+  Lateness lateness;
+  GstStructure* target = nullptr;
+  GstClockTime told_latency = 0;
+  bool is_live = false;
+  bool reset_is_due = false;
+
+  TrackShared() = default;
+  ~TrackShared() { gst_clear_structure(&target); }
+  TrackShared(const TrackShared&) = delete;
+  TrackShared& operator=(const TrackShared&) = delete;
+};
+
+struct _GstEllipseTrack {
+  GstVideoFilter parent;
+  TrackShared* shared;
+  TrackStream* stream;
+};
+
+/// One buffer's way through ellipsetrack, in the streaming thread: whether it is analysed, what is
+/// found, and who learns of it. Its pixels change only where the overlay is on. Never throws: what
+/// fails becomes an element warning.
+void track_frame(GstEllipseTrack* self, GstBuffer* buffer);
+
+/// Starts over, and says so to those who still count on the target. Never while a buffer is on its
+/// way.
+void forget_stream(GstEllipseTrack* self);

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/gst/support.hpp"
+#include "tests/gst/tracking.hpp"
+
+namespace {
+
+using support::buffer_of;
+using support::BusTap;
+using support::caps_of;
+using support::element_of;
+using support::info_of;
+using support::kRing;
+using support::Owned;
+using support::Picture;
+using support::push;
+using support::ring_picture;
+using support::target_on;
+using support::tracker;
+
+constexpr int kLargest = 8192;
+
+// Black, in memory that takes room only where it is written.
+Owned<GstBuffer> black(const GstVideoInfo& info) {
+  const gsize size = GST_VIDEO_INFO_SIZE(&info);
+  void* pixels = std::calloc(size, 1);
+  return Owned<GstBuffer>(gst_buffer_new_wrapped_full(
+      static_cast<GstMemoryFlags>(0), pixels, size, 0, size, pixels, std::free));
+}
+
+void paint(GstBuffer* buffer, const GstVideoInfo& info, const Picture& picture, int x, int y) {
+  GstVideoFrame frame;
+  ASSERT_TRUE(gst_video_frame_map(&frame, &info, buffer, GST_MAP_WRITE));
+  const guint components = GST_VIDEO_FORMAT_INFO_IS_RGB(info.finfo) ? 3 : 1;
+  for (guint c = 0; c < components; ++c) {
+    const std::ptrdiff_t step = GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, c);
+    for (int row = 0; row < picture.height; ++row) {
+      auto* out = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, c)) +
+                  std::ptrdiff_t{y + row} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, c) + x * step;
+      for (int column = 0; column < picture.width; ++column) {
+        out[column * step] = picture.view().row(row)[column];
+      }
+    }
+  }
+  gst_video_frame_unmap(&frame);
+}
+
+class EachFormat : public testing::TestWithParam<const char*> {};
+
+TEST_P(EachFormat, PassesInTheSmallestAndTheThinnestFrames) {
+  const auto harness = tracker();
+  const auto pass = [&](int width, int height) {
+    const std::string caps = caps_of(GetParam(), width, height);
+    gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
+    auto buffer = black(info_of(GetParam(), width, height));
+    const gsize size = gst_buffer_get_size(buffer.get());
+    const auto out = push(harness, std::move(buffer));
+    ASSERT_TRUE(out) << width << 'x' << height;
+    EXPECT_EQ(gst_buffer_get_size(out.get()), size);
+  };
+  for (int width = 1; width <= 5; ++width) {
+    for (int height = 1; height <= 5; ++height) pass(width, height);
+  }
+  pass(kLargest, 1);
+  pass(1, kLargest);
+  pass(kLargest, 3);
+}
+
+TEST_P(EachFormat, IsFoundInTheFarCornerOfTheLargestFrames) {
+  const GstVideoInfo info = info_of(GetParam(), kLargest, kLargest);
+  auto buffer = black(info);
+  const Picture ring = ring_picture();
+  const int x = kLargest - ring.width;
+  const int y = kLargest - ring.height;
+  paint(buffer.get(), info, ring, x, y);
+  const auto harness = tracker("", caps_of(GetParam(), kLargest, kLargest));
+  const auto out = push(harness, std::move(buffer));
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->cx, x + kRing.cx, 0.2);
+  EXPECT_NEAR(meta->cy, y + kRing.cy, 0.2);
+  EXPECT_NEAR(meta->semi_major, kRing.semi_major, 0.3);
+}
+
+TEST_P(EachFormat, SharedPixelsStayTheSameMemory) {
+  const auto harness = tracker("", caps_of(GetParam(), 320, 240));
+  auto buffer = buffer_of(ring_picture(), info_of(GetParam(), 320, 240));
+  const Owned<GstBuffer> shared(gst_buffer_ref(buffer.get()));  // as after a tee
+  const std::string before = support::bytes_of(shared.get());
+  const auto out = push(harness, std::move(buffer));
+  EXPECT_NE(target_on(out), nullptr);
+  EXPECT_EQ(target_on(shared), nullptr);
+  ASSERT_EQ(gst_buffer_n_memory(out.get()), gst_buffer_n_memory(shared.get()));
+  for (guint i = 0; i < gst_buffer_n_memory(out.get()); ++i) {
+    EXPECT_EQ(gst_buffer_peek_memory(out.get(), i), gst_buffer_peek_memory(shared.get(), i));
+  }
+  EXPECT_EQ(support::bytes_of(out.get()), before);
+}
+
+TEST_P(EachFormat, RowsAndPlanesMayLieAnywhere) {
+  const Picture ring = ring_picture();
+  const GstVideoInfo plain = info_of(GetParam(), ring.width, ring.height);
+  GstVideoInfo info = plain;
+  GstVideoAlignment around;
+  gst_video_alignment_reset(&around);
+  around.padding_left = 8;
+  around.padding_right = 24;
+  around.padding_top = 4;
+  around.padding_bottom = 2;
+  ASSERT_TRUE(gst_video_info_align(&info, &around));
+  EXPECT_GT(GST_VIDEO_INFO_PLANE_OFFSET(&info, 0), 0U);
+  auto padded = buffer_of(ring, info);
+  gst_buffer_add_video_meta_full(padded.get(),
+                                 GST_VIDEO_FRAME_FLAG_NONE,
+                                 GST_VIDEO_INFO_FORMAT(&info),
+                                 static_cast<guint>(ring.width),
+                                 static_cast<guint>(ring.height),
+                                 GST_VIDEO_INFO_N_PLANES(&info),
+                                 info.offset,
+                                 info.stride);
+  const std::string caps = caps_of(GetParam(), ring.width, ring.height);
+  const auto out = push(tracker("", caps), std::move(padded));
+  const auto expected = push(tracker("", caps), buffer_of(ring, plain));
+  ASSERT_NE(target_on(out), nullptr);
+  EXPECT_EQ(target_on(out)->cx, target_on(expected)->cx);
+  EXPECT_EQ(target_on(out)->semi_major, target_on(expected)->semi_major);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats,
+                         EachFormat,
+                         testing::Values("GRAY8",
+                                         "I420",
+                                         "YV12",
+                                         "NV12",
+                                         "NV21",
+                                         "NV16",
+                                         "Y41B",
+                                         "Y42B",
+                                         "Y444",
+                                         "YUY2",
+                                         "UYVY",
+                                         "YVYU",
+                                         "RGB",
+                                         "BGR",
+                                         "RGBx",
+                                         "BGRx",
+                                         "xRGB",
+                                         "xBGR",
+                                         "RGBA",
+                                         "BGRA",
+                                         "ARGB",
+                                         "ABGR"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(EllipseTrackFrames, MayBeReadOnly) {
+  const Picture picture = ring_picture();
+  Owned<GstBuffer> buffer(
+      gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY,
+                                  const_cast<std::uint8_t*>(picture.pixels.data()),
+                                  picture.pixels.size(),
+                                  0,
+                                  picture.pixels.size(),
+                                  nullptr,
+                                  nullptr));
+  GstMemory* memory = gst_buffer_peek_memory(buffer.get(), 0);
+  const auto harness = tracker();
+  const auto out = push(harness, std::move(buffer));
+  EXPECT_NE(target_on(out), nullptr);
+  EXPECT_EQ(gst_buffer_peek_memory(out.get(), 0), memory);
+}
+
+TEST(EllipseTrackFrames, InterlacedOnesAreWarnedOf) {
+  for (const char* mode : {"progressive", "interleaved"}) {
+    Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));
+    BusTap bus(element_of(harness));
+    const std::string caps = caps_of("GRAY8", 320, 240) + ",interlace-mode=" + mode;
+    gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
+    EXPECT_TRUE(push(harness, support::gray_buffer_of(ring_picture())));
+    EXPECT_EQ(static_cast<bool>(bus.pop(GST_MESSAGE_WARNING)), std::string(mode) == "interleaved");
+  }
+}
+
+}  // namespace

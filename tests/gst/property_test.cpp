@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include <gst/controller/controller.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "tests/gst/support.hpp"
+#include "tests/gst/tracking.hpp"
+
+namespace {
+
+using support::BusTap;
+using support::element_of;
+using support::gray_buffer_of;
+using support::Owned;
+using support::push;
+using support::ring_picture;
+using support::target_on;
+using support::tracker;
+
+// Presets are read once, at the first question for them.
+class TestPresets : public testing::Environment {
+ public:
+  void SetUp() override { gst_preset_set_app_dir(ELLIPSE_TEST_PRESETS); }
+};
+[[maybe_unused]] const testing::Environment* const kPresets =
+    testing::AddGlobalTestEnvironment(new TestPresets);
+
+template <class Number>
+Number value_of(GstElement* element, const char* name) {
+  Number value{};
+  g_object_get(element, name, &value, nullptr);
+  return value;
+}
+
+TEST(EllipseTrackProperties, HaveTheFlagsOfTheContract) {
+  const auto harness = tracker();
+  const std::set<std::string> controllable{"detect-contour-overlap",
+                                           "detect-ellipse-overlap",
+                                           "track-contour-overlap",
+                                           "track-ellipse-overlap",
+                                           "min-axis",
+                                           "max-axis",
+                                           "max-axis-ratio",
+                                           "min-contour-size",
+                                           "min-target-size",
+                                           "max-target-size",
+                                           "roi-expansion",
+                                           "edge-low",
+                                           "edge-high"};
+  guint count = 0;
+  GParamSpec** specs =
+      g_object_class_list_properties(G_OBJECT_GET_CLASS(element_of(harness)), &count);
+  for (guint i = 0; i < count; ++i) {
+    if (specs[i]->owner_type != G_OBJECT_TYPE(element_of(harness))) continue;
+    const std::string name = specs[i]->name;
+    const bool is_writable = (specs[i]->flags & G_PARAM_WRITABLE) != 0;
+    EXPECT_EQ((specs[i]->flags & GST_PARAM_CONTROLLABLE) != 0, controllable.contains(name)) << name;
+    EXPECT_EQ((specs[i]->flags & GST_PARAM_MUTABLE_PLAYING) != 0, is_writable) << name;
+    EXPECT_FALSE(std::string(g_param_spec_get_blurb(specs[i])).empty()) << name;
+  }
+  g_free(specs);
+  EXPECT_GT(count, controllable.size());
+}
+
+TEST(EllipseTrackProperties, TheirTypesArePartOfThePluginsApi) {
+  const auto harness = tracker();
+  auto* klass = G_OBJECT_GET_CLASS(element_of(harness));
+  for (const char* name : {"detector", "tracking", "refine", "messages", "roi-source", "overlay"}) {
+    const GParamSpec* spec = g_object_class_find_property(klass, name);
+    ASSERT_NE(spec, nullptr) << name;
+    EXPECT_TRUE(gst_type_is_plugin_api(spec->value_type, nullptr)) << name;
+  }
+}
+
+TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
+  const auto harness = tracker("tracking=none");
+  GstElement* element = element_of(harness);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.time = 10 * GST_SECOND;
+  gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+  GstControlSource* source = gst_interpolation_control_source_new();
+  g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
+  gst_object_add_control_binding(
+      GST_OBJECT(element),
+      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "max-axis", source));
+  auto* curve = GST_TIMED_VALUE_CONTROL_SOURCE(source);
+  gst_timed_value_control_source_set(curve, 10 * GST_SECOND, 150.0);
+  gst_timed_value_control_source_set(curve, 11 * GST_SECOND, 50.0);
+  gst_object_unref(source);
+  std::string pattern;  // the ring is 100 px across, its inner edge 79.5
+  for (guint64 i = 0; i < 8; ++i) {
+    auto buffer = gray_buffer_of(ring_picture());
+    GST_BUFFER_PTS(buffer.get()) = (50 + 100 * i) * GST_MSECOND;
+    const auto out = push(harness, std::move(buffer));
+    const GstEllipseMeta* meta = target_on(out);
+    pattern += meta == nullptr ? '.' : meta->semi_major > 45.0 ? 'O' : 'o';
+    EXPECT_NEAR(value_of<double>(element, "max-axis"), 145.0 - 10.0 * static_cast<double>(i), 1e-6);
+  }
+  EXPECT_EQ(pattern, "OOOOOoo.");
+}
+
+TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
+  for (const char* before : {"min-axis=2 max-axis=3",
+                             "max-axis=900 min-axis=800",
+                             "detect-contour-overlap=0.5 min-axis=9 max-scale=3"}) {
+    const auto harness = tracker(before);
+    GstElement* element = element_of(harness);
+    BusTap bus(element);
+    ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Keipour 2021"));
+    EXPECT_EQ(value_of<double>(element, "min-axis"), 5.0) << before;
+    EXPECT_EQ(value_of<double>(element, "max-axis"), 700.0) << before;
+    EXPECT_EQ(value_of<double>(element, "detect-contour-overlap"), 0.95) << before;
+    EXPECT_EQ(value_of<guint>(element, "max-scale"), 100U) << before;
+    EXPECT_EQ(value_of<int>(element, "tracking"), 1) << before;
+    EXPECT_FALSE(bus.pop(GST_MESSAGE_WARNING)) << before;
+  }
+}
+
+TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  BusTap bus(element);
+  EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "Turned pair"));
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
+  EXPECT_EQ(value_of<int>(element, "detector"), 1);
+  EXPECT_EQ(value_of<double>(element, "max-axis"), 700.0);
+  g_object_set(element, "max-axis", 600.0, nullptr);  // and setting goes on as before
+  EXPECT_EQ(value_of<double>(element, "max-axis"), 600.0);
+  EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "No such preset"));
+}
+
+TEST(EllipseTrackPreset, HoldsRegionsAndTimes) {
+  const auto harness = tracker();
+  GstElement* element = element_of(harness);
+  ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Region"));
+  GValue roi = G_VALUE_INIT;
+  g_object_get_property(G_OBJECT(element), "roi", &roi);
+  gchar* text = gst_value_serialize(&roi);
+  EXPECT_STREQ(text, "< (int)10, (int)20, (int)300, (int)200 >");
+  g_free(text);
+  g_value_unset(&roi);
+  gchar* type = value_of<gchar*>(element, "roi-type");
+  EXPECT_STREQ(type, "pad");
+  g_free(type);
+  EXPECT_EQ(value_of<guint64>(element, "max-processing-time"), 20 * GST_MSECOND);
+}
+
+}  // namespace

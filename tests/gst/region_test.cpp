@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "tests/gst/support.hpp"
+#include "tests/gst/tracking.hpp"
+
+namespace {
+
+using support::BusTap;
+using support::caps_of;
+using support::element_of;
+using support::gray_buffer_of;
+using support::Owned;
+using support::Picture;
+using support::plain_ring;
+using support::push;
+using support::rendered;
+using support::ring_picture;
+using support::stat;
+using support::target_on;
+using support::tracker;
+
+const ellipse::Ellipse kLeft{80.0, 110.0, 40.0, 32.0, 0.3};
+const ellipse::Ellipse kRight{240.0, 130.0, 36.0, 30.0, -0.4};
+constexpr int kLeftHalf[] = {0, 0, 160, 240};
+constexpr int kRightHalf[] = {160, 0, 160, 240};
+
+Owned<GstBuffer> two_rings() {
+  Picture picture = rendered(plain_ring(), kLeft);
+  const Picture other = rendered(plain_ring(), kRight);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    picture.pixels[i] = std::min(picture.pixels[i], other.pixels[i]);
+  }
+  return gray_buffer_of(picture);
+}
+
+void add_region(const Owned<GstBuffer>& buffer, const char* type, std::array<guint, 4> box) {
+  gst_buffer_add_video_region_of_interest_meta(buffer.get(), type, box[0], box[1], box[2], box[3]);
+}
+
+void expect_at(const Owned<GstBuffer>& buffer, const ellipse::Ellipse& truth) {
+  const GstEllipseMeta* meta = target_on(buffer);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->cx, truth.cx, 0.2);
+  EXPECT_NEAR(meta->cy, truth.cy, 0.2);
+  EXPECT_NEAR(meta->semi_major, truth.semi_major, 0.3);
+}
+
+TEST(EllipseTrackRegion, IsThatOfTheProperty) {
+  const auto left = tracker("roi-source=property roi=\"<0,0,160,240>\"");
+  const auto right = tracker("roi-source=property roi=\"<160,0,160,240>\"");
+  for (int i = 0; i < 12; ++i) {  // the detector looks again at the ninth
+    expect_at(push(left, two_rings()), kLeft);
+    expect_at(push(right, two_rings()), kRight);
+  }
+}
+
+TEST(EllipseTrackRegion, CountsOnlyWhereItIsAskedFor) {
+  const auto harness = tracker("roi=\"<0,0,4,4>\"");
+  EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
+}
+
+TEST(EllipseTrackRegion, IsWhereTheTrackerLooksAlsoWhileItFollows) {
+  for (const char* tracking : {"none", "redetect", "edges"}) {
+    const auto harness =
+        tracker("roi-source=property roi=\"<30,60,110,100>\" tracking=" + std::string(tracking));
+    for (int i = 0; i < 10; ++i) {
+      const auto out = push(harness, two_rings());
+      const GstEllipseMeta* meta = target_on(out);
+      ASSERT_NE(meta, nullptr) << tracking << i;
+      EXPECT_GE(meta->roi_x, 30) << tracking;
+      EXPECT_GE(meta->roi_y, 60) << tracking;
+      EXPECT_LE(meta->roi_x + static_cast<int>(meta->roi_width), 140) << tracking;
+      EXPECT_LE(meta->roi_y + static_cast<int>(meta->roi_height), 160) << tracking;
+    }
+  }
+}
+
+TEST(EllipseTrackRegion, IsClampedToTheFrame) {
+  for (const char* roi : {"<-50,-60,5000,6000>", "<-2147483648,0,2147483647,2147483647>"}) {
+    const auto harness =
+        tracker("roi-source=property roi=\"" + std::string(roi) + "\"", caps_of("GRAY8", 320, 240));
+    const auto out = push(harness, gray_buffer_of(ring_picture()));
+    EXPECT_EQ(target_on(out) != nullptr, roi[1] == '-' && roi[2] == '5') << roi;
+  }
+}
+
+TEST(EllipseTrackRegion, NothingIsSearchedWhereItIsEmptyOrOutside) {
+  for (const char* roi : {"<0,0,0,0>", "<320,0,10,10>", "<10,10,-5,20>", "<-20,-20,20,20>"}) {
+    const auto harness = tracker("roi-source=property roi=\"" + std::string(roi) + "\"");
+    const auto out = push(harness, gray_buffer_of(ring_picture()));
+    EXPECT_EQ(target_on(out), nullptr) << roi;
+    EXPECT_EQ(stat(element_of(harness), "analysed"), 0U) << roi;
+    EXPECT_EQ(stat(element_of(harness), "skipped-region"), 1U) << roi;
+  }
+}
+
+TEST(EllipseTrackRegion, IsReadBackAsItWasSet) {
+  const auto harness = tracker("roi=\"<-1,2,30,4>\"");
+  GValue value = G_VALUE_INIT;
+  g_object_get_property(G_OBJECT(element_of(harness)), "roi", &value);
+  gchar* text = gst_value_serialize(&value);
+  EXPECT_STREQ(text, "< (int)-1, (int)2, (int)30, (int)4 >");
+  g_free(text);
+  g_value_unset(&value);
+}
+
+TEST(EllipseTrackRegion, RefusesWhatIsNoBox) {
+  const auto harness = tracker("roi=\"<1,2,3,4>\"");
+  BusTap bus(element_of(harness));
+  gst_util_set_object_arg(G_OBJECT(element_of(harness)), "roi", "<1,2,3>");
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
+  GValue value = G_VALUE_INIT;
+  g_object_get_property(G_OBJECT(element_of(harness)), "roi", &value);
+  EXPECT_EQ(gst_value_array_get_size(&value), 4U);
+  g_value_unset(&value);
+}
+
+TEST(EllipseTrackRegion, FollowsTheMetadataOfEachBuffer) {
+  const auto harness = tracker("roi-source=meta");
+  auto left = two_rings();
+  add_region(left, "pad", {0, 0, 160, 240});
+  expect_at(push(harness, std::move(left)), kLeft);
+  auto right = two_rings();
+  add_region(right, "pad", {160, 0, 4000000000U, 4000000000U});
+  expect_at(push(harness, std::move(right)), kRight);
+}
+
+TEST(EllipseTrackRegion, WithoutMetadataTheTargetIsLostAndTold) {
+  const auto harness = tracker("roi-source=meta");
+  auto marked = two_rings();
+  add_region(marked, "pad", {0, 0, 160, 240});
+  push(harness, std::move(marked));
+  BusTap bus(element_of(harness));
+  auto bare = two_rings();
+  GST_BUFFER_PTS(bare.get()) = 40 * GST_MSECOND;
+  EXPECT_EQ(target_on(push(harness, std::move(bare))), nullptr);
+  const auto lost = bus.pop(GST_MESSAGE_ELEMENT);
+  ASSERT_TRUE(lost);
+  const GstStructure* s = gst_message_get_structure(lost.get());
+  EXPECT_STREQ(gst_structure_get_string(s, "state"), "lost");
+  guint64 timestamp = 0;
+  gst_structure_get_uint64(s, "timestamp", &timestamp);
+  EXPECT_EQ(timestamp, 40 * GST_MSECOND);
+  EXPECT_EQ(stat(element_of(harness), "lost"), 1U);
+}
+
+TEST(EllipseTrackRegion, CountsRegionsOfItsTypeOnly) {
+  const auto harness = tracker("roi-source=meta roi-type=pad");
+  auto buffer = two_rings();
+  add_region(buffer, "face", {0, 0, 160, 240});
+  add_region(buffer, "pad", {160, 0, 160, 240});
+  expect_at(push(harness, std::move(buffer)), kRight);
+}
+
+TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
+  const auto harness = tracker("roi-source=meta");
+  auto buffer = gray_buffer_of(ring_picture());  // its box: 103 to 197, 71 to 149
+  add_region(buffer, "pad", {90, 60, 20, 20});
+  add_region(buffer, "pad", {190, 150, 20, 10});
+  const auto out = push(harness, std::move(buffer));
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_EQ(meta->roi_x, 90);
+  EXPECT_EQ(meta->roi_y, 60);
+  EXPECT_EQ(meta->roi_width, 120U);
+  EXPECT_EQ(meta->roi_height, 100U);
+}
+
+Owned<GstBuffer> cropped(Owned<GstBuffer> buffer, const int (&box)[4]) {
+  GstVideoCropMeta* crop = gst_buffer_add_video_crop_meta(buffer.get());
+  crop->x = static_cast<guint>(box[0]);
+  crop->y = static_cast<guint>(box[1]);
+  crop->width = static_cast<guint>(box[2]);
+  crop->height = static_cast<guint>(box[3]);
+  return buffer;
+}
+
+TEST(EllipseTrackRegion, CropsAreSearchedInPixelsOfTheWholeFrame) {
+  const auto left = tracker();
+  const auto right = tracker();
+  expect_at(push(left, cropped(two_rings(), kLeftHalf)), kLeft);
+  const auto out = push(right, cropped(two_rings(), kRightHalf));
+  expect_at(out, kRight);
+  EXPECT_EQ(target_on(out)->frame_width, 320U);
+  const GstVideoCropMeta* kept = gst_buffer_get_video_crop_meta(out.get());
+  ASSERT_NE(kept, nullptr);
+  EXPECT_EQ(kept->x, 160U);
+}
+
+TEST(EllipseTrackRegion, OutsideTheCropIsNothing) {
+  const auto harness = tracker("roi-source=property roi=\"<0,0,160,240>\"");
+  EXPECT_EQ(target_on(push(harness, cropped(two_rings(), kRightHalf))), nullptr);
+}
+
+// Upstream may leave cropping to those downstream only where all of them know it.
+TEST(EllipseTrackRegion, CroppingIsOfferedWhereDownstreamOffersIt) {
+  for (const bool is_offered : {false, true}) {
+    Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));
+    if (is_offered) {
+      gst_harness_add_propose_allocation_meta(harness.get(), GST_VIDEO_CROP_META_API_TYPE, nullptr);
+    }
+    const std::string caps = caps_of("GRAY8", 320, 240);
+    gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
+    push(harness, gray_buffer_of(ring_picture()));
+    GstCaps* asked = gst_caps_from_string(caps.c_str());
+    GstQuery* query = gst_query_new_allocation(asked, FALSE);
+    EXPECT_TRUE(gst_pad_peer_query(harness->srcpad, query));
+    EXPECT_EQ(gst_query_find_allocation_meta(query, GST_VIDEO_CROP_META_API_TYPE, nullptr) != FALSE,
+              is_offered);
+    gst_query_unref(query);
+    gst_caps_unref(asked);
+  }
+}
+
+}  // namespace
