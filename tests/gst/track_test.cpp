@@ -9,61 +9,25 @@
 #include <thread>
 
 #include "tests/gst/support.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 
 using support::buffer_of;
 using support::BusTap;
 using support::caps_of;
+using support::element_of;
 using support::gray_buffer_of;
 using support::info_of;
+using support::kRing;
 using support::Owned;
 using support::Picture;
-using support::plain_ring;
-using support::rendered;
-
-const ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
-
-Picture ring_picture(int width = 320, int height = 240) {
-  return rendered(plain_ring(), kRing, width, height);
-}
-
-Owned<GstHarness> tracker(const std::string& settings = "",
-                          const std::string& caps = caps_of("GRAY8", 320, 240)) {
-  Owned<GstHarness> harness(gst_harness_new_parse(("ellipsetrack name=t " + settings).c_str()));
-  gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
-  return harness;
-}
-
-// The element itself: gst_harness_new_parse wraps it in a bin.
-GstElement* element_of(const Owned<GstHarness>& harness) {
-  GstElement* found = GST_IS_BIN(harness->element)
-                          ? gst_bin_get_by_name(GST_BIN(harness->element), "t")
-                          : GST_ELEMENT(gst_object_ref(harness->element));
-  gst_object_unref(found);  // the harness keeps it
-  return found;
-}
-
-Owned<GstBuffer> push(const Owned<GstHarness>& harness, Owned<GstBuffer> buffer) {
-  return Owned<GstBuffer>(gst_harness_push_and_pull(harness.get(), buffer.release()));
-}
-
-GstEllipseMeta* target_on(const Owned<GstBuffer>& buffer) {
-  return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
-}
-
-GstStructure* structure_property(GstElement* element, const char* name) {
-  GstStructure* structure = nullptr;
-  g_object_get(element, name, &structure, nullptr);
-  return structure;
-}
-
-guint64 stat(GstElement* element, const char* name) {
-  const Owned<GstStructure> stats(structure_property(element, "stats"));
-  guint64 value = 0;
-  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), name, &value)) << name;
-  return value;
-}
+using support::push;
+using support::ring_picture;
+using support::stat;
+using support::structure_property;
+using support::target_on;
+using support::tracker;
 
 TEST(EllipseTrack, AttachesTheTarget) {
   const auto harness = tracker();
