@@ -33,6 +33,7 @@ if [ "${1:-}" != "--without-tests" ]; then
     gstreamer1.0-plugins-bad gstreamer1.0-plugins-ugly gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
+    valgrind gcovr clang
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk

@@ -45,7 +45,9 @@ std::string flags_of(const GValue& value) {
   for (guint i = 0; i < type->n_values; ++i) {
     const GFlagsValue& flag = type->values[i];
     const bool is_set = flag.value == 0 ? set == 0 : (set & flag.value) == flag.value;
-    if (is_set) nicks += (nicks.empty() ? "" : "+") + std::string(flag.value_nick);
+    if (!is_set) continue;
+    if (!nicks.empty()) nicks += "+";
+    nicks += flag.value_nick;
   }
   return quoted(nicks);
 }

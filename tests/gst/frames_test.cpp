@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/gst/support.hpp"
-#include "tests/gst/tracking.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "gst/load_watch.hpp"
 #include "gst/track_stats.hpp"
 #include "tests/gst/support.hpp"
-#include "tests/gst/tracking.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/ellipse.hpp"
+#include "tests/gst/own_tests.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -103,16 +104,13 @@ TEST(Pipeline, TwoTrackersShareAFrameAfterATee) {
   EXPECT_EQ(read_ndjson(folder.file("b")).size(), 20U);
 }
 
-// Runs some of these tests in a process of its own, because the tracer watches a whole process.
+// In a process of its own, because the tracer watches a whole process.
 // @return What was still alive at its end.
 std::string leaks_of(const std::string& tests) {
   const TemporaryFolder folder;
   const std::string log = folder.file("leaks.log");
-  const std::string command =
-      "GTEST_OUTPUT= GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log + " " +
-      std::filesystem::read_symlink("/proc/self/exe").string() +
-      " --gtest_also_run_disabled_tests --gtest_filter='" + tests + "' > " + folder.file("output");
-  if (std::system(command.c_str()) != 0) return "the tests failed";
+  const std::string tracer = "GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log;
+  if (!support::run_own_tests(tracer, tests, folder.file("output"))) return "the tests failed";
   std::ifstream in(log);
   std::string alive;
   for (std::string line; std::getline(in, line);) {

@@ -170,6 +170,12 @@ class Pipeline {
     gst_element_get_state(pipeline_.get(), nullptr, nullptr, 60 * GST_SECOND);
   }
   void play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+  /// What is on its bus so far.
+  void forget_messages() {
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    while (Owned<GstMessage>(gst_bus_pop(bus))) continue;
+    gst_object_unref(bus);
+  }
   /// @return The error's text, empty where it came to EOS.
   [[nodiscard]] std::string wait_for_end() {
     GstBus* bus = gst_element_get_bus(pipeline_.get());

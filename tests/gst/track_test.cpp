@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "tests/gst/support.hpp"
-#include "tests/gst/tracking.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 

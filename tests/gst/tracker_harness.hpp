@@ -3,31 +3,31 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "tests/gst/support.hpp"
 
-/// What the tests of ellipsetrack have in common: one tracker, one ring, and what it tells.
 namespace support {
 
-inline const ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
+/// The ring that most of these tests show.
+inline constexpr ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
 
 inline Picture ring_picture(int width = 320, int height = 240) {
   return rendered(plain_ring(), kRing, width, height);
 }
 
+/// An ellipsetrack alone, between two pads.
 inline Owned<GstHarness> tracker(const std::string& settings = "",
                                  const std::string& caps = caps_of("GRAY8", 320, 240)) {
-  Owned<GstHarness> harness(gst_harness_new_parse(("ellipsetrack name=t " + settings).c_str()));
-  gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
-  return harness;
+  return harness_of("ellipsetrack name=t " + settings, caps, caps);
 }
 
-// The element itself: gst_harness_new_parse wraps it in a bin.
+/// The element itself: gst_harness_new_parse wraps it in a bin. The harness keeps it.
 inline GstElement* element_of(const Owned<GstHarness>& harness) {
   GstElement* found = GST_IS_BIN(harness->element)
                           ? gst_bin_get_by_name(GST_BIN(harness->element), "t")
                           : GST_ELEMENT(gst_object_ref(harness->element));
-  gst_object_unref(found);  // the harness keeps it
+  gst_object_unref(found);
   return found;
 }
 
@@ -39,6 +39,7 @@ inline GstEllipseMeta* target_on(const Owned<GstBuffer>& buffer) {
   return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
 }
 
+/// The caller's; nullptr where the property has no value.
 inline GstStructure* structure_property(GstElement* element, const char* name) {
   GstStructure* structure = nullptr;
   g_object_get(element, name, &structure, nullptr);

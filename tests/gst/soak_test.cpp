@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// Hours of video, in small frames: memory must not grow.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "core/scene/catalog.hpp"
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::BusTap;
+using support::caps_of;
+using support::Owned;
+using support::Picture;
+
+constexpr int kWidth = 160;
+constexpr int kHeight = 120;
+constexpr std::int64_t kGrowthKiB = 1024;
+
+std::int64_t resident_kib() {
+  std::ifstream in("/proc/self/statm");
+  std::int64_t size = 0;
+  std::int64_t resident = 0;
+  in >> size >> resident;
+  return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+// A pad that leaves the picture and comes back, then one that is hidden now and then.
+std::vector<Picture> film() {
+  std::vector<Picture> film;
+  for (const char* scene : {"reenter", "occluded"}) {
+    ellipse::SceneRenderer renderer(ellipse::scene_by_name(scene, 1));
+    for (std::uint64_t i = 0; i < 240; ++i) {
+      film.emplace_back(kWidth, kHeight);
+      (void)renderer.render(static_cast<double>(i) / 30.0, i, film.back().writable());
+    }
+  }
+  return film;
+}
+
+struct Soak {
+  std::string name;
+  std::string elements;
+  int frames;
+};
+
+class Soaks : public testing::TestWithParam<Soak> {};
+
+TEST_P(Soaks, KeepTheirMemory) {
+  const std::string caps = caps_of("GRAY8", kWidth, kHeight);
+  const auto harness = support::harness_of(GetParam().elements, caps, "application/x-ndjson");
+  BusTap bus(harness->element);
+  const std::vector<Picture> pictures = film();
+  const int frames = GetParam().frames;
+  const int warm_up = frames / 10;
+  std::int64_t first = 0;
+  std::int64_t most = 0;
+  std::uint64_t lines_with_target = 0;
+  for (int i = 0; i < frames; ++i) {
+    auto buffer =
+        support::gray_buffer_of(pictures.at(static_cast<std::size_t>(i) % pictures.size()));
+    GST_BUFFER_PTS(buffer.get()) = gst_util_uint64_scale(static_cast<guint64>(i), GST_SECOND, 30);
+    const Owned<GstBuffer> line(gst_harness_push_and_pull(harness.get(), buffer.release()));
+    ASSERT_TRUE(line) << i;
+    lines_with_target += support::bytes_of(line.get()).find("\"id\"") != std::string::npos ? 1 : 0;
+    while (bus.pop(GST_MESSAGE_ANY)) continue;
+    if (i < warm_up || i % (frames / 50) != 0) continue;
+    if (first == 0) first = resident_kib();
+    most = std::max(most, resident_kib());
+  }
+  std::cout << GetParam().name << ": " << frames << " frames, " << lines_with_target
+            << " with a target, resident memory " << first << " KiB after " << warm_up
+            << " frames, at most " << most << " KiB, " << resident_kib() << " KiB at the end\n";
+  EXPECT_GT(lines_with_target, static_cast<std::uint64_t>(frames) / 4);
+  EXPECT_LE(most - first, kGrowthKiB);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Elements,
+    Soaks,
+    testing::Values(
+        Soak{"ours", "ellipsetrack ! ellipsejson", 300'000},
+        Soak{"drawing",
+             "ellipsetrack messages=every-frame candidates=true "
+             "overlay=ellipse+axes+centre+roi+label ! ellipseoverlay ! ellipsejson",
+             30'000},
+        Soak{"paper", "ellipsetrack detector=contours tracking=redetect ! ellipsejson", 30'000}),
+    [](const testing::TestParamInfo<Soak>& info) { return info.param.name; });
+
+}  // namespace

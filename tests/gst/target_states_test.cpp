@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+//
+// What people are told of a target that is seen, half hidden, hidden, gone and back.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/gst/tracker_harness.hpp"
+#include "tests/gst/verdicts.hpp"
+
+namespace {
+
+using support::BusTap;
+using support::object_of;
+using support::Owned;
+using support::Picture;
+using support::Verdict;
+
+enum class Sight { kClear, kHalfHidden, kHidden };
+
+struct Shot {
+  Sight sight;
+  int frames;
+};
+
+// The last one is longer than a target is waited for.
+const std::vector<Shot> kShots{{Sight::kClear, 20},
+                               {Sight::kHalfHidden, 10},
+                               {Sight::kClear, 10},
+                               {Sight::kHidden, 4},
+                               {Sight::kClear, 16},
+                               {Sight::kHidden, 20},
+                               {Sight::kClear, 10}};
+
+// A pad that drifts behind a bar.
+Picture picture_of(Sight sight, int frame) {
+  if (sight == Sight::kHidden) return Picture(320, 240, 90);
+  ellipse::Scene scene;
+  if (sight == Sight::kHalfHidden) {
+    scene.bars.push_back(support::bar_px({0.0, 120.0}, {320.0, 120.0}, 40.0, 60.0));
+  }
+  const ellipse::Ellipse pad{120.0 + 0.5 * frame, 110.0 + 0.2 * frame, 40.0, 32.0, 0.4};
+  return support::rendered(scene, pad, 320, 240, static_cast<std::uint64_t>(frame));
+}
+
+// The state and the number of a target, as one of the three ways tells of them.
+using Told = std::string;
+
+Told told(const char* state, std::uint64_t id) {
+  return id == 0 ? "lost" : state + std::string(" ") + std::to_string(id);
+}
+
+Told by_metadata(GstBuffer* buffer) {
+  const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
+  if (meta == nullptr) return told("", 0);
+  const Owned<GstStructure> structure(gst_ellipse_meta_to_structure(meta));
+  return told(gst_structure_get_string(structure.get(), "state"), meta->id);
+}
+
+Told by_message(BusTap& bus) {
+  const auto message = bus.pop(GST_MESSAGE_ELEMENT);
+  if (!message) return "nothing";
+  const GstStructure* structure = gst_message_get_structure(message.get());
+  guint64 id = 0;
+  gst_structure_get_uint64(structure, "id", &id);
+  const char* state = gst_structure_get_string(structure, "state");
+  return id == 0 ? state : told(state, id);
+}
+
+Told by_line(GstBuffer* line) {
+  const auto lines = support::parse_ndjson(std::istringstream(support::bytes_of(line)));
+  JsonArray* targets = json_object_get_array_member(object_of(lines.at(0)), "targets");
+  if (json_array_get_length(targets) == 0) return told("", 0);
+  JsonObject* target = json_array_get_object_element(targets, 0);
+  return told(json_object_get_string_member(target, "state"),
+              static_cast<std::uint64_t>(json_object_get_int_member(target, "id")));
+}
+
+GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  *static_cast<Told*>(data) = by_metadata(GST_PAD_PROBE_INFO_BUFFER(info));
+  return GST_PAD_PROBE_OK;
+}
+
+// What the metadata told of each frame; fails where messages or lines told otherwise.
+std::vector<Told> story() {
+  const auto harness = support::harness_of("ellipsetrack name=t messages=every-frame ! ellipsejson",
+                                           support::caps_of("GRAY8", 320, 240),
+                                           "application/x-ndjson");
+  GstElement* element = support::element_of(harness);
+  BusTap bus(element);
+  Told on_buffer;
+  GstPad* pad = gst_element_get_static_pad(element, "src");
+  gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, note_metadata, &on_buffer, nullptr);
+  gst_object_unref(pad);
+  std::vector<Told> story;
+  for (const Shot& shot : kShots) {
+    for (int i = 0; i < shot.frames; ++i) {
+      const int frame = static_cast<int>(story.size());
+      auto buffer = support::gray_buffer_of(picture_of(shot.sight, frame));
+      GST_BUFFER_PTS(buffer.get()) =
+          gst_util_uint64_scale(static_cast<guint64>(frame), GST_SECOND, 30);
+      const auto line = support::push(harness, std::move(buffer));
+      EXPECT_EQ(by_message(bus), on_buffer) << frame;
+      EXPECT_EQ(by_line(line.get()), on_buffer) << frame;
+      story.push_back(on_buffer);
+    }
+  }
+  return story;
+}
+
+// Each state once, with how many frames it lasts.
+std::string summary_of(const std::vector<Told>& story) {
+  std::string summary;
+  for (std::size_t first = 0, i = 0; i < story.size(); ++i) {
+    if (i + 1 < story.size() && story[i + 1] == story[first]) continue;
+    summary += std::to_string(i + 1 - first) + " x " + story[first] + "\n";
+    first = i + 1;
+  }
+  return summary;
+}
+
+TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
+  // Hidden for a moment it keeps its number; gone for longer than it is waited for, it does not.
+  EXPECT_EQ(summary_of(story()),
+            "1 x detected 1\n"
+            "19 x tracked 1\n"
+            "10 x predicted 1\n"
+            "10 x tracked 1\n"
+            "4 x lost\n"
+            "16 x tracked 1\n"
+            "20 x lost\n"
+            "1 x detected 2\n"
+            "9 x tracked 2\n");
+}
+
+struct Seen {
+  std::uint64_t id;
+  double visible;  // of the true ellipse
+};
+
+GstPadProbeReturn note_truth(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
+  const GstEllipseMeta* truth = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
+  static_cast<std::vector<Seen>*>(data)->push_back(
+      {support::verdict_on(buffer).id, truth != nullptr ? truth->visible_fraction : 0.0});
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(TargetStates, NumbersChangeOnlyWhileThePadIsOutOfThePicture) {
+  std::vector<Seen> frames;
+  ASSERT_EQ(support::run_pipeline(
+                "ellipsetestsrc scene=reenter num-buffers=400 ! "
+                "video/x-raw,width=320,height=180 ! ellipsetrack ! fakesink name=out",
+                [&](GstElement* pipeline) {
+                  GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
+                  GstPad* pad = gst_element_get_static_pad(out, "sink");
+                  gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, note_truth, &frames, nullptr);
+                  gst_object_unref(pad);
+                  gst_object_unref(out);
+                }),
+            "");
+  ASSERT_EQ(frames.size(), 400U);
+  std::uint64_t last_id = 0;
+  double least_visible = 1.0;  // since a target was found
+  int changes = 0;
+  for (const Seen& frame : frames) {
+    least_visible = std::min(least_visible, frame.visible);
+    if (frame.id == 0) continue;
+    if (last_id != 0 && frame.id != last_id) {
+      EXPECT_LT(least_visible, 0.1);
+      ++changes;
+    }
+    last_id = frame.id;
+    least_visible = 1.0;
+  }
+  EXPECT_GE(changes, 1);
+}
+
+}  // namespace

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// Tells ThreadSanitizer of GLib's mutexes. GLib makes them of futexes, and is not instrumented: it
+// would take what they guard for unguarded. These stand before GLib's own and call them.
+#include <dlfcn.h>
+#include <glib.h>
+#include <sanitizer/tsan_interface.h>
+
+namespace {
+
+template <class Function>
+Function* next(Function*, const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+void lets_go_of(GMutex* mutex) {
+  __tsan_mutex_pre_unlock(mutex, 0);
+  __tsan_mutex_post_unlock(mutex, 0);
+}
+
+void holds(GMutex* mutex, unsigned flags = 0) {
+  __tsan_mutex_pre_lock(mutex, flags);
+  __tsan_mutex_post_lock(mutex, flags, 0);
+}
+
+}  // namespace
+
+extern "C" {
+
+void g_mutex_lock(GMutex* mutex) {
+  static auto* const kNext = next(&g_mutex_lock, "g_mutex_lock");
+  __tsan_mutex_pre_lock(mutex, 0);
+  kNext(mutex);
+  __tsan_mutex_post_lock(mutex, 0, 0);
+}
+
+gboolean g_mutex_trylock(GMutex* mutex) {
+  static auto* const kNext = next(&g_mutex_trylock, "g_mutex_trylock");
+  const gboolean is_locked = kNext(mutex);
+  if (is_locked != FALSE) holds(mutex, __tsan_mutex_try_lock);
+  return is_locked;
+}
+
+void g_mutex_unlock(GMutex* mutex) {
+  static auto* const kNext = next(&g_mutex_unlock, "g_mutex_unlock");
+  __tsan_mutex_pre_unlock(mutex, 0);
+  kNext(mutex);
+  __tsan_mutex_post_unlock(mutex, 0);
+}
+
+void g_mutex_clear(GMutex* mutex) {
+  static auto* const kNext = next(&g_mutex_clear, "g_mutex_clear");
+  __tsan_mutex_destroy(mutex, 0);
+  kNext(mutex);
+}
+
+void g_cond_wait(GCond* cond, GMutex* mutex) {
+  static auto* const kNext = next(&g_cond_wait, "g_cond_wait");
+  lets_go_of(mutex);
+  kNext(cond, mutex);
+  holds(mutex);
+}
+
+gboolean g_cond_wait_until(GCond* cond, GMutex* mutex, gint64 end_time) {
+  static auto* const kNext = next(&g_cond_wait_until, "g_cond_wait_until");
+  lets_go_of(mutex);
+  const gboolean is_woken = kNext(cond, mutex, end_time);
+  holds(mutex);
+  return is_woken;
+}
+
+}  // extern "C"
