@@ -137,7 +137,10 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   lock_edges(frame, target);
   trust_ = 0;  // it must be confirmed at once
   next_look_ = 1;
-  if (!is_followed && is_doubtful(target)) return followed;
+  if (!had_target_ && is_doubtful(target)) {
+    if (edge_tracker_.is_locked()) last_id_ = target.id;
+    return std::nullopt;
+  }
   return target;
 }
 

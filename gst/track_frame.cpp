@@ -104,6 +104,15 @@ static bool is_too_late(GstEllipseTrack* self, const FrameTimes& times) {
   return is_too_late;
 }
 
+static void watch_load(GstEllipseTrack* self,
+                       const FrameTimes& times,
+                       GstClockTime processing_time,
+                       GstClockTime limit) {
+  LoadWatch& load = self->stream->load;
+  if (!load.add(processing_time, limit)) return;
+  post_load_message(GST_ELEMENT(self), times, load, processing_time, limit);
+}
+
 static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
                                           const FrameTimes& times,
                                           const TrackProperties& properties,
@@ -111,6 +120,8 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
   if (self->stream->frame++ % properties.interval != 0) return Skip::kInterval;
   if (bounds.empty()) return Skip::kRegion;
   if (is_too_late(self, times)) return Skip::kLate;
+  // A limit that is taken away takes its skips with it.
+  if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);
   if (self->stream->load.takes_a_skip()) return Skip::kLoad;
   return std::nullopt;
 }
@@ -119,15 +130,6 @@ static void skip(GstEllipseTrack* self, Skip reason) {
   GST_OBJECT_LOCK(self);
   self->shared->stats.add_skipped(reason);
   GST_OBJECT_UNLOCK(self);
-}
-
-static void watch_load(GstEllipseTrack* self,
-                       const FrameTimes& times,
-                       GstClockTime processing_time,
-                       GstClockTime limit) {
-  LoadWatch& load = self->stream->load;
-  if (!load.add(processing_time, limit)) return;
-  post_load_message(GST_ELEMENT(self), times, load, processing_time, limit);
 }
 
 static void draw(GstEllipseTrack* self,
