@@ -67,6 +67,43 @@ class VisiblePart {
   Eigen::Matrix<double, 4, 3> borders_;
 };
 
+// The levels of some pixels across an edge.
+struct Profile {
+  std::array<float, kLongestProfile + 1> sums;  // of all levels before
+  std::size_t count = 0;
+  std::size_t box = 1;
+  float first = 0.0F;      // steps from the middle one to the first one
+  float step_px = 0.0F;    // along the normal
+  float middle_px = 0.0F;  // from where the edge is expected to the middle one
+};
+
+// Where the difference of the boxes before and behind is highest.
+void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample& sample) {
+  const auto& sums = profile.sums;
+  const std::size_t half = profile.box;
+  const float scale = 1.0F / static_cast<float>(half);
+  std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
+  for (std::size_t i = half; i + half <= profile.count; ++i) {
+    rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
+  }
+  for (std::size_t i = half + 1; i + half < profile.count; ++i) {
+    const float here = rises[i];
+    if (here < least || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
+    const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
+    const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
+    EdgeCandidate candidate{at * profile.step_px + profile.middle_px, here};
+    if (std::abs(candidate.distance_px) > reach_px) continue;
+    for (int k = 0; k < sample.count; ++k) {  // the strongest first
+      EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
+      if (candidate.contrast > other.contrast) std::swap(candidate, other);
+    }
+    if (sample.count < 3) {
+      sample.candidates[static_cast<std::size_t>(sample.count++)] = candidate;
+    }
+  }
+}
+
 }  // namespace
 
 void EdgeSearch::add(const Eigen::Matrix3d& image_from_pad,
@@ -179,7 +216,7 @@ void EdgeSearch::look_along(const ImageView& luma,
   if (!(line >= 0.0 && line < size[other])) return;
   const double crossing = point[axis] + normal[other] / slope * (point[other] - line);
   if (!(crossing >= 0.0 && crossing <= size[axis] - 1.0)) return;
-  const int middle = static_cast<int>(crossing + 0.5);
+  const int middle = static_cast<int>(std::floor(crossing + 0.5));
 
   const double reach = reach_px / std::abs(slope);
   const int step = std::max(1, static_cast<int>(std::ceil(reach / kMostSteps)));
@@ -200,37 +237,18 @@ void EdgeSearch::look_along(const ImageView& luma,
   const std::uint8_t* pixel = luma.data + middle * along +
                               static_cast<int>(line) * (axis == 0 ? luma.stride : 1) +
                               first * stride;
-  const auto n = static_cast<std::size_t>(last - first + 1);
-  std::array<float, kLongestProfile + 1> sums;  // of all levels before
-  sums[0] = 0.0F;
-  for (std::size_t i = 0; i < n; ++i, pixel += stride) {
-    sums[i + 1] = sums[i] + static_cast<float>(*pixel);
+  Profile profile;
+  profile.count = static_cast<std::size_t>(last - first + 1);
+  profile.box = static_cast<std::size_t>(box);
+  profile.first = static_cast<float>(first);
+  profile.step_px = static_cast<float>(step_px);
+  profile.middle_px = static_cast<float>(slope * (middle - crossing));
+  profile.sums[0] = 0.0F;
+  for (std::size_t i = 0; i < profile.count; ++i, pixel += stride) {
+    profile.sums[i + 1] = profile.sums[i] + static_cast<float>(*pixel);
   }
-  const auto middle_px = static_cast<float>(slope * (middle - crossing));
-  const auto half = static_cast<std::size_t>(box);
-  const float scale = 1.0F / static_cast<float>(box);
-  std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
-  for (std::size_t i = half; i + half <= n; ++i) {
-    rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
-  }
-  const auto least =
-      static_cast<float>(std::max(kLeastContrast, kContrastShare * gain * sample.contrast));
-  for (std::size_t i = half + 1; i + half < n; ++i) {
-    const float here = rises[i];
-    if (here < least || rises[i - 1] > here || rises[i + 1] >= here) continue;
-    const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
-    const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
-    const float at = static_cast<float>(first) + static_cast<float>(i) - 0.5F + vertex;
-    EdgeCandidate candidate{at * static_cast<float>(step_px) + middle_px, here};
-    if (std::abs(candidate.distance_px) > reach_px) continue;
-    for (int k = 0; k < sample.count; ++k) {  // the strongest first
-      EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
-      if (candidate.contrast > other.contrast) std::swap(candidate, other);
-    }
-    if (sample.count < 3) {
-      sample.candidates[static_cast<std::size_t>(sample.count++)] = candidate;
-    }
-  }
+  const double least = std::max(kLeastContrast, kContrastShare * gain * sample.contrast);
+  keep_edges(profile, static_cast<float>(least), reach_px, sample);
 }
 
 }  // namespace ellipse

@@ -164,11 +164,11 @@ struct Pass {
 class Band {
  public:
   Band(const ImageView& luma, const Ellipse& e, double inside_px, const Pass& pass)
-      : luma_(luma),
+      : accumulator_(inside_px, pass.step_px, pass.tells_width),
         center_(e.center()),
         shape_(shape_matrix(e)),
         conic_(shape_.inverse()),
-        accumulator_(inside_px, pass.step_px, pass.tells_width) {
+        luma_(luma) {
     const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
     stride_ = static_cast<int>(std::ceil(lines / pass.most_lines));
     lines_of_sector_ =
@@ -216,7 +216,7 @@ class Band {
                   side * std::sqrt(std::max(0.0, (1.0 - determinant * at[axis] * at[axis]) * c));
       const double crossing = center_[other] + at[other];
       if (!(crossing >= kBefore && crossing < size[other] - kLanes + kBefore)) continue;
-      const int nearest = static_cast<int>(crossing + 0.5);
+      const int nearest = static_cast<int>(std::floor(crossing + 0.5));
       const Eigen::Vector2d gradient = conic_ * at;
       const double inverse = 1.0 / gradient.norm();
       const Eigen::Vector2d outwards = inverse * gradient;
@@ -242,15 +242,15 @@ class Band {
     }
   }
 
-  ImageView luma_;
+  Accumulator accumulator_;
   Eigen::Vector2d center_;
   Eigen::Matrix2d shape_;
   Eigen::Matrix2d conic_;
-  Accumulator accumulator_;
+  std::array<Sector, kMostSectors> sectors_;
+  std::size_t count_ = 0;
+  ImageView luma_;
   int stride_ = 1;
   int lines_of_sector_ = 0;
-  std::size_t count_ = 0;
-  std::array<Sector, kMostSectors> sectors_;
 };
 
 // The two levels and the step between them that explain a sector's pixels best.
