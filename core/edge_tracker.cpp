@@ -128,22 +128,20 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::finish(const LumaWindow& window
   const auto estimate =
       solve_pose(search_.samples(), here, PoseChange::Zero(), reach_px, kEdgeSigmaPx, 3);
   if (!estimate) return std::nullopt;
-  return attempt_of(
-      view, {change + estimate->change, estimate->information}, estimate->change);
+  return attempt_of(view, {change + estimate->change, estimate->information}, estimate->change);
 }
 
 EdgeTracker::Attempt EdgeTracker::attempt_of(const Eigen::Matrix3d& view,
                                              const PoseEstimate& estimate,
                                              const PoseChange& last) const {
   const double radius = radius_px();
-  return {moved(view, last),
-          estimate,
-          last,
-          support_of(search_.samples(),
-                     last,
-                     tolerance_px(radius),
-                     static_cast<int>(model_.circles.size())),
-          search_.visible_fraction()};
+  return {
+      moved(view, last),
+      estimate,
+      last,
+      support_of(
+          search_.samples(), last, tolerance_px(radius), static_cast<int>(model_.circles.size())),
+      search_.visible_fraction()};
 }
 
 // Where the prediction is good, one look tells all.
@@ -157,8 +155,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_near(const LumaWindow& win
   auto estimate =
       solve_pose(search_.samples(), prior, PoseChange::Zero(), kNearMostPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
-  estimate =
-      solve_pose(search_.samples(), prior, estimate->change, kFineReachPx, kEdgeSigmaPx, 2);
+  estimate = solve_pose(search_.samples(), prior, estimate->change, kFineReachPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
   std::optional<Attempt> attempt;
   if (rms_px(search_.samples(), estimate->change) <= kSmallChangePx) {

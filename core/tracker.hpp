@@ -103,7 +103,7 @@ class Tracker {
   int finest_scale_ = 1;
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
-  int trust_ = 0;                   // in what is followed, from the detector's looks
+  int trust_ = 0;  // in what is followed, from the detector's looks
   bool is_tracking_ = false;
   bool had_target_ = false;
   bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it

@@ -20,8 +20,8 @@ struct TrackerSettings {
   DetectorKind detector = DetectorKind::kArcs;
   TrackingMode tracking = TrackingMode::kEdges;
   Refinement refine = Refinement::kEdges;  ///< Of the ellipse while its edges are followed.
-  Overlaps detect_overlaps = {};                 ///< Each 0 = the detector's own.
-  Overlaps track_overlaps = {};                  ///< Each 0 = the detector's own.
+  Overlaps detect_overlaps = {};           ///< Each 0 = the detector's own.
+  Overlaps track_overlaps = {};            ///< Each 0 = the detector's own.
   Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
