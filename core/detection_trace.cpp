@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "core/detection_trace.hpp"
 
+#include <string_view>
+
 #include "core/scale.hpp"
 
 namespace ellipse {
+namespace {
+
+// Lengths as they are where pixels are smaller by `scale`.
+Verdict magnified(Verdict verdict, int scale) {
+  if (reason_info(verdict.reason).unit != std::string_view("px")) return verdict;
+  verdict.measured *= scale;
+  verdict.limit *= scale;
+  return verdict;
+}
+
+}  // namespace
 
 void DetectionTrace::clear() {
   passes_.clear();
@@ -32,7 +45,7 @@ int DetectionTrace::add(std::span<const TracedPiece> pieces,
   candidate.pass = passes_.size() - 1;
   candidate.pieces.assign(pieces.begin(), pieces.end());
   if (ellipse) candidate.ellipse = to_frame(*ellipse, {}, passes_.back().scale);
-  candidate.verdict = verdict;
+  candidate.verdict = magnified(verdict, passes_.back().scale);
   return static_cast<int>(candidates_.size()) - 1;
 }
 
@@ -70,6 +83,7 @@ void DetectionTrace::place_in_frame(const Rect& region, int scale) {
   }
   for (TracedCandidate& candidate : candidates_) {
     if (candidate.ellipse) candidate.ellipse = to_frame(*candidate.ellipse, region, scale);
+    candidate.verdict = magnified(candidate.verdict, scale);
   }
 }
 

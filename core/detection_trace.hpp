@@ -47,7 +47,7 @@ struct TracedCandidate {
   std::size_t pass = 0;
   std::vector<TracedPiece> pieces;  ///< What it was made of: one or two chains or arcs of its pass.
   std::optional<Ellipse> ellipse;   ///< As it was judged [px of the frame].
-  Verdict verdict;                  ///< Axes and lengths in px of its pass.
+  Verdict verdict;                  ///< Lengths in px of the frame.
   double contour_overlap = 0.0;     ///< [Keipour2021] Eq. (1); of what was found only.
   double ellipse_overlap = 0.0;     ///< [Keipour2021] Eq. (2); of what was found only.
   double score = 0.0;               ///< As in Detection; of what was found only.
@@ -72,12 +72,12 @@ class DetectionTrace {
   TracedPass& begin_pass(const ImageView& luma, int scale);
   [[nodiscard]] TracedPass& pass() { return passes_.back(); }
 
-  /// @param ellipse  [px of the pass]
+  /// @param ellipse, verdict  In pixels of the pass.
   /// @return The candidate's number.
   int add(std::span<const TracedPiece> pieces,
           const std::optional<Ellipse>& ellipse,
           const Verdict& verdict);
-  /// A later test has the last word. Does nothing for candidate -1.
+  /// A later test has the last word, in pixels of the picture. Does nothing for candidate -1.
   void revise(int candidate, const Verdict& verdict);
   /// What is found in the end [px of the picture]; anything else was crowded out.
   void report(std::span<const Detection> detections);
