@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -208,6 +209,13 @@ inline std::string run_pipeline(const std::string& description,
   if (prepare) prepare(pipeline.get());
   pipeline.play();
   return pipeline.wait_for_end();
+}
+
+/// All of a file; empty where there is none.
+inline std::string contents_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
 }
 
 /// The lines of NDJSON, parsed; fails to a null root where a line is no JSON.
