@@ -13,6 +13,8 @@
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
  *     ! videoconvert ! autovideosink
  * ]|
+ *
+ * Since: 0.1
  */
 
 #include "gst/gstellipsetestsrc.h"
