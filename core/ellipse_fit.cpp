@@ -248,16 +248,21 @@ void GeometricFit::add(const PerimeterOffset& offset, double weight) {
   ++points_;
 }
 
-std::optional<Ellipse> GeometricFit::solve() const {
-  if (points_ < kMinPoints) return std::nullopt;
-  Eigen::Matrix<double, 5, 5> normal;
+RingMatrix GeometricFit::information() const {
+  RingMatrix normal;
   std::size_t term = 0;
   for (int i = 0; i < 5; ++i) {
     for (int k = i; k < 5; ++k) normal(k, i) = normal(i, k) = normal_[term++];
-    normal(i, i) *= 1.0 + 1e-9;
   }
+  return normal;
+}
+
+std::optional<Ellipse> GeometricFit::solve() const {
+  if (points_ < kMinPoints) return std::nullopt;
+  RingMatrix normal = information();
+  normal.diagonal() *= 1.0 + 1e-9;
   using Vector5d = Eigen::Matrix<double, 5, 1>;
-  const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> factors(normal);
+  const Eigen::LDLT<RingMatrix> factors(normal);
   Vector5d step = factors.solve(Vector5d::Map(right_side_.data()));
   if (factors.info() != Eigen::Success || !step.allFinite()) return std::nullopt;
   step *= std::min(1.0, kLongestStep / step.norm());

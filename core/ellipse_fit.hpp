@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/ellipse.hpp"
+#include "core/homography.hpp"
 
 namespace ellipse {
 
@@ -91,6 +92,10 @@ class GeometricFit {
 
   /// The ellipse after the step; nullopt for fewer than 5 points or a singular system.
   [[nodiscard]] std::optional<Ellipse> solve() const;
+
+  /// Sum of the weighted squares: for weights of 1 over the variance of the points' distances, the
+  /// inverse covariance of T, S and E (see PoseChange) in the view image_from_pad(start).
+  [[nodiscard]] RingMatrix information() const;
 
  private:
   Eigen::Vector2d center_;

@@ -74,6 +74,16 @@ PoseChange change_of(const Matrix3d& generator) {
   return d;
 }
 
+RingMatrix ring_changes(const Matrix3d& from_view, const Matrix3d& to_view) {
+  const Matrix3d between = to_view.inverse() * from_view;
+  const Matrix3d back = between.inverse();
+  RingMatrix changes;
+  for (int i = 0; i < 5; ++i) {
+    changes.col(i) = change_of(between * generator_of(PoseChange::Unit(i)) * back).head<5>();
+  }
+  return changes;
+}
+
 // With H = K [r1 r2 t], G = K^-1 H: a motion of the camera changes G to (I + [w]x) G + v e3^T.
 Eigen::Matrix<double, 8, 6> change_by_camera(const Matrix3d& image_from_pad,
                                              double focal_px,

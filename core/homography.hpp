@@ -36,6 +36,19 @@ using PoseCovariance = Eigen::Matrix<double, 8, 8>;
 /// The change whose A this is, but for a multiple of the unit matrix.
 [[nodiscard]] PoseChange change_of(const Eigen::Matrix3d& generator);
 
+/// Of a change, what moves the outer circle: T, S and E.
+using RingMatrix = Eigen::Matrix<double, 5, 5>;
+
+/// How well the picture of an outer circle is known.
+struct RingUncertainty {
+  Eigen::Matrix3d view;   ///< One in which it is the outer circle.
+  RingMatrix covariance;  ///< Of T, S and E in this view.
+};
+
+/// What T, S and E of one view are in another one with the same picture of the outer circle.
+[[nodiscard]] RingMatrix ring_changes(const Eigen::Matrix3d& from_view,
+                                      const Eigen::Matrix3d& to_view);
+
 /// How a camera's own motion changes a view, to first order: columns are turns about its axes x, y,
 /// z [rad] and shifts along them [radii of the pad].
 /// @param focal_px  Principal point in the picture's middle.

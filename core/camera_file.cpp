@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "core/camera_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <initializer_list>
+#include <opencv2/core.hpp>
+#include <opencv2/core/persistence.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace ellipse {
+namespace {
+
+constexpr std::size_t kLargestFile = 1 << 20;  // bytes
+
+// The keys that different programs use for the same thing.
+using Keys = std::initializer_list<const char*>;
+constexpr Keys kWidthKeys = {"image_width", "image_Width", "width"};
+constexpr Keys kHeightKeys = {"image_height", "image_Height", "height"};
+constexpr Keys kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K"};
+constexpr Keys kDistortionKeys = {
+    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D"};
+constexpr Keys kModelKeys = {"distortion_model"};
+constexpr Keys kFisheyeKeys = {"fisheye_model"};
+
+// One file, and the way to say what is wrong with it.
+class File {
+ public:
+  explicit File(const std::string& path) : path_(path) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw std::invalid_argument(path + ": cannot be read");
+    text_.resize(kLargestFile + 1);
+    stream.read(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+    if (text_.size() > kLargestFile) throw std::invalid_argument(path + ": is larger than 1 MB");
+    if (text_.find('\0') != std::string::npos) {
+      throw std::invalid_argument(path + ": is no text");
+    }
+    parse();
+  }
+
+  // The node of the first of these keys that is there; else an empty one.
+  [[nodiscard]] cv::FileNode find(Keys keys, const char*& found) const {
+    for (const char* key : keys) {
+      const cv::FileNode node = storage_[key];
+      if (node.empty()) continue;
+      found = key;
+      return node;
+    }
+    found = *keys.begin();
+    return {};
+  }
+
+  [[noreturn]] void refuse(const char* key, const std::string& reason) const {
+    const int line = line_of(key);
+    throw std::invalid_argument(path_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + key +
+                                " " + reason);
+  }
+
+ private:
+  void parse() {
+    const std::size_t first = text_.find_first_not_of(" \t\r\n");
+    if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
+    // OpenCV reads YAML under its own first line only, which those of ROS have not.
+    const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
+    const std::string text = is_bare ? "%YAML:1.0\n---\n" + without_marks() : text_;
+    const int added = is_bare ? 2 : 0;
+    try {
+      storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    } catch (const cv::Exception& error) {
+      const std::string& told = error.func;  // there OpenCV's parsers say what is wrong
+      throw std::invalid_argument(path_ + line_in(told, added) +
+                                  ": is no calibration: " + reason_in(told));
+    }
+    if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
+  }
+
+  // A YAML file of others may begin with "---": kept as an empty line.
+  [[nodiscard]] std::string without_marks() const {
+    std::string text = text_;
+    for (std::size_t at = text.find("---"); at != std::string::npos; at = text.find("---", at)) {
+      const bool is_line = at == 0 || text[at - 1] == '\n';
+      if (is_line) text.replace(at, 3, "   ");
+      at += 3;
+    }
+    return text;
+  }
+
+  // OpenCV's messages are "name(line): reason".
+  [[nodiscard]] static std::string line_in(const std::string& message, int added) {
+    const std::size_t open = message.find('(');
+    const std::size_t close = message.find("):");
+    if (open == std::string::npos || close == std::string::npos || close < open) return {};
+    const int line = std::atoi(message.c_str() + open + 1) - added;
+    return line > 0 ? ":" + std::to_string(line) : std::string();
+  }
+
+  [[nodiscard]] static std::string reason_in(const std::string& message) {
+    const std::size_t close = message.find("): ");
+    return close == std::string::npos ? message : message.substr(close + 3);
+  }
+
+  // Of a key: a word at a line's begin, behind blanks, quotes or a bracket. 0 where it is not.
+  [[nodiscard]] int line_of(std::string_view key) const {
+    std::istringstream lines(text_);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      const std::size_t first = line.find_first_not_of(" \t\"<{");
+      if (first == std::string::npos || line.compare(first, key.size(), key) != 0) continue;
+      const std::size_t end = first + key.size();
+      if (end < line.size() && std::string_view(":>\" \t").find(line[end]) != std::string::npos) {
+        return number;
+      }
+    }
+    return 0;
+  }
+
+  std::string path_;
+  std::string text_;
+  cv::FileStorage storage_;
+};
+
+double number(const File& file, const char* key, const cv::FileNode& node) {
+  if (!node.isInt() && !node.isReal()) file.refuse(key, "is not a number");
+  const double value = node.real();
+  if (!std::isfinite(value)) file.refuse(key, "is not finite");
+  return value;
+}
+
+int size(const File& file, Keys keys) {
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(keys, key);
+  if (node.empty()) file.refuse(key, "is missing");
+  const double value = number(file, key, node);
+  if (!(value >= 1.0 && value <= 65536.0) || value != std::floor(value)) {
+    file.refuse(key, "is not a whole number from 1 to 65536");
+  }
+  return static_cast<int>(value);
+}
+
+// Either a plain list, or rows, cols and data as OpenCV and ROS both have them.
+std::vector<double> numbers(const File& file, const char* key, const cv::FileNode& node) {
+  const cv::FileNode data = node.isMap() ? node["data"] : node;
+  if (data.empty() || !data.isSeq()) file.refuse(key, "has no data");
+  std::vector<double> values;
+  for (const cv::FileNode& each : data) values.push_back(number(file, key, each));
+  if (node.isMap()) {
+    const double rows = number(file, key, node["rows"]);
+    const double cols = number(file, key, node["cols"]);
+    if (rows * cols != static_cast<double>(values.size())) {
+      file.refuse(key, "has not rows x cols numbers");
+    }
+  }
+  return values;
+}
+
+void read_matrix(const File& file, Camera& camera) {
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(kMatrixKeys, key);
+  if (node.empty()) file.refuse(key, "is missing");
+  const std::vector<double> k = numbers(file, key, node);
+  if (k.size() != 9) file.refuse(key, "is not a 3 x 3 matrix");
+  if (k[1] != 0.0) file.refuse(key, "has a skew");
+  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    file.refuse(key, "is not of the form [fx 0 cx; 0 fy cy; 0 0 1]");
+  }
+  if (!(k[0] > 0.0 && k[4] > 0.0)) file.refuse(key, "has a focal length that is not above 0");
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+}
+
+LensModel model_of(const File& file) {
+  const char* key = nullptr;
+  const cv::FileNode fisheye = file.find(kFisheyeKeys, key);
+  if (!fisheye.empty() && number(file, key, fisheye) != 0.0) return LensModel::kFisheye;
+  const cv::FileNode node = file.find(kModelKeys, key);
+  if (node.empty()) return LensModel::kBrownConrady;
+  const std::string name = node.isString() ? node.string() : std::string();
+  if (name == "plumb_bob" || name == "rational_polynomial" || name == "none") {
+    return LensModel::kBrownConrady;
+  }
+  if (name == "equidistant" || name == "fisheye") return LensModel::kFisheye;
+  file.refuse(key, "is none of: plumb_bob, rational_polynomial, equidistant, fisheye, none");
+}
+
+void read_distortion(const File& file, Camera& camera) {
+  camera.lens = model_of(file);
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(kDistortionKeys, key);
+  if (node.empty()) {
+    if (camera.lens == LensModel::kFisheye) file.refuse(key, "is missing");
+    return;
+  }
+  const std::vector<double> k = numbers(file, key, node);
+  const bool is_fisheye = camera.lens == LensModel::kFisheye;
+  if (is_fisheye && k.size() != 4) file.refuse(key, "of a fisheye has not 4 numbers");
+  if (!is_fisheye && k.size() != 0 && k.size() != 4 && k.size() != 5 && k.size() != 8 &&
+      k.size() != 12 && k.size() != 14) {
+    file.refuse(key, "has not 4, 5 or 8 numbers");
+  }
+  const std::size_t known = camera.distortion.size();
+  if (std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(known, k.size())),
+                  k.end(),
+                  [](double v) { return v != 0.0; })) {
+    file.refuse(key, "has a thin prism or a tilted sensor, which are not modelled");
+  }
+  std::copy_n(k.begin(), std::min(known, k.size()), camera.distortion.begin());
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path) {
+  const File file(path);
+  Camera camera;
+  camera.width = size(file, kWidthKeys);
+  camera.height = size(file, kHeightKeys);
+  read_matrix(file, camera);
+  read_distortion(file, camera);
+  camera.validate();
+  return camera;
+}
+
+}  // namespace ellipse
