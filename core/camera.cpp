@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/ellipse_fit.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -193,6 +195,19 @@ void bent_outline(const Lens& lens, const Ellipse& ideal, std::span<Vector2d> po
     points_px[i] =
         point ? point->picture_px : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
+}
+
+std::optional<Ellipse> unbent(const Lens& lens, const Ellipse& in_picture) {
+  constexpr int kPoints = 48;
+  std::optional<Moments> moments;
+  for (int i = 0; i < kPoints; ++i) {
+    const double t = 2.0 * std::numbers::pi * i / kPoints;
+    const auto point = lens.ideal_from_picture(in_picture.point_at(t));
+    if (!point) continue;
+    if (!moments) moments.emplace(*point);
+    moments->add(*point);
+  }
+  return moments ? fit_ellipse(*moments) : std::nullopt;
 }
 
 }  // namespace ellipse

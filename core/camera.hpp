@@ -77,4 +77,8 @@ class Lens {
 /// axis on, at even anomalies [px of the picture]. Those that the lens does not show are NaN.
 void bent_outline(const Lens& lens, const Ellipse& ideal, std::span<Eigen::Vector2d> points_px);
 
+/// The ellipse of the ideal plane that the lens bends into what looks like this one in the picture,
+/// by direct least squares. nullopt where the lens does not show enough of it. Allocates nothing.
+[[nodiscard]] std::optional<Ellipse> unbent(const Lens& lens, const Ellipse& in_picture);
+
 }  // namespace ellipse

@@ -51,7 +51,7 @@ constexpr double kCoverageToLearn = 0.8;
 constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kLeastMetOfLine = 0.5;
-constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
+constexpr double kEnoughVisible = 0.15;     // of the outer circle, to tell the centre
 constexpr double kMostCentreSigma = 0.025;  // [radii], where less is visible
 constexpr double kPatternCoverage = 0.75;
 constexpr double kLeastVisibleToRefine = 0.3;
@@ -228,6 +228,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_wide(const LumaWindow& win
 std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double frames) {
   if (!is_locked_) return std::nullopt;
   frame_px_ = window.frame_px;
+  refined_.reset();
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
   PoseMotion before = predicted(frames, 1.0 + 0.5 * misses_);
@@ -293,13 +294,16 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
 
 // The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
 void EdgeTracker::refine(const LumaWindow& window, double visible) {
+  refined_.reset();
   if (visible < kLeastVisibleToRefine) return;
   const auto exact = refined_outer_edge(
       window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
   if (!exact) return;
-  const auto view =
-      with_outer_edge(view_, translated(*exact, window.origin_px.x(), window.origin_px.y()));
-  if (view) view_ = *view;
+  const auto view = with_outer_edge(
+      view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
+  if (!view) return;
+  view_ = *view;
+  refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
 }
 
 // The outer circle is the unit; where the others are met tells their radii.
@@ -383,9 +387,19 @@ std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
   track.visible = attempt->visible;
-  track.is_seen = track.visible >= kEnoughVisible ||
-                  (motion_.centre_sigma() <= kMostCentreSigma && track.coverage >= kPatternCoverage);
+  track.is_seen = track.visible >= kEnoughVisible || (motion_.centre_sigma() <= kMostCentreSigma &&
+                                                      track.coverage >= kPatternCoverage);
   return track;
+}
+
+RingUncertainty EdgeTracker::uncertainty() const {
+  if (refined_) return *refined_;
+  return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
+}
+
+std::optional<TiltEvidence> EdgeTracker::tilt_evidence() const {
+  if (model_.circles.size() < 2 && model_.lines.empty()) return std::nullopt;
+  return TiltEvidence{view_, motion_.pose.bottomRightCorner<2, 2>()};
 }
 
 Rect EdgeTracker::region_after(double frames, int width, int height) const {

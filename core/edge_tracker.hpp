@@ -9,6 +9,7 @@
 #include "core/line_learner.hpp"
 #include "core/outer_edge.hpp"
 #include "core/pad_model.hpp"
+#include "core/pose.hpp"
 #include "core/pose_motion.hpp"
 #include "core/pose_solver.hpp"
 
@@ -52,6 +53,12 @@ class EdgeTracker {
   }
 
   [[nodiscard]] bool is_locked() const { return is_locked_; }
+
+  /// How well the outer edge is known in the last frame: by its refinement, else by all edges and
+  /// the motion.
+  [[nodiscard]] RingUncertainty uncertainty() const;
+  /// The same of the tilt, where there are edges within the outer one.
+  [[nodiscard]] std::optional<TiltEvidence> tilt_evidence() const;
   void release() { is_locked_ = false; }
 
   /// What the next frame must show for track() to look everywhere it may want to [px].
@@ -91,6 +98,7 @@ class EdgeTracker {
   [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
+  std::optional<RingUncertainty> refined_;  // of the last frame
   Refinement refinement_ = Refinement::kEdges;
   double ring_ratio_ = 0.0;
   PadModel model_;

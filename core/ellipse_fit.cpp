@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace ellipse {
 namespace {
@@ -271,6 +272,25 @@ std::optional<Ellipse> GeometricFit::solve() const {
   const Eigen::Matrix2d axes = rotation_ * axes_.asDiagonal();
   const Eigen::Matrix2d stretched = axes * change;
   return from_shape(center_ + axes * step.head<2>(), stretched * stretched.transpose());
+}
+
+RingUncertainty expected_uncertainty(const Ellipse& e,
+                                     double width,
+                                     double height,
+                                     double sigma_px) {
+  constexpr int kSamples = 48;
+  const double step = 2.0 * std::numbers::pi / kSamples;
+  GeometricFit fit(e);
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = step * i;
+    const Eigen::Vector2d point = e.point_at(t);
+    const bool is_inside = point.x() >= -0.5 && point.y() >= -0.5 && point.x() < width - 0.5 &&
+                           point.y() < height - 0.5;
+    if (!is_inside) continue;
+    const double length = step * std::hypot(e.semi_major * std::sin(t), e.semi_minor * std::cos(t));
+    fit.add(point, length / (kIndependentPx * sigma_px * sigma_px));
+  }
+  return {image_from_pad(e), fit.information()};
 }
 
 }  // namespace ellipse

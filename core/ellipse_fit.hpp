@@ -107,4 +107,20 @@ class GeometricFit {
   int points_ = 0;
 };
 
+/// An ellipse and how well it is known.
+struct FittedEllipse {
+  Ellipse ellipse;
+  RingUncertainty uncertainty;
+};
+
+/// What a fit to edges around the part of an ellipse inside a frame would leave open.
+/// @param sigma_px  Standard deviation of an edge's place, every kIndependentPx of the perimeter.
+[[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
+                                                   double width,
+                                                   double height,
+                                                   double sigma_px);
+
+/// Edges nearer to each other along their ellipse err alike [px].
+inline constexpr double kIndependentPx = 3.0;
+
 }  // namespace ellipse

@@ -41,8 +41,8 @@ using RingMatrix = Eigen::Matrix<double, 5, 5>;
 
 /// How well the picture of an outer circle is known.
 struct RingUncertainty {
-  Eigen::Matrix3d view;   ///< One in which it is the outer circle.
-  RingMatrix covariance;  ///< Of T, S and E in this view.
+  Eigen::Matrix3d view;    ///< One in which it is the outer circle.
+  RingMatrix information;  ///< Inverse covariance of T, S and E in this view.
 };
 
 /// What T, S and E of one view are in another one with the same picture of the outer circle.

@@ -28,25 +28,27 @@ Polarity polarity_of(bool is_bright_outside) {
 }
 
 // The crests of both edges of a thin ring are drawn apart.
-std::optional<Ellipse> on_crests(const ImageView& luma,
-                                 const Eigen::Matrix3d& image_from_pad,
-                                 const PadModel& model,
-                                 const Ellipse& outer,
-                                 double ring_px,
-                                 double least_contrast) {
+std::optional<FittedEllipse> on_crests(const ImageView& luma,
+                                       const Eigen::Matrix3d& image_from_pad,
+                                       const PadModel& model,
+                                       const Ellipse& outer,
+                                       double ring_px,
+                                       double least_contrast) {
   const double least = kCrestOfStep * least_contrast;
   const bool is_bright_outside = model.circles.front().is_bright_outside;
   const auto edge = refined_on_picture(luma, outer, polarity_of(is_bright_outside), least, kPlaces);
   if (!edge || edge->support < kLeastSupport) return std::nullopt;
   const bool is_ring =
       model.circles.size() > 1 && model.circles[1].is_bright_outside != is_bright_outside;
-  if (!is_ring || ring_px >= kThinRingPx) return edge->ellipse;
+  FittedEllipse exact{edge->ellipse, edge->uncertainty};
+  if (!is_ring || ring_px >= kThinRingPx) return exact;
   const auto inner = project_circle(image_from_pad, model.circles[1].radius);
-  if (!inner) return edge->ellipse;
+  if (!inner) return exact;
   const auto next =
       refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces);
-  if (!next || next->support < kLeastSupport) return edge->ellipse;
-  return without_repulsion({edge->ellipse, next->ellipse}).outer;
+  if (!next || next->support < kLeastSupport) return exact;
+  exact.ellipse = without_repulsion({edge->ellipse, next->ellipse}).outer;
+  return exact;
 }
 
 }  // namespace
@@ -55,11 +57,11 @@ std::span<const char* const> refinement_nicks() {
   return kNicks;
 }
 
-std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
-                                          const Eigen::Matrix3d& image_from_pad,
-                                          const PadModel& model,
-                                          double gain,
-                                          Refinement refinement) {
+std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
+                                                const Eigen::Matrix3d& image_from_pad,
+                                                const PadModel& model,
+                                                double gain,
+                                                Refinement refinement) {
   const auto outer = project_circle(image_from_pad, 1.0);
   if (!outer || refinement == Refinement::kNone) return std::nullopt;
   const PadCircle& circle = model.circles.front();
@@ -67,7 +69,7 @@ std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
   const double ring_px = model.circles.size() > 1
                              ? (1.0 - model.circles[1].radius) * outer->semi_minor
                              : std::numeric_limits<double>::infinity();
-  std::optional<Ellipse> exact;
+  std::optional<FittedEllipse> exact;
   if (refinement == Refinement::kPhotometric) {
     exact = refined_photometrically(luma,
                                     *outer,
@@ -78,7 +80,7 @@ std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
   if (!exact) exact = on_crests(luma, image_from_pad, model, *outer, ring_px, least_contrast);
   if (!exact) return std::nullopt;
   const bool is_near =
-      max_difference_px(*exact, *outer) <= kNearPx + kNearRelative * outer->semi_major;
+      max_difference_px(exact->ellipse, *outer) <= kNearPx + kNearRelative * outer->semi_major;
   return is_near ? exact : std::nullopt;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "core/ellipse.hpp"
+#include "core/ellipse_fit.hpp"
 #include "core/image_view.hpp"
 #include "core/pad_model.hpp"
 
@@ -24,10 +24,10 @@ enum class Refinement {
 ///
 /// @param gain  Of the picture's contrast over the model's.
 /// @return nullopt where the picture does not show it well enough. Allocates nothing.
-[[nodiscard]] std::optional<Ellipse> refined_outer_edge(const ImageView& luma,
-                                                        const Eigen::Matrix3d& image_from_pad,
-                                                        const PadModel& model,
-                                                        double gain,
-                                                        Refinement refinement);
+[[nodiscard]] std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
+                                                              const Eigen::Matrix3d& image_from_pad,
+                                                              const PadModel& model,
+                                                              double gain,
+                                                              Refinement refinement);
 
 }  // namespace ellipse

@@ -336,14 +336,15 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
 
 }  // namespace
 
-std::optional<Ellipse> refined_photometrically(const ImageView& luma,
-                                               const Ellipse& e,
-                                               Polarity polarity,
-                                               double inside_px,
-                                               double least_contrast) {
+std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
+                                                     const Ellipse& e,
+                                                     Polarity polarity,
+                                                     double inside_px,
+                                                     double least_contrast) {
   if (!(inside_px >= kLeastPhotometricBandPx)) return std::nullopt;
   const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
   Ellipse refined = e;
+  RingUncertainty uncertainty{};
   Pass pass{kFewLines, true, kUsualStepPx};
   for (int i = 0; i < 2; ++i) {
     const Band band(luma, refined, inside_px, pass);
@@ -381,13 +382,14 @@ std::optional<Ellipse> refined_photometrically(const ImageView& luma,
         fit.add(band.place(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
       }
     }
+    uncertainty = {image_from_pad(refined), fit.information()};
     const auto better = fit.solve();
     if (!better) return std::nullopt;
     refined = *better;
     const double step_px = kUsualStepPx * std::exp(-narrower / weights);
     pass = {kMostLines, false, std::clamp(step_px, kLeastStepPx, kMostStepPx)};
   }
-  return refined;
+  return FittedEllipse{refined, uncertainty};
 }
 
 }  // namespace ellipse

@@ -4,6 +4,7 @@
 
 #include "core/arcs.hpp"
 #include "core/ellipse.hpp"
+#include "core/ellipse_fit.hpp"
 #include "core/image_view.hpp"
 
 namespace ellipse {
@@ -25,10 +26,10 @@ inline constexpr double kLeastPhotometricBandPx = 2.8;
 /// @param least_contrast  Of the two levels [grey levels].
 /// @return nullopt where fewer than half of the sectors inside the picture show the step, or where
 ///         the band is too narrow. Allocates nothing; O(perimeter), up to a few hundred pixels.
-[[nodiscard]] std::optional<Ellipse> refined_photometrically(const ImageView& luma,
-                                                             const Ellipse& e,
-                                                             Polarity polarity,
-                                                             double inside_px,
-                                                             double least_contrast);
+[[nodiscard]] std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
+                                                                   const Ellipse& e,
+                                                                   Polarity polarity,
+                                                                   double inside_px,
+                                                                   double least_contrast);
 
 }  // namespace ellipse

@@ -16,6 +16,7 @@ constexpr int kReach = 2;   // pixels to both sides
 constexpr int kBorder = 3;  // of the 5 x 5 kernels and the parabola
 constexpr double kLeastCosine = 0.87;
 constexpr std::size_t kLeastPoints = 12;
+constexpr double kLeastVariance = 1e-4;                    // of a crest's place [px^2]
 constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // [px]
 
 bool is_inside(const ImageView& luma, const Eigen::Vector2d& place) {
@@ -90,19 +91,28 @@ std::optional<RefinedEllipse> refined_on_picture(
   if (count < kLeastPoints) return std::nullopt;
 
   Ellipse refined = e;
+  RingUncertainty uncertainty{};
   for (const double reach : kTukeyReach) {
     GeometricFit fit(refined);
+    double squares = kLeastVariance;
+    double weights = 1.0;
     for (std::size_t i = 0; i < count; ++i) {
       const PerimeterOffset offset = fit.offset_of(points[i]);
       const double weight = lengths[i] * tukey_weight(offset.distance_px, reach);
-      if (weight > 0.0) fit.add(offset, weight);
+      if (!(weight > 0.0)) continue;
+      fit.add(offset, weight);
+      squares += weight * offset.distance_px * offset.distance_px;
+      weights += weight;
     }
+    const double spacing_px = weights / static_cast<double>(count);
+    const double independent_px = std::max(kIndependentPx, spacing_px);
+    uncertainty = {image_from_pad(refined), weights / squares / independent_px * fit.information()};
     const auto better = fit.solve();
     if (!better) return std::nullopt;
     refined = *better;
   }
   const auto crests = static_cast<double>(count);
-  return RefinedEllipse{refined, crests / inside, heights / crests};
+  return RefinedEllipse{refined, uncertainty, crests / inside, heights / crests};
 }
 
 }  // namespace ellipse

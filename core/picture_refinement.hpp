@@ -11,6 +11,7 @@ namespace ellipse {
 /// An ellipse on the picture.
 struct RefinedEllipse {
   Ellipse ellipse;
+  RingUncertainty uncertainty;
   double support = 0.0;   ///< Share of the places inside the picture with a crest near.
   double gradient = 0.0;  ///< Mean of these crests [units of Gradient].
 };

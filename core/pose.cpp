@@ -105,8 +105,8 @@ Matrix3d position_covariance(const Camera& camera,
   const Eigen::RowVector3d second = Eigen::RowVector3d::UnitY();
   changes.col(3) = change_of(inverse * pose.normal * second).head<5>();
   changes.col(4) = change_of(-inverse * pose.normal * first).head<5>();
-  const RingMatrix to_here = ring_changes(picture.view, camera.matrix() * plane);
-  RingMatrix covariance = to_here * picture.covariance * to_here.transpose();
+  const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
+  RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
   // Near the view straight on the stretch goes with the tilt's square: it tells the tilt the less,
   // the nearer it is to its own noise, and at its noise no better than by that one's square root.
   const double noise = std::sqrt(covariance(3, 3) + covariance(4, 4));

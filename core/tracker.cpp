@@ -22,9 +22,10 @@ constexpr double kCoarsePx = 20.0;        // full minor axis at a coarse scale, 
 constexpr double kEnoughToLock = 0.45;    // the same, to follow what was found
 constexpr double kEnoughAlone = 0.6;      // the same, of an edge without another, to report it
 constexpr double kFartherOut = 1.1;
-constexpr double kMuchBetter = 1.5;      // in score, to leave one target for another
-constexpr double kLeastPredicted = 0.5;  // of the perimeter in view, to report what is not seen
-constexpr double kLeastCoverage = 0.4;   // of its edges, all the same
+constexpr double kMuchBetter = 1.5;       // in score, to leave one target for another
+constexpr double kLeastPredicted = 0.5;   // of the perimeter in view, to report what is not seen
+constexpr double kLeastCoverage = 0.4;    // of its edges, all the same
+constexpr double kDetectedSigmaPx = 0.3;  // of the edges of an ellipse that is not followed
 
 bool is_better(const ConcentricSet& chosen, const ConcentricSet& followed) {
   if (!(followed < chosen)) return false;
@@ -42,6 +43,11 @@ bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
 bool can_be_found(const Target& followed, int scale) {
   const bool is_too_coarse = scale > 1 && 2.0 * followed.ellipse.semi_minor < kCoarsePx * scale;
   return followed.visible_fraction >= kEnoughToBeFound && !is_too_coarse;
+}
+
+bool has_same_camera(const TrackerSettings& a, const TrackerSettings& b) {
+  return a.camera == b.camera && a.hfov_rad == b.hfov_rad && a.fx_px == b.fx_px &&
+         a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px;
 }
 
 double or_own(double setting, double own) {
@@ -78,7 +84,38 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   if (target) target->pts_ns = pts_ns;
   last_pts_ns_ = pts_ns;
   prepare_next_frame(target);
+  if (target && lens_) locate(*target);
   return target;
+}
+
+// What a camera adds to what is seen. The ellipse is in the picture before, in the ideal plane
+// afterwards.
+void Tracker::locate(Target& target) {
+  const Camera& camera = lens_->camera();
+  bool is_followed = edge_tracker_.is_locked();
+  if (camera.is_distorted()) {
+    const auto ideal = unbent(*lens_, target.ellipse);
+    if (!ideal) return;
+    target.ellipse = *ideal;
+    target.uncertainty.reset();
+    is_followed = false;
+  }
+  if (!target.uncertainty) {
+    target.uncertainty =
+        expected_uncertainty(target.ellipse, camera.width, camera.height, kDetectedSigmaPx);
+  }
+  if (target.id != located_id_) pose_estimator_.forget();
+  located_id_ = target.id;
+  target.pose = pose_estimator_.estimate(*lens_,
+                                         target.ellipse,
+                                         *target.uncertainty,
+                                         is_followed ? edge_tracker_.tilt_evidence() : std::nullopt,
+                                         0.5 * settings_.target_diameter_m,
+                                         Eigen::Vector3d::Map(settings_.gravity.data()));
+}
+
+const Lens* Tracker::bent_lens() const {
+  return lens_ && lens_->camera().is_distorted() ? &*lens_ : nullptr;
 }
 
 // From its edges alone: nothing else of the frame is read.
@@ -105,6 +142,7 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   target.ellipse_overlap = track->coverage;
   target.visible_fraction = visible;
   target.search_region = search_region_;
+  if (lens_) target.uncertainty = edge_tracker_.uncertainty();
   return target;
 }
 
@@ -232,8 +270,10 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
 
 void Tracker::take_in(const PixelView& frame, const SearchScope& scope) {
   searchable_ = intersect(scope.within, frame.bounds());
-  if (frame.bounds() != frame_bounds_ || searchable_.empty()) reset();
+  const bool is_other_size = frame.bounds() != frame_bounds_;
+  if (is_other_size || searchable_.empty()) reset();
   frame_bounds_ = frame.bounds();
+  if (is_other_size || is_lens_stale_) make_lens();
   finest_scale_ = scope.finest_scale;
   while (finest_scale_ > settings_.max_scale) finest_scale_ /= 2;
   const bool adapts = settings_.tracking == TrackingMode::kRedetect;
@@ -245,6 +285,14 @@ void Tracker::set_trace(DetectionTrace* trace) {
   detector_->set_trace(trace);
 }
 
+void Tracker::make_lens() {
+  is_lens_stale_ = false;
+  lens_.reset();
+  if (frame_bounds_.empty()) return;
+  const auto camera = settings_.camera_for(frame_bounds_.width, frame_bounds_.height);
+  if (camera) lens_.emplace(*camera);
+}
+
 void Tracker::reset() {
   is_tracking_ = false;
   had_target_ = false;
@@ -253,6 +301,7 @@ void Tracker::reset() {
   search_region_ = {};
   candidates_.clear();
   edge_tracker_.release();
+  pose_estimator_.forget();
 }
 
 void Tracker::configure(const TrackerSettings& settings) {
@@ -264,9 +313,11 @@ void Tracker::configure(const TrackerSettings& settings) {
     detector_ = make_detector(settings.detector);
     detector_->set_trace(trace_);
   }
+  const bool is_other_camera = !has_same_camera(settings, settings_);
+  is_lens_stale_ = is_lens_stale_ || is_other_camera;
   settings_ = settings;
   edge_tracker_.configure(settings.refine, settings.ring_ratio);
-  if (starts_over) reset();
+  if (starts_over || is_other_camera) reset();
   while (scale_ > settings_.max_scale) scale_ /= 2;
 }
 

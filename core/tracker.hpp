@@ -8,6 +8,7 @@
 
 #include "core/edge_tracker.hpp"
 #include "core/luma.hpp"
+#include "core/pose.hpp"
 #include "core/scale.hpp"
 #include "core/tracker_settings.hpp"
 
@@ -21,7 +22,7 @@ enum class TargetState {
 
 /// The target in one frame.
 struct Target {
-  Ellipse ellipse;       ///< [px] of the frame; the outer edge.
+  Ellipse ellipse;       ///< The outer edge [px]; in the ideal plane where the lens is distorted.
   std::uint64_t id = 0;  ///< The same while it is not lost, from 1.
   TargetState state = TargetState::kDetected;
   double contour_overlap = 0.0;   ///< [Keipour2021] Eq. (1).
@@ -30,6 +31,9 @@ struct Target {
   int scale = 1;                  ///< Frame scale that it was found at.
   Rect search_region;             ///< Where it was looked for [px].
   std::int64_t pts_ns = 0;        ///< Of its frame.
+  std::optional<RingUncertainty> uncertainty =
+      {};                               ///< Of the ellipse, while its edges are followed.
+  std::optional<TargetPose> pose = {};  ///< Where a camera is known.
 };
 
 /// What of one frame is searched, and how finely.
@@ -78,6 +82,9 @@ class Tracker {
   /// Where the last frame was searched [px].
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
+  /// The lens of the last frame, where it is distorted; else nullptr. Until the next call.
+  [[nodiscard]] const Lens* bent_lens() const;
+
  private:
   [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);
   [[nodiscard]] std::optional<Target> look_at_all(const PixelView& frame,
@@ -89,6 +96,8 @@ class Tracker {
   [[nodiscard]] Thresholds determine_thresholds(bool is_tracking) const;
   void take_in(const PixelView& frame, const SearchScope& scope);
   void prepare_next_frame(const std::optional<Target>& target);
+  void locate(Target& target);
+  void make_lens();
 
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;
@@ -97,6 +106,9 @@ class Tracker {
   LumaReader luma_reader_;
   Scaler scaler_;
   EdgeTracker edge_tracker_;
+  PoseEstimator pose_estimator_;
+  std::optional<Lens> lens_;      // of frames of this size
+  std::uint64_t located_id_ = 0;  // of the target that the estimator knows
 
   Rect roi_;  // where the target is expected, while it is being tracked
   Rect search_region_;
@@ -110,6 +122,7 @@ class Tracker {
   int frames_since_look_ = 0;  // of the detector, while following by edges
   int next_look_ = 1;
   int trust_ = 0;  // in what is followed, from the detector's looks
+  bool is_lens_stale_ = true;
   bool is_tracking_ = false;
   bool had_target_ = false;
   bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it

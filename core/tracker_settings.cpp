@@ -17,6 +17,10 @@ namespace {
 constexpr Range kMaxScaleRange{1.0, 128.0};
 constexpr Range kRoiExpansionRange{1.0, 10.0};
 constexpr Range kRingRatioRange{0.0, kThinnestRing};
+constexpr Range kFieldOfViewRange{0.0, 3.0};
+constexpr Range kFocalRangePx{0.0, 1e6};
+constexpr Range kPlaceRangePx{-1e6, 1e6};
+constexpr Range kDiameterRange{0.0, 1e4};
 
 template <auto kMember, auto... kRest>
 constexpr auto& follow(auto& object) {
@@ -102,6 +106,27 @@ const std::array kSettings = {
         kRingRatioRange,
         false,
         "Inner over outer radius of the target's ring, where it is known; 0 = is learned"),
+    setting<&TrackerSettings::hfov_rad>(
+        "hfov",
+        kFieldOfViewRange,
+        false,
+        "Horizontal field of view of a lens without distortion, in radians; 0 = not known"),
+    setting<&TrackerSettings::fx_px>(
+        "fx",
+        kFocalRangePx,
+        false,
+        "Focal length of a lens without distortion, in px; goes before hfov; 0 = not known"),
+    setting<&TrackerSettings::fy_px>(
+        "fy", kFocalRangePx, false, "The same for columns, in px; 0 = as fx"),
+    setting<&TrackerSettings::cx_px>(
+        "cx", kPlaceRangePx, false, "Principal point, beside fx, in px; 0 = the middle"),
+    setting<&TrackerSettings::cy_px>(
+        "cy", kPlaceRangePx, false, "Principal point, beside fx, in px; 0 = the middle"),
+    setting<&TrackerSettings::target_diameter_m>(
+        "target-diameter",
+        kDiameterRange,
+        false,
+        "Diameter of the target's outer edge in m, for its position; 0 = not known"),
     setting<kLimits, &Thresholds::edge_low>(
         "edge-low",
         kEdgeRange,
@@ -143,6 +168,23 @@ void TrackerSettings::validate() const {
               {0.0, limits.edge_high > 0.0 ? limits.edge_high : kEdgeRange.max});
   check_range("max-target-size", max_target_size_px, {min_target_size_px, kAxisRangePx.max});
   limits.validate();
+  if (camera) camera->validate();
+  for (const double g : gravity) {
+    if (!std::isfinite(g)) throw std::invalid_argument("gravity is not finite");
+  }
+}
+
+std::optional<Camera> TrackerSettings::camera_for(int width, int height) const {
+  if (camera) return camera->resized(width, height);
+  if (!(fx_px > 0.0) && !(hfov_rad > 0.0)) return std::nullopt;
+  Camera pinhole = Camera::with_hfov(hfov_rad, width, height);
+  if (fx_px > 0.0) {
+    pinhole.fx = fx_px;
+    pinhole.fy = fy_px > 0.0 ? fy_px : fx_px;
+    if (cx_px != 0.0) pinhole.cx = cx_px;
+    if (cy_px != 0.0) pinhole.cy = cy_px;
+  }
+  return pinhole;
 }
 
 std::span<const SettingInfo> setting_infos() {

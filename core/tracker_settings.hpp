@@ -1,8 +1,11 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "core/camera.hpp"
 #include "core/detectors.hpp"
 #include "core/outer_edge.hpp"
 #include "core/thresholds.hpp"
@@ -29,9 +32,20 @@ struct TrackerSettings {
   bool wants_candidates = false;      ///< All ellipses of every frame, also while following edges.
   double roi_expansion = 2.0;         ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
   double ring_ratio = 0.0;            ///< Inner over outer radius of the pad's ring; 0 = learned.
+  std::optional<Camera> camera = {};  ///< From a file; goes before the numbers below.
+  double hfov_rad = 0.0;              ///< Horizontal field of view of a pinhole; 0 = not known.
+  double fx_px = 0.0;                 ///< Focal length of a pinhole; goes before the field of view.
+  double fy_px = 0.0;                 ///< 0 = as fx.
+  double cx_px = 0.0;                 ///< Principal point; 0 = the picture's middle.
+  double cy_px = 0.0;
+  double target_diameter_m = 0.0;   ///< Of the outer circle; 0 = not known.
+  std::array<double, 3> gravity{};  ///< Down in the camera's frame, for a level target; or 0.
 
   /// Throws std::invalid_argument that names the field.
   void validate() const;
+
+  /// The camera for frames of this size; nullopt where none is known.
+  [[nodiscard]] std::optional<Camera> camera_for(int width, int height) const;
 
   bool operator==(const TrackerSettings&) const = default;
 };

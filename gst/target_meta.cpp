@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gst/target_meta.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "gst/ellipse/gstellipsesearchmeta.h"
@@ -38,8 +40,41 @@ static GstEllipseMeta* attach(GstBuffer* buffer,
   return meta;
 }
 
+static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
+  meta->has_pose = TRUE;
+  Eigen::Map<Eigen::Vector3d>(&meta->bearing_x) = pose.bearing;
+  meta->angle_x = pose.angles_rad.x();
+  meta->angle_y = pose.angles_rad.y();
+  meta->centre_x = pose.centre_px.x();
+  meta->centre_y = pose.centre_px.y();
+  Eigen::Map<Eigen::Vector3d>(&meta->normal_x) = pose.normal;
+  Eigen::Map<Eigen::Vector3d>(&meta->other_normal_x) = pose.other_normal;
+  meta->certainty = pose.certainty;
+  if (!(pose.radius_m > 0.0)) return;
+  meta->has_position = TRUE;
+  Eigen::Map<Eigen::Vector3d>(&meta->position_x) = pose.position_m;
+  Eigen::Map<Eigen::Vector3d>(&meta->other_position_x) = pose.other_position_m;
+  gdouble* to = meta->position_covariance;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = i; k < 3; ++k) *to++ = pose.covariance_m2(i, k);
+  }
+}
+
+static void write_outline(GstEllipseMeta* meta, const ellipse::Lens& lens) {
+  std::array<Eigen::Vector2d, G_N_ELEMENTS(GstEllipseMeta::outline) / 2> points;
+  ellipse::bent_outline(
+      lens, {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad}, points);
+  gfloat* to = meta->outline;
+  for (const Eigen::Vector2d& point : points) {
+    *to++ = static_cast<gfloat>(point.x());
+    *to++ = static_cast<gfloat>(point.y());
+  }
+  meta->n_outline = static_cast<guint>(points.size());
+}
+
 static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
                                                 const ellipse::Target& target,
+                                                const ellipse::Lens* bent_lens,
                                                 const GstVideoInfo& info,
                                                 GstClockTime processing_time) {
   GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
@@ -54,6 +89,8 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->roi_width = static_cast<guint>(target.search_region.width);
   meta->roi_height = static_cast<guint>(target.search_region.height);
   meta->processing_time = processing_time;
+  if (target.pose) write_pose(meta, *target.pose);
+  if (bent_lens != nullptr) write_outline(meta, *bent_lens);
   return meta;
 }
 
@@ -74,17 +111,31 @@ static void attach_candidate_metas(GstBuffer* buffer,
   }
 }
 
-static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+// Of what is seen of it in the picture.
+static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
   const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
   const Eigen::Vector2d half = ellipse::half_extent(e);
-  const auto first = [](double at) { return static_cast<guint>(std::max(0.0, std::floor(at))); };
+  if (meta.n_outline == 0) return {e.center() - half, e.center() + half};
+  Eigen::AlignedBox2d box;
+  for (guint i = 0; i < meta.n_outline; ++i) {
+    const Eigen::Vector2d point(meta.outline[2 * i], meta.outline[2 * i + 1]);
+    if (point.allFinite()) box.extend(point);
+  }
+  return box;
+}
+
+static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+  const Eigen::AlignedBox2d box = box_of(meta);
+  const auto first = [](double at, guint size) {
+    return static_cast<guint>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
+  };
   const auto last = [](double at, guint size) {
     return static_cast<guint>(std::clamp(std::ceil(at) + 1.0, 0.0, static_cast<double>(size)));
   };
-  const guint left = first(e.cx - half.x());
-  const guint top = first(e.cy - half.y());
-  const guint right = last(e.cx + half.x(), meta.frame_width);
-  const guint bottom = last(e.cy + half.y(), meta.frame_height);
+  const guint left = first(box.min().x(), meta.frame_width);
+  const guint top = first(box.min().y(), meta.frame_height);
+  const guint right = last(box.max().x(), meta.frame_width);
+  const guint bottom = last(box.max().y(), meta.frame_height);
   if (left >= right || top >= bottom) return;
   GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
       buffer, "ellipse", left, top, right - left, bottom - top);
@@ -93,16 +144,18 @@ static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
 
 const GstEllipseMeta* attach_metas(GstBuffer* buffer,
                                    const std::optional<ellipse::Target>& target,
-                                   std::span<const ellipse::Detection> candidates,
+                                   const ellipse::Tracker& tracker,
                                    const TrackProperties& properties,
                                    const GstVideoInfo& info,
                                    GstClockTime processing_time) {
   gst_buffer_add_ellipse_search_meta(buffer, processing_time);
   const GstEllipseMeta* meta = nullptr;
   if (target) {
-    meta = attach_target_meta(buffer, *target, info, processing_time);
+    meta = attach_target_meta(buffer, *target, tracker.bent_lens(), info, processing_time);
     if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
   }
-  if (properties.tracker.wants_candidates) attach_candidate_metas(buffer, candidates, target, info);
+  if (properties.tracker.wants_candidates) {
+    attach_candidate_metas(buffer, tracker.candidates(), target, info);
+  }
   return meta;
 }

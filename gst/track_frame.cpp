@@ -31,7 +31,7 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                      GstClockTime processing_time) {
   const GstEllipseMeta* meta = attach_metas(buffer,
                                             target,
-                                            self->stream->tracker.candidates(),
+                                            self->stream->tracker,
                                             properties,
                                             GST_VIDEO_FILTER(self)->in_info,
                                             processing_time);

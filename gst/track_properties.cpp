@@ -2,8 +2,11 @@
 #include "gst/track_properties.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
+#include "core/camera_file.hpp"
 #include "gst/track_enums.hpp"
 
 namespace {
@@ -21,6 +24,8 @@ enum {
   PROP_ROI,
   PROP_ROI_TYPE,
   PROP_MAX_PROCESSING_TIME,
+  PROP_CAMERA_FILE,
+  PROP_GRAVITY,
   PROP_OVERLAY,
   PROP_OVERLAY_COLOR,
   PROP_LINE_WIDTH,
@@ -43,6 +48,33 @@ GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
   }
   return g_param_spec_double(
       info.name, info.name, info.description, info.range.min, info.range.max, initial, flags);
+}
+
+// The numbers of a vector of doubles, or of ints.
+std::array<double, 3> vector_from(const GValue* value, const char* name) {
+  std::array<double, 3> numbers{};
+  if (gst_value_array_get_size(value) != numbers.size()) {
+    throw std::invalid_argument(std::string(name) + " has not the form <x, y, z>");
+  }
+  for (guint i = 0; i < numbers.size(); ++i) {
+    const GValue* number = gst_value_array_get_value(value, i);
+    GValue real = G_VALUE_INIT;
+    g_value_init(&real, G_TYPE_DOUBLE);
+    const bool is_number = g_value_transform(number, &real) != FALSE;
+    numbers[i] = g_value_get_double(&real);
+    g_value_unset(&real);
+    if (!is_number) throw std::invalid_argument(std::string(name) + " is not made of numbers");
+  }
+  return numbers;
+}
+
+void write_vector(const std::array<double, 3>& numbers, GValue* value) {
+  for (const double number : numbers) {
+    GValue element = G_VALUE_INIT;
+    g_value_init(&element, G_TYPE_DOUBLE);
+    g_value_set_double(&element, number);
+    gst_value_array_append_and_take_value(value, &element);
+  }
 }
 
 ellipse::Rect rect_from(const GValue* value) {
@@ -165,6 +197,26 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
                               G_MAXUINT64,
                               initial.max_processing_time,
                               playing));
+  install(first_id + PROP_CAMERA_FILE,
+          g_param_spec_string("camera-file",
+                              "Camera file",
+                              "Calibration of the camera, from OpenCV or ROS; goes before fx and "
+                              "hfov; empty = none",
+                              "",
+                              playing));
+  install(first_id + PROP_GRAVITY,
+          gst_param_spec_array("gravity",
+                               "Gravity",
+                               "Down in the camera's frame, as <x, y, z>: tells how a level target "
+                               "is tilted; <0, 0, 0> = not known",
+                               g_param_spec_double("number",
+                                                   "Number",
+                                                   "x, y or z, of any unit",
+                                                   -G_MAXDOUBLE,
+                                                   G_MAXDOUBLE,
+                                                   0.0,
+                                                   playing),
+                               playing));
   install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
   guint id = first_id + PROP_FIRST_NUMBER;
   for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
@@ -206,6 +258,13 @@ void TrackProperties::set(guint which, const GValue* value) {
     roi_type = type != nullptr && *type != '\0' ? g_quark_from_string(type) : 0;
   }
   if (which == PROP_MAX_PROCESSING_TIME) max_processing_time = g_value_get_uint64(value);
+  if (which == PROP_CAMERA_FILE) {
+    const gchar* path = g_value_get_string(value);
+    const std::string file = path != nullptr ? path : "";
+    tracker.camera = file.empty() ? std::nullopt : std::optional(ellipse::read_camera(file));
+    camera_file = file;
+  }
+  if (which == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     set_overlay_property(overlay, which - PROP_OVERLAY, value);
   }
@@ -233,6 +292,8 @@ void TrackProperties::get(guint which, GValue* value) const {
     g_value_set_string(value, roi_type != 0 ? g_quark_to_string(roi_type) : "");
   }
   if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
+  if (which == PROP_CAMERA_FILE) g_value_set_string(value, camera_file.c_str());
+  if (which == PROP_GRAVITY) write_vector(tracker.gravity, value);
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     get_overlay_property(overlay, which - PROP_OVERLAY, value);
   }

@@ -2,6 +2,8 @@
 
 #include <gst/gst.h>
 
+#include <string>
+
 #include "core/tracker_settings.hpp"
 #include "gst/overlay_style.hpp"
 #include "gst/track_enums.hpp"
@@ -17,6 +19,7 @@ struct TrackProperties {
   int roi_source = ROI_SOURCE_NONE;
   ellipse::Rect roi;                     ///< [px] of the frame; clipped to it where it is used.
   GQuark roi_type = 0;                   ///< Of the regions that count; 0 = all.
+  std::string camera_file;               ///< That tracker.camera was read from.
   GstClockTime max_processing_time = 0;  ///< [ns] a frame; 0 = any.
 
   /// Installs them all, with ids from first_id on; the last ones are those of setting_infos().

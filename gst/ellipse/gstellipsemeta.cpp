@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <optional>
 
 #include "core/ellipse.hpp"
@@ -136,6 +137,12 @@ static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* 
   meta->semi_major = after->semi_major;
   meta->semi_minor = after->semi_minor;
   meta->angle_rad = after->angle_rad;
+  meta->centre_x = meta->centre_x * sx + shift.x();
+  meta->centre_y = meta->centre_y * sy + shift.y();
+  for (gsize i = 0; i + 1 < G_N_ELEMENTS(meta->outline); i += 2) {
+    meta->outline[i] = static_cast<gfloat>(meta->outline[i] * sx + shift.x());
+    meta->outline[i + 1] = static_cast<gfloat>(meta->outline[i + 1] * sy + shift.y());
+  }
   scale_span(meta->roi_x, meta->roi_width, sx, inside.x);
   scale_span(meta->roi_y, meta->roi_height, sy, inside.y);
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(scale->out_info));
@@ -289,12 +296,66 @@ const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
   return nick_of(GST_TYPE_ELLIPSE_STATE, &meta->state);
 }
 
+static void set_numbers(GstStructure* structure,
+                        const gchar* name,
+                        const gdouble* numbers,
+                        guint count) {
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, GST_TYPE_ARRAY);
+  for (guint i = 0; i < count; ++i) {
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, G_TYPE_DOUBLE);
+    g_value_set_double(&number, numbers[i]);
+    gst_value_array_append_and_take_value(&list, &number);
+  }
+  gst_structure_take_value(structure, name, &list);
+}
+
+static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
+  // clang-format off
+  gst_structure_set(structure,
+                    "bearing_x", G_TYPE_DOUBLE, meta->bearing_x,
+                    "bearing_y", G_TYPE_DOUBLE, meta->bearing_y,
+                    "bearing_z", G_TYPE_DOUBLE, meta->bearing_z,
+                    "angle_x", G_TYPE_DOUBLE, meta->angle_x,
+                    "angle_y", G_TYPE_DOUBLE, meta->angle_y,
+                    "centre_x", G_TYPE_DOUBLE, meta->centre_x,
+                    "centre_y", G_TYPE_DOUBLE, meta->centre_y,
+                    "normal_x", G_TYPE_DOUBLE, meta->normal_x,
+                    "normal_y", G_TYPE_DOUBLE, meta->normal_y,
+                    "normal_z", G_TYPE_DOUBLE, meta->normal_z,
+                    "other_normal_x", G_TYPE_DOUBLE, meta->other_normal_x,
+                    "other_normal_y", G_TYPE_DOUBLE, meta->other_normal_y,
+                    "other_normal_z", G_TYPE_DOUBLE, meta->other_normal_z,
+                    "certainty", G_TYPE_DOUBLE, meta->certainty,
+                    nullptr);
+  // clang-format on
+}
+
+static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
+  // clang-format off
+  gst_structure_set(structure,
+                    "position_x", G_TYPE_DOUBLE, meta->position_x,
+                    "position_y", G_TYPE_DOUBLE, meta->position_y,
+                    "position_z", G_TYPE_DOUBLE, meta->position_z,
+                    "other_position_x", G_TYPE_DOUBLE, meta->other_position_x,
+                    "other_position_y", G_TYPE_DOUBLE, meta->other_position_y,
+                    "other_position_z", G_TYPE_DOUBLE, meta->other_position_z,
+                    nullptr);
+  // clang-format on
+  set_numbers(structure,
+              "position_covariance",
+              meta->position_covariance,
+              G_N_ELEMENTS(meta->position_covariance));
+}
+
 /**
  * gst_ellipse_meta_to_structure:
  * @meta: an ellipse
  *
- * All fields by their names in a structure named "ellipse"; role and state as their nicks. What is
- * to outlive the buffer is kept this way.
+ * All fields by their names in a structure named "ellipse"; role and state as their nicks, the
+ * numbers of the covariance and the outline as arrays, and of pose, position and outline what is
+ * known. What is to outlive the buffer is kept this way.
  *
  * Returns: (transfer full): a new structure, of the caller's
  *
@@ -303,7 +364,7 @@ const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
 GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
   // clang-format off
-  return gst_structure_new("ellipse",
+  GstStructure* structure = gst_structure_new("ellipse",
                            "role", G_TYPE_STRING, gst_ellipse_meta_get_role_name(meta),
                            "state", G_TYPE_STRING, gst_ellipse_meta_get_state_name(meta),
                            "id", G_TYPE_UINT64, meta->id,
@@ -326,6 +387,15 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
                            "processing_time", GST_TYPE_CLOCK_TIME, meta->processing_time,
                            nullptr);
   // clang-format on
+  if (meta->has_pose) add_pose(structure, meta);
+  if (meta->has_position) add_position(structure, meta);
+  const guint points = std::min<guint>(meta->n_outline, G_N_ELEMENTS(meta->outline) / 2);
+  if (points > 0) {
+    gdouble numbers[G_N_ELEMENTS(meta->outline)];
+    std::copy_n(meta->outline, 2 * points, numbers);
+    set_numbers(structure, "outline", numbers, 2 * points);
+  }
+  return structure;
 }
 
 // With a point whatever the locale; JSON knows no NaN.
@@ -338,13 +408,65 @@ static void append_number(GString* json, const gchar* name, const gchar* format,
       std::isfinite(value) ? g_ascii_formatd(text, sizeof text, format, value) : "null");
 }
 
+struct Member {
+  const gchar* name;
+  gdouble value;
+};
+
+// An object in the object, such as ,"bearing":{"x":0,"y":0,"z":1}.
+static void append_object(GString* json,
+                          const gchar* name,
+                          const gchar* format,
+                          std::initializer_list<Member> members) {
+  g_string_append_printf(json, ",\"%s\":{", name);
+  const gsize begin = json->len;
+  for (const Member& member : members) append_number(json, member.name, format, member.value);
+  g_string_erase(json, static_cast<gssize>(begin), 1);  // the comma before the first
+  g_string_append_c(json, '}');
+}
+
+static void append_vector(GString* json, const gchar* name, gdouble x, gdouble y, gdouble z) {
+  append_object(json, name, "%.6f", {{"x", x}, {"y", y}, {"z", z}});
+}
+
+static void append_pose(GString* json, const GstEllipseMeta* meta) {
+  append_vector(json, "bearing", meta->bearing_x, meta->bearing_y, meta->bearing_z);
+  append_number(json, "angle_x", "%.6f", meta->angle_x);
+  append_number(json, "angle_y", "%.6f", meta->angle_y);
+  append_object(json, "centre", "%.4f", {{"x", meta->centre_x}, {"y", meta->centre_y}});
+  append_vector(json, "normal", meta->normal_x, meta->normal_y, meta->normal_z);
+  append_vector(
+      json, "other_normal", meta->other_normal_x, meta->other_normal_y, meta->other_normal_z);
+  append_number(json, "certainty", "%.4f", meta->certainty);
+}
+
+static void append_position(GString* json, const GstEllipseMeta* meta) {
+  append_vector(json, "position", meta->position_x, meta->position_y, meta->position_z);
+  append_vector(json,
+                "other_position",
+                meta->other_position_x,
+                meta->other_position_y,
+                meta->other_position_z);
+  gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+  const gchar* separator = ",\"position_covariance\":[";
+  for (const gdouble value : meta->position_covariance) {
+    g_string_append(json, separator);
+    g_string_append(
+        json, std::isfinite(value) ? g_ascii_formatd(text, sizeof text, "%.6e", value) : "null");
+    separator = ",";
+  }
+  g_string_append_c(json, ']');
+}
+
 /**
  * gst_ellipse_meta_to_json:
  * @meta: an ellipse
  *
  * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians. The truth has
- * neither state nor overlaps nor scale; a number that is not finite is null.
+ * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians. With a camera
+ * also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
+ * diameter position, other_position, position_covariance; metres. The truth has neither state nor
+ * overlaps nor scale; a number that is not finite is null.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
  *
@@ -372,6 +494,8 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   }
   append_number(json, "visible", "%.4f", meta->visible_fraction);
   if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);
+  if (meta->has_pose) append_pose(json, meta);
+  if (meta->has_position) append_position(json, meta);
   g_string_append_c(json, '}');
   return g_string_free(json, FALSE);
 }

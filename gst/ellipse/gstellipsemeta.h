@@ -65,6 +65,32 @@ GType gst_ellipse_state_get_type(void);
  * @frame_height: height in px of the frame that the numbers refer to
  * @pts: presentation time stamp of the frame that was analysed, in ns; or `GST_CLOCK_TIME_NONE`
  * @processing_time: time spent on that frame, in ns; or `GST_CLOCK_TIME_NONE`
+ * @has_pose: whether the camera is known, and with it bearing, angles, centre and normals
+ * @has_position: whether the target's diameter is known too, and with it the positions
+ * @bearing_x: unit vector from the camera to the circle's centre, x to the right
+ * @bearing_y: the same, y down
+ * @bearing_z: the same, z forward
+ * @angle_x: of the bearing to the right of the optical axis, in rad
+ * @angle_y: the same downwards
+ * @centre_x: the circle's centre in the picture in px, which is not the ellipse's
+ * @centre_y: the same
+ * @normal_x: unit vector out of the circle's plane towards the camera
+ * @normal_y: the same
+ * @normal_z: the same
+ * @other_normal_x: normal of the other circle with the same picture
+ * @other_normal_y: the same
+ * @other_normal_z: the same
+ * @certainty: probability that @normal_x and so on are the right ones of the two, 0.5 to 1
+ * @position_x: the circle's centre in m, in the frame of the bearing
+ * @position_y: the same
+ * @position_z: the same
+ * @other_position_x: centre of the other circle with the same picture
+ * @other_position_y: the same
+ * @other_position_z: the same
+ * @position_covariance: of the position in m^2: xx, xy, xz, yy, yz, zz
+ * @n_outline: points of @outline; 0 where the ellipse is in the picture as it is
+ * @outline: x and y in px of points around the target as a distorting lens shows it, the ellipse
+ *   being what a lens without distortion would show; NaN where it does not show them
  *
  * One ellipse on a video buffer; a buffer may have several. Survives copies, and follows scaling:
  * under a scale that is not the same in x and y the ellipse turns as the picture does.
@@ -98,6 +124,32 @@ struct _GstEllipseMeta {
   guint frame_height;
   GstClockTime pts;
   GstClockTime processing_time;
+
+  gboolean has_pose;
+  gboolean has_position;
+  gdouble bearing_x;
+  gdouble bearing_y;
+  gdouble bearing_z;
+  gdouble angle_x;
+  gdouble angle_y;
+  gdouble centre_x;
+  gdouble centre_y;
+  gdouble normal_x;
+  gdouble normal_y;
+  gdouble normal_z;
+  gdouble other_normal_x;
+  gdouble other_normal_y;
+  gdouble other_normal_z;
+  gdouble certainty;
+  gdouble position_x;
+  gdouble position_y;
+  gdouble position_z;
+  gdouble other_position_x;
+  gdouble other_position_y;
+  gdouble other_position_z;
+  gdouble position_covariance[6];
+  guint n_outline;
+  gfloat outline[128];
 };
 
 #define GST_ELLIPSE_META_API_TYPE (gst_ellipse_meta_api_get_type())

@@ -90,8 +90,9 @@ Errors errors_of(double radius, double blur_px, double noise) {
         picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
     EXPECT_TRUE(refined) << radius << " " << noise << " " << i;
     if (!refined) continue;
-    errors.rms_px += 0.5 * (refined->center() - truth.center()).squaredNorm() / pictures;
-    errors.radius_px += (std::sqrt(refined->semi_major * refined->semi_minor) - radius) / pictures;
+    const Ellipse& found = refined->ellipse;
+    errors.rms_px += 0.5 * (found.center() - truth.center()).squaredNorm() / pictures;
+    errors.radius_px += (std::sqrt(found.semi_major * found.semi_minor) - radius) / pictures;
     errors.bound_px += bound_px(truth, blur_px, noise) / pictures;
   }
   errors.rms_px = std::sqrt(errors.rms_px);
@@ -127,7 +128,7 @@ TEST(PhotometricRefinement, ReachesOverHalfAPixel) {
   const auto refined =
       refined_photometrically(picture.view(), start, Polarity::kDarkInside, 9.0, 20.0);
   ASSERT_TRUE(refined);
-  EXPECT_LT(max_difference_px(*refined, truth), 0.03);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
 }
 
 TEST(PhotometricRefinement, IsNotMovedByWhatIsInFrontOrByAShadow) {
@@ -141,7 +142,7 @@ TEST(PhotometricRefinement, IsNotMovedByWhatIsInFrontOrByAShadow) {
   const auto refined = refined_photometrically(
       picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
   ASSERT_TRUE(refined);
-  EXPECT_LT(max_difference_px(*refined, truth), 0.05);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.05);
 }
 
 TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
@@ -150,7 +151,7 @@ TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
   const auto refined =
       refined_photometrically(picture.view(), truth, Polarity::kDarkInside, 9.0, 20.0);
   ASSERT_TRUE(refined);
-  EXPECT_LT((refined->center() - truth.center()).norm(), 0.1);
+  EXPECT_LT((refined->ellipse.center() - truth.center()).norm(), 0.1);
 }
 
 TEST(PhotometricRefinement, GivesNothingWhereThereIsNoSuchEdge) {
@@ -197,7 +198,7 @@ TEST(OuterEdge, IsExactForThickAndThinRings) {
     const Eigen::Matrix3d start = nudge * view;
     const auto error = [&](Refinement refinement) {
       const auto exact = refined_outer_edge(picture.view(), start, *model, 1.0, refinement);
-      return exact ? max_difference_px(*exact, truth) : 9.0;
+      return exact ? max_difference_px(exact->ellipse, truth) : 9.0;
     };
     EXPECT_LT(error(Refinement::kEdges), 0.08) << ring_width;
     EXPECT_LT(error(Refinement::kPhotometric), 0.08) << ring_width;

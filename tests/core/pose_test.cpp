@@ -42,7 +42,7 @@ const CirclePose& nearer(const std::array<CirclePose, 2>& poses, const CirclePos
 }
 
 RingUncertainty uncertainty_of(const Ellipse& e, double sigma) {
-  return {image_from_pad(e), sigma * sigma * RingMatrix::Identity()};
+  return {image_from_pad(e), RingMatrix::Identity() / (sigma * sigma)};
 }
 
 TEST(CirclePoses, OneOfThemIsTheCircle) {
@@ -147,7 +147,7 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
     for (int step = 0; step < 3; ++step) {
       GeometricFit fit(fitted);
       for (const Vector2d& point : points) fit.add(point);
-      picture = {image_from_pad(fitted), kSigmaPx * kSigmaPx * fit.information().inverse()};
+      picture = {image_from_pad(fitted), fit.information() / (kSigmaPx * kSigmaPx)};
       const auto better = fit.solve();
       ASSERT_TRUE(better);
       fitted = *better;
