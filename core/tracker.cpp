@@ -39,6 +39,12 @@ bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
          chosen.semi_major > kFartherOut * followed.semi_major;
 }
 
+// The inner edges of a target whose outer one is too large for the detector are all that it finds.
+bool lies_in(const Ellipse& inner, const Ellipse& outer) {
+  return (inner.center() - outer.center()).norm() + inner.semi_minor < outer.semi_major &&
+         inner.semi_major < outer.semi_major;
+}
+
 // Whether the detector, looking at this scale, should find what is followed.
 bool can_be_found(const Target& followed, int scale) {
   const bool is_too_coarse = scale > 1 && 2.0 * followed.ellipse.semi_minor < kCoarsePx * scale;
@@ -159,10 +165,13 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
     const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
     const bool is_found = old_set.score > 0.0;
     if (is_found) trust_ = std::min(trust_ + 1, kMostTrust);
-    const bool is_new = chosen && (is_outside_of(chosen->ellipse, followed->ellipse) ||
-                                   is_better(set_around(chosen->ellipse, candidates_), old_set));
+    const bool is_beyond = !settings_.limits.admit_axes_of(followed->ellipse);
+    const bool is_own_inside = is_beyond && chosen && lies_in(chosen->ellipse, followed->ellipse);
+    const bool is_new = chosen && !is_own_inside &&
+                        (is_outside_of(chosen->ellipse, followed->ellipse) ||
+                         is_better(set_around(chosen->ellipse, candidates_), old_set));
     if (!is_new) {
-      if (is_found || !can_be_found(*followed, scale_)) return followed;
+      if (is_found || is_beyond || !can_be_found(*followed, scale_)) return followed;
       next_look_ = kNextLook;
       trust_ -= kLossOfTrust;
       if (trust_ >= 0) return followed;
