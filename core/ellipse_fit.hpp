@@ -121,6 +121,6 @@ struct FittedEllipse {
                                                    double sigma_px);
 
 /// Edges nearer to each other along their ellipse err alike [px].
-inline constexpr double kIndependentPx = 4.0;
+inline constexpr double kIndependentPx = 6.0;
 
 }  // namespace ellipse

@@ -39,7 +39,7 @@ bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
          chosen.semi_major > kFartherOut * followed.semi_major;
 }
 
-// The inner edges of a target whose outer one is too large for the detector are all that it finds.
+// Of a target that is too large for the detector the inner edges are all that it finds.
 bool lies_in(const Ellipse& inner, const Ellipse& outer) {
   return (inner.center() - outer.center()).norm() + inner.semi_minor < outer.semi_major &&
          inner.semi_major < outer.semi_major;
@@ -165,7 +165,9 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
     const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
     const bool is_found = old_set.score > 0.0;
     if (is_found) trust_ = std::min(trust_ + 1, kMostTrust);
-    const bool is_beyond = !settings_.limits.admit_axes_of(followed->ellipse);
+    const bool is_beyond =
+        !settings_.limits.admit_axes_of(followed->ellipse) ||
+        2.0 * followed->ellipse.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
     const bool is_own_inside = is_beyond && chosen && lies_in(chosen->ellipse, followed->ellipse);
     const bool is_new = chosen && !is_own_inside &&
                         (is_outside_of(chosen->ellipse, followed->ellipse) ||
