@@ -81,6 +81,7 @@ double EdgeTracker::radius_px() const {
 
 bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   is_locked_ = false;
+  refined_.reset();
   frame_px_ = window.frame_px;
   view_ = image_from_pad(outer_edge);
   const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
@@ -294,7 +295,6 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
 
 // The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
 void EdgeTracker::refine(const LumaWindow& window, double visible) {
-  refined_.reset();
   if (visible < kLeastVisibleToRefine) return;
   const auto exact = refined_outer_edge(
       window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
