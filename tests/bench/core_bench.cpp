@@ -227,10 +227,26 @@ void add_trackers() {
   }
 }
 
+// What the target's pose costs, and a lens that is distorted.
+void add_cameras() {
+  ellipse::TrackerSettings settings;
+  settings.target_diameter_m = 1.5;
+  settings.hfov_rad = 1.012;
+  bench::add_benchmark("track/with_pinhole", [settings](State& state, const Frames& frames) {
+    track(state, frames, settings);
+  });
+  settings.camera = ellipse::Camera::with_hfov(1.012, 640, 360);
+  settings.camera->distortion = {-0.22, 0.03};
+  bench::add_benchmark("track/with_distorted_lens", [settings](State& state, const Frames& frames) {
+    track(state, frames, settings);
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   add_stages();
   add_trackers();
+  add_cameras();
   return bench::run_benchmarks(argc, argv);
 }

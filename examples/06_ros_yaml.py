@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Turns the JSON lines of ellipsejson into messages of ROS, without ROS.
+
+gst-launch-1.0 -q ... ! ellipsetrack hfov=1.012 target-diameter=1.5 ! ellipsejson ! fdsink |
+  ./06_ros_yaml.py [FRAME_ID]
+
+Writes one YAML document per frame in which the target was seen, of the form of
+geometry_msgs/PoseWithCovarianceStamped: `rostopic pub` and `ros2 topic pub` take them. The pose's z
+axis is the target's normal. How the target is turned about it is not known: x lies as near to the
+camera's x as it can, and that variance is a large one.
+"""
+import json
+import math
+import sys
+
+UNKNOWN = 1e6  # variance [rad^2]
+TILT_VARIANCE = 0.01  # of the normal [rad^2]
+
+
+def quaternion_to(normal):
+    """The shortest turn that takes z to the normal, as x, y, z, w."""
+    x, y, z = normal["x"], normal["y"], normal["z"]
+    if z < -0.999999:
+        return 1.0, 0.0, 0.0, 0.0
+    w = math.sqrt((1.0 + z) / 2.0)
+    return -y / (2.0 * w), x / (2.0 * w), 0.0, w
+
+
+def covariance_of(target):
+    """6 x 6 by rows: x, y, z, turns about x, y, z."""
+    xx, xy, xz, yy, yz, zz = target["position_covariance"]
+    rows = [[0.0] * 6 for _ in range(6)]
+    rows[0][:3] = xx, xy, xz
+    rows[1][:3] = xy, yy, yz
+    rows[2][:3] = xz, yz, zz
+    rows[3][3] = rows[4][4] = TILT_VARIANCE
+    rows[5][5] = UNKNOWN
+    return [value for row in rows for value in row]
+
+
+def document(line, target, frame_id):
+    position = target["position"]
+    turn = quaternion_to(target["normal"])
+    seconds, nanoseconds = divmod(line["pts_ns"], 1_000_000_000)
+    covariance = ", ".join(f"{value:.6e}" for value in covariance_of(target))
+    return (
+        "header:\n"
+        f"  stamp: {{sec: {seconds}, nanosec: {nanoseconds}}}\n"
+        f"  frame_id: {frame_id}\n"
+        "pose:\n"
+        "  pose:\n"
+        f"    position: {{x: {position['x']}, y: {position['y']}, z: {position['z']}}}\n"
+        f"    orientation: {{x: {turn[0]:.6f}, y: {turn[1]:.6f}, z: {turn[2]:.6f}, w: {turn[3]:.6f}}}\n"
+        f"  covariance: [{covariance}]\n"
+        "---\n"
+    )
+
+
+def main():
+    frame_id = sys.argv[1] if len(sys.argv) > 1 else "camera_optical_frame"
+    for text in sys.stdin:
+        line = json.loads(text)
+        for target in line["targets"]:
+            is_seen = target["role"] == "target" and target["state"] != "predicted"
+            if is_seen and "position" in target and line["pts_ns"] is not None:
+                sys.stdout.write(document(line, target, frame_id))
+                sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
