@@ -21,7 +21,7 @@ constexpr double kWidestRad = 1.53;   // 87.7 degrees: near 90 the ideal plane i
 constexpr double kLeastSlope = 0.05;  // of the radial map, where it is still one to one
 constexpr int kRadialSteps = 512;     // by which that is told
 constexpr int kMostIterations = 20;
-constexpr double kConvergedPx = 1e-10;
+constexpr double kNearPx = 1e-5;  // from where one step more is exact
 
 // A radial factor and its derivative.
 struct Factor {
@@ -180,10 +180,10 @@ std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) con
     if (beyond > 1.0) p /= std::sqrt(beyond);
     const LensPoint here = distorted(camera_, p);
     const Vector2d rest = wanted - here.picture_px;
-    if (rest.cwiseProduct(focal).squaredNorm() < kConvergedPx * kConvergedPx) {
+    p += here.slope.inverse() * rest;
+    if (rest.cwiseProduct(focal).squaredNorm() < kNearPx * kNearPx) {
       return p.cwiseProduct(focal) + middle;
     }
-    p += here.slope.inverse() * rest;
   }
   return std::nullopt;
 }
@@ -198,7 +198,7 @@ void bent_outline(const Lens& lens, const Ellipse& ideal, std::span<Vector2d> po
 }
 
 std::optional<Ellipse> unbent(const Lens& lens, const Ellipse& in_picture) {
-  constexpr int kPoints = 48;
+  constexpr int kPoints = 24;
   std::optional<Moments> moments;
   for (int i = 0; i < kPoints; ++i) {
     const double t = 2.0 * std::numbers::pi * i / kPoints;
