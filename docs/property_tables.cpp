@@ -83,7 +83,11 @@ std::string type_of(GParamSpec* spec) {
   if (G_IS_PARAM_SPEC_UINT64(spec)) return "uint64";
   if (G_IS_PARAM_SPEC_BOOLEAN(spec)) return "boolean";
   if (G_IS_PARAM_SPEC_STRING(spec)) return "string";
-  if (GST_IS_PARAM_SPEC_ARRAY_LIST(spec)) return "`GstValueArray` of int";
+  if (GST_IS_PARAM_SPEC_ARRAY_LIST(spec)) {
+    const GParamSpec* element = GST_PARAM_SPEC_ARRAY_LIST(spec)->element_spec;
+    return std::string("`GstValueArray` of ") +
+           (element->value_type == G_TYPE_DOUBLE ? "double" : "int");
+  }
   if (spec->value_type == GST_TYPE_STRUCTURE) return "`GstStructure`";
   throw std::runtime_error(std::string("a property of a type without a name here: ") + spec->name);
 }

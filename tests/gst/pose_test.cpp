@@ -252,7 +252,7 @@ TEST(PoseMeta, FollowsAScaler) {
 
 // The overlay draws the points, where there are some, and not the ellipse.
 TEST(PoseMeta, IsDrawnAlongItsOutline) {
-  const auto harness = harness_of("ellipseoverlay parts=ellipse",
+  const auto harness = harness_of("ellipseoverlay overlay=ellipse",
                                   support::caps_of("GRAY8", 320, 240),
                                   support::caps_of("GRAY8", 320, 240));
   auto buffer = gray_buffer_of(support::Picture(320, 240));
