@@ -16,6 +16,7 @@ packages=(
   # examples
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
   python3-gi gir1.2-gstreamer-1.0
+  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
@@ -30,7 +31,7 @@ if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev
     # what the metadata is sent through, and what carries the JSON lines
-    gstreamer1.0-plugins-bad gstreamer1.0-plugins-ugly gstreamer1.0-x
+    gstreamer1.0-plugins-bad gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
     valgrind gcovr clang

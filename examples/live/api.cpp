@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/api.hpp"
+
+#include <json-glib/json-glib.h>
+
+#include <stdexcept>
+
+#include "examples/live/json_writer.hpp"
+#include "examples/live/launch_line.hpp"
+#include "examples/live/metrics.hpp"
+#include "examples/live/page_files.hpp"
+#include "examples/live/presets.hpp"
+#include "examples/live/request_json.hpp"
+#include "examples/live/structure_json.hpp"
+
+namespace live {
+namespace {
+
+Reply done() {
+  return {.body = "{}\n"};
+}
+
+void add_page(HttpServer& server, const Options& options) {
+  const PageFiles page(options.page);
+  server.route("GET", "/", [page](const Request&) { return page.get("index.html"); });
+  server.route("GET", "/*", [page](const Request& request) { return page.get(request.rest); });
+}
+
+void add_feeds(HttpServer& server, Session& session) {
+  server.websocket("/ws/video", [&](auto socket) { session.video().add(std::move(socket)); });
+  server.websocket("/ws/meta", [&](auto socket) { session.lines().add(std::move(socket)); });
+  server.route_open("GET", "/video.mjpeg", [&](const Request& request) {
+    session.video().add_stream(request.message);
+  });
+  server.route_open("GET", "/api/events", [&](const Request& request) {
+    session.lines().add_events(request.message);
+  });
+}
+
+/* What it sees */
+
+std::string target_json(GstElement* tracker) {
+  GstStructure* fields = nullptr;
+  g_object_get(tracker, "target", &fields, nullptr);
+  if (fields == nullptr) return "null\n";
+  const Ref<GstStructure> target(fields);
+  JsonWriter json;
+  json.begin_object();
+  write_fields(json, target.get());
+  return json.end_object().text() + "\n";
+}
+
+std::string stats_json(Session& session, const HttpServer& server) {
+  GstStructure* fields = nullptr;
+  g_object_get(session.pipeline().tracker(), "stats", &fields, nullptr);
+  const Ref<GstStructure> stats(fields);
+  JsonWriter json;
+  json.begin_object().key("tracker").begin_object();
+  write_fields(json, stats.get());
+  json.end_object()
+      .member("frames", session.pipeline().frames())
+      .member("reconnections", session.pipeline().reconnections())
+      .member("viewers", session.video().viewers())
+      .member("listeners", session.lines().listeners())
+      .member("connections", server.connections())
+      .member("encoded", session.video().encoded())
+      .member("sent", session.video().sent())
+      .member("sent_bytes", session.video().sent_bytes())
+      .member("lines_lost", session.lines().lost());
+  return json.end_object().text() + "\n";
+}
+
+void add_state(HttpServer& server, Session& session) {
+  server.route("GET", "/api/target", [&](const Request&) {
+    return Reply{.body = target_json(session.pipeline().tracker())};
+  });
+  server.route("GET", "/api/stats", [&](const Request&) {
+    return Reply{.body = stats_json(session, server)};
+  });
+  server.route("GET", "/metrics", [&](const Request&) {
+    return Reply{.type = "text/plain; version=0.0.4; charset=utf-8",
+                 .body = metrics_text(session, server)};
+  });
+}
+
+/* How it is set */
+
+void add_settings(HttpServer& server, Session& session) {
+  GstElement* tracker = session.pipeline().tracker();
+  server.route("GET", "/api/properties", [&](const Request&) {
+    return Reply{.body = session.properties().to_json()};
+  });
+  server.route("PUT", "/api/properties", [&](const Request& request) {
+    session.properties().set(request.body);
+    return done();
+  });
+  server.route("GET", "/api/presets", [tracker](const Request&) {
+    return Reply{.body = presets_json(tracker)};
+  });
+  server.route("PUT", "/api/presets/*", [tracker](const Request& request) {
+    save_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("POST", "/api/presets/*/load", [tracker](const Request& request) {
+    load_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("DELETE", "/api/presets/*", [tracker](const Request& request) {
+    delete_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("GET", "/api/launch-line", [&](const Request&) {
+    return Reply{.type = "text/plain; charset=utf-8",
+                 .body = launch_line(session.pipeline().source(), session.properties())};
+  });
+}
+
+/* What it plays */
+
+void write_time(JsonWriter& json, const char* name, GstClockTime time) {
+  json.key(name);
+  GST_CLOCK_TIME_IS_VALID(time) ? json.value(time) : json.null();
+}
+
+std::string source_json(Session& session, const Options& options) {
+  const LivePipeline& pipeline = session.pipeline();
+  const FramePtr frame = session.store().newest();
+  JsonWriter json;
+  json.begin_object()
+      .member("spec", pipeline.source().text)
+      .member("kind", nick_of(pipeline.source().kind))
+      .member("live", pipeline.source().is_live)
+      .member("seekable", pipeline.is_seekable())
+      .member("playing", session.is_playing())
+      .member("state", session.store().is_held() ? "held" : nick_of(pipeline.state()))
+      .member("error", pipeline.trouble())
+      .member("can_change", options.allows_source_change)
+      .member("can_label", !options.labels.empty())
+      .member("width", frame ? frame->width : 0)
+      .member("height", frame ? frame->height : 0)
+      .member("fps", frame ? frame->rate : 0.0);
+  write_time(json, "pts_ns", frame ? frame->pts : GST_CLOCK_TIME_NONE);
+  write_time(json, "position_ns", pipeline.position());
+  write_time(json, "duration_ns", pipeline.duration());
+  return json.end_object().text() + "\n";
+}
+
+void add_playback(HttpServer& server, Session& session, const Options& options) {
+  server.route("GET", "/api/source", [&session, options](const Request&) {
+    return Reply{.body = source_json(session, options)};
+  });
+  server.route("POST", "/api/play", [&](const Request&) { return session.play(), done(); });
+  server.route("POST", "/api/pause", [&](const Request&) { return session.pause(), done(); });
+  server.route("POST", "/api/step", [&](const Request&) {
+    if (session.is_playing()) return error_reply(409, "pause it first");
+    session.step();
+    return done();
+  });
+  server.route("POST", "/api/seek", [&](const Request& request) {
+    const RequestJson json(request.body);
+    return session.seek(json.time("position_ns"))
+               ? done()
+               : error_reply(409, "this source cannot be sought");
+  });
+  server.route("PUT", "/api/source", [&session, options](const Request& request) {
+    if (!options.allows_source_change) {
+      return error_reply(403, "the source may be changed with --allow-source-change only");
+    }
+    session.open(RequestJson(request.body).text("spec"));
+    return done();
+  });
+}
+
+}  // namespace
+
+void add_api(HttpServer& server, Session& session, const Options& options) {
+  add_feeds(server, session);
+  add_state(server, session);
+  add_settings(server, session);
+  add_playback(server, session, options);
+  add_page(server, options);
+}
+
+}  // namespace live

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/session.hpp"
+
+#include <iostream>
+#include <utility>
+
+namespace live {
+
+Session::Session(const Options& options, std::function<void()> on_failure)
+    : loops_(options.loops),
+      store_([this] { on_change(); }),
+      video_(store_, options.quality),
+      pipeline_({.on_frame = [this](FramePtr frame) { store_.put(std::move(frame)); },
+                 .on_trouble =
+                     [this](const std::string& trouble) {
+                       const std::string source = "source \"" + pipeline_.source().text + "\": ";
+                       std::cerr << "ellipse-live: " << source
+                                 << (trouble.empty() ? "is back" : trouble) << std::endl;
+                     },
+                 .on_failure = std::move(on_failure)}),
+      properties_(pipeline_.tracker()) {}
+
+void Session::open(const std::string& source) {
+  SourceSpec spec = parse_source(source);
+  store_.release();
+  pipeline_.open(std::move(spec), loops_);
+}
+
+void Session::play() {
+  store_.release();
+  pipeline_.play();
+}
+
+void Session::pause() {
+  if (pipeline_.source().is_live) {
+    store_.hold();
+  } else {
+    pipeline_.pause();
+  }
+}
+
+void Session::step() {
+  if (pipeline_.source().is_live) {
+    store_.step();
+  } else {
+    pipeline_.step();
+  }
+}
+
+bool Session::seek(GstClockTime position) {
+  return pipeline_.seek(position);
+}
+
+bool Session::is_playing() const {
+  return pipeline_.state() == PlayState::kPlaying && !store_.is_held();
+}
+
+void Session::on_change() {
+  lines_.send(store_.take_lines());
+  video_.update();
+}
+
+}  // namespace live
