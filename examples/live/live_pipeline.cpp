@@ -4,6 +4,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -24,11 +25,36 @@ GstElement* add(GstElement* pipeline, const char* factory) {
   return element;
 }
 
+// What went wrong; of a missing decoder also which.
 std::string error_of(GstMessage* message) {
   GError* error = nullptr;
-  gst_message_parse_error(message, &error, nullptr);
-  const Ref<GError> owned(error);
-  return error->message;
+  gchar* details = nullptr;
+  gst_message_parse_error(message, &error, &details);
+  const Ref<GError> owned_error(error);
+  const Ref<gchar> owned_details(details);
+  const std::string text = error->message;
+  const char* missing = details != nullptr ? std::strstr(details, "Missing ") : nullptr;
+  return missing != nullptr ? text + " " + std::string(missing, std::strcspn(missing, "(\n"))
+                            : text;
+}
+
+// A bin with one pad, of raw video. The pad is there before a decoder knows its own.
+GstElement* source_bin(const std::string& description) {
+  GError* problem = nullptr;
+  GstElement* bin = gst_parse_bin_from_description_full(
+      (description + " ! videoconvert name=live-source-end").c_str(),
+      FALSE,
+      nullptr,
+      static_cast<GstParseFlags>(GST_PARSE_FLAG_FATAL_ERRORS | GST_PARSE_FLAG_PLACE_IN_BIN),
+      &problem);
+  if (problem != nullptr) {
+    const Ref<GError> error(problem);
+    throw std::runtime_error(error->message);
+  }
+  const Ref<GstElement> end(gst_bin_get_by_name(GST_BIN(bin), "live-source-end"));
+  const Ref<GstPad> pad(gst_element_get_static_pad(end.get(), "src"));
+  gst_element_add_pad(bin, gst_ghost_pad_new("src", pad.get()));
+  return bin;
 }
 
 }  // namespace
@@ -54,10 +80,9 @@ const char* nick_of(PlayState state) {
 LivePipeline::LivePipeline(Handlers handlers)
     : handlers_(std::move(handlers)),
       pipeline_(gst_pipeline_new("live")),
-      entry_(add(pipeline_, "videoconvert")),
       tracker_(add(pipeline_, "ellipsetrack")),
       sink_(add(pipeline_, "appsink")) {
-  gst_element_link_many(entry_, tracker_, sink_, nullptr);
+  gst_element_link(tracker_, sink_);
   // One buffer at most waits here, and only while on_sample() takes it.
   g_object_set(sink_, "max-buffers", 1, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
   GstAppSinkCallbacks callbacks{};
@@ -131,24 +156,14 @@ void LivePipeline::open(SourceSpec spec, bool loops) {
 void LivePipeline::start() {
   state_ = PlayState::kStarting;
   glances_without_frames_ = 0;
-  GError* problem = nullptr;
-  // Converted inside, so that the bin has its pad before a decoder has its own.
-  source_ = gst_parse_bin_from_description_full(
-      (spec_.description + " ! identity silent=true").c_str(),
-      TRUE,
-      nullptr,
-      static_cast<GstParseFlags>(GST_PARSE_FLAG_FATAL_ERRORS | GST_PARSE_FLAG_PLACE_IN_BIN),
-      &problem);
-  if (problem != nullptr) {
-    const Ref<GError> error(problem);
-    source_dropped(error->message);
+  try {
+    source_ = source_bin(spec_.description);
+  } catch (const std::exception& error) {
+    source_dropped(error.what());
     return;
   }
   gst_bin_add(GST_BIN(pipeline_), source_);
-  if (!gst_element_link(source_, entry_)) {
-    source_dropped("it gives no raw video");
-    return;
-  }
+  gst_element_link(source_, tracker_);
   // A file is shown at its own pace; of a camera the newest frame is wanted at once.
   const GstStateChangeReturn paused = gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   if (paused == GST_STATE_CHANGE_NO_PREROLL) spec_.is_live = true;
@@ -163,7 +178,7 @@ void LivePipeline::stop() {
   gst_bus_set_flushing(bus.get(), TRUE);  // what the old source still had to say
   gst_bus_set_flushing(bus.get(), FALSE);
   if (source_ == nullptr) return;
-  gst_element_unlink(source_, entry_);
+  gst_element_unlink(source_, tracker_);
   gst_bin_remove(GST_BIN(pipeline_), source_);
   source_ = nullptr;
 }

@@ -79,7 +79,6 @@ class LivePipeline {
   SourceSpec spec_;
   bool loops_ = false;
   GstElement* pipeline_;
-  GstElement* entry_;
   GstElement* tracker_;
   GstElement* sink_;
   GstElement* source_ = nullptr;

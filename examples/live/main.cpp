@@ -30,11 +30,17 @@ std::string token_for(const live::Options& options) {
   return is_open && options.token.empty() ? live::make_token() : options.token;
 }
 
-void tell_address(const live::Options& options, const live::HttpServer& server) {
+void tell_addresses(const live::Options& options,
+                    const live::HttpServer& server,
+                    const live::Session& session) {
   const bool is_ipv6 = options.bind.find(':') != std::string::npos;
-  std::cout << "ellipse-live: http://" << (is_ipv6 ? "[" + options.bind + "]" : options.bind) << ":"
-            << server.port() << "/" << (options.token.empty() ? "" : "?token=" + options.token)
-            << std::endl;
+  const std::string host = is_ipv6 ? "[" + options.bind + "]" : options.bind;
+  std::cout << "ellipse-live: http://" << host << ":" << server.port() << "/"
+            << (options.token.empty() ? "" : "?token=" + options.token) << std::endl;
+  if (!session.rtsp()) return;
+  std::cout << "ellipse-live: rtsp://"
+            << (options.token.empty() ? "" : "ellipse:" + options.token + "@") << host << ":"
+            << session.rtsp()->port() << "/live" << std::endl;
 }
 
 int run(live::Options options) {
@@ -53,7 +59,7 @@ int run(live::Options options) {
   live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
   live::add_api(server, session, options);
   session.open(options.source);
-  tell_address(options, server);
+  tell_addresses(options, server, session);
   g_unix_signal_add(SIGINT, on_signal, loop.get());
   g_unix_signal_add(SIGTERM, on_signal, loop.get());
   if (!has_failed) g_main_loop_run(loop.get());

@@ -30,7 +30,8 @@ bool RequestJson::has(const char* name) const {
 
 std::string RequestJson::text(const char* name) const {
   JsonNode* member = node(name);
-  if (member == nullptr || json_node_get_value_type(member) != G_TYPE_STRING) {
+  if (member == nullptr || !JSON_NODE_HOLDS_VALUE(member) ||
+      json_node_get_value_type(member) != G_TYPE_STRING) {
     throw std::invalid_argument(std::string(name) + ": text is wanted");
   }
   return json_node_get_string(member);
@@ -38,7 +39,8 @@ std::string RequestJson::text(const char* name) const {
 
 double RequestJson::number(const char* name) const {
   JsonNode* member = node(name);
-  const GType type = member != nullptr ? json_node_get_value_type(member) : G_TYPE_INVALID;
+  const bool is_value = member != nullptr && JSON_NODE_HOLDS_VALUE(member);
+  const GType type = is_value ? json_node_get_value_type(member) : G_TYPE_INVALID;
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) {
     throw std::invalid_argument(std::string(name) + ": a number is wanted");
   }

@@ -13,6 +13,8 @@ namespace live {
 class RequestJson {
  public:
   explicit RequestJson(const std::string& body);
+  /// A part of another one, which has to outlive this.
+  explicit RequestJson(JsonObject* part) : object_(part) {}
 
   [[nodiscard]] std::string text(const char* name) const;
   [[nodiscard]] double number(const char* name) const;

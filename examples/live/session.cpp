@@ -10,7 +10,7 @@ Session::Session(const Options& options, std::function<void()> on_failure)
     : loops_(options.loops),
       store_([this] { on_change(); }),
       video_(store_, options.quality),
-      pipeline_({.on_frame = [this](FramePtr frame) { store_.put(std::move(frame)); },
+      pipeline_({.on_frame = [this](FramePtr frame) { on_frame(std::move(frame)); },
                  .on_trouble =
                      [this](const std::string& trouble) {
                        const std::string source = "source \"" + pipeline_.source().text + "\": ";
@@ -18,7 +18,22 @@ Session::Session(const Options& options, std::function<void()> on_failure)
                                  << (trouble.empty() ? "is back" : trouble) << std::endl;
                      },
                  .on_failure = std::move(on_failure)}),
-      properties_(pipeline_.tracker()) {}
+      properties_(pipeline_.tracker()) {
+  if (options.rtsp_port >= 0) {
+    rtsp_.emplace(RtspOutput::Settings{options.bind, options.rtsp_port, options.token});
+  }
+  if (!options.record.empty()) {
+    recorder_.emplace(options.record, [](const std::string& trouble) {
+      std::cerr << "ellipse-live: the recording has stopped: " << trouble << std::endl;
+    });
+  }
+}
+
+void Session::on_frame(FramePtr frame) {
+  if (rtsp_) rtsp_->put(frame);
+  if (recorder_) recorder_->put(frame);
+  store_.put(std::move(frame));
+}
 
 void Session::open(const std::string& source) {
   SourceSpec spec = parse_source(source);

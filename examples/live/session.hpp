@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "examples/live/frame_store.hpp"
@@ -8,15 +9,18 @@
 #include "examples/live/live_pipeline.hpp"
 #include "examples/live/options.hpp"
 #include "examples/live/properties.hpp"
+#include "examples/live/recorder.hpp"
+#include "examples/live/rtsp_output.hpp"
 #include "examples/live/video_feed.hpp"
 
 namespace live {
 
-/// A pipeline and all who look at it. Frames go from the pipeline to the store, in its own thread;
-/// everything else happens in the main loop.
+/// A pipeline and all who look at it. Frames go from the pipeline to the store, to RTSP and to the
+/// recording in its own thread; everything else happens in the main loop.
 class Session {
  public:
   /// @param on_failure  The source cannot be used; called in the main loop.
+  /// Throws std::runtime_error where what was asked for cannot be set up.
   Session(const Options& options, std::function<void()> on_failure);
 
   /// Plays another source. Throws std::invalid_argument where it is none.
@@ -35,15 +39,19 @@ class Session {
   [[nodiscard]] VideoFeed& video() { return video_; }
   [[nodiscard]] LineFeed& lines() { return lines_; }
   [[nodiscard]] Properties& properties() { return properties_; }
+  [[nodiscard]] const std::optional<RtspOutput>& rtsp() const { return rtsp_; }
 
  private:
+  void on_frame(FramePtr frame);
   void on_change();
 
   bool loops_;
   FrameStore store_;
   VideoFeed video_;
   LineFeed lines_;
-  LivePipeline pipeline_;  // after the store: it stops before its frames lose their place
+  std::optional<RtspOutput> rtsp_;
+  std::optional<Recorder> recorder_;
+  LivePipeline pipeline_;  // last of those who get frames: it stops before they are gone
   Properties properties_;
 };
 

@@ -137,7 +137,7 @@ SourceSpec uri_source(const std::string& text) {
       name.starts_with("rtsp")
           ? "rtspsrc latency=50 drop-on-latency=true location=" + quoted(text) +
                 " ! application/x-rtp,media=video ! decodebin"
-          : "uridecodebin caps=video/x-raw expose-all-streams=false uri=" + quoted(text);
+          : "uridecodebin caps=\"video/x-raw(ANY)\" expose-all-streams=false uri=" + quoted(text);
   return spec;
 }
 
@@ -147,8 +147,8 @@ SourceSpec file_source(const std::string& text) {
   const Ref<gchar> uri(gst_filename_to_uri(text.c_str(), nullptr));
   return {.kind = SourceKind::kFile,
           .text = text,
-          .description =
-              "uridecodebin caps=video/x-raw expose-all-streams=false uri=" + quoted(uri.get())};
+          .description = "uridecodebin caps=\"video/x-raw(ANY)\" expose-all-streams=false uri=" +
+                         quoted(uri.get())};
 }
 
 SourceSpec fragment_source(const std::string& text) {
