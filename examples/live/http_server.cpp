@@ -70,8 +70,10 @@ void add_policy(SoupServerMessage* message) {
 
 void answer(SoupServerMessage* message, const Reply& reply) {
   soup_server_message_set_status(message, static_cast<guint>(reply.status), nullptr);
-  soup_message_headers_replace(
-      soup_server_message_get_response_headers(message), "Cache-Control", "no-store");
+  SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
+  soup_message_headers_replace(headers, "Cache-Control", "no-store");
+  // libsoup keeps those connections alive only that it has accepted itself.
+  soup_message_headers_replace(headers, "Connection", "close");
   soup_server_message_set_response(
       message, reply.type.c_str(), SOUP_MEMORY_COPY, reply.body.data(), reply.body.size());
 }
@@ -94,6 +96,13 @@ std::map<std::string, std::string> map_of(GHashTable* query) {
       },
       &map);
   return map;
+}
+
+// The address and the port of a client.
+std::string text_of(GSocketAddress* address) {
+  if (address == nullptr) return "";
+  const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
+  return text.get();
 }
 
 void drop_socket(gpointer socket) {
@@ -190,7 +199,7 @@ gboolean HttpServer::on_incoming(GSocketService* /*service*/,
                                  GObject* /*source*/,
                                  gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
-  if (self->connections_ >= kMostConnections) {
+  if (self->sockets_->size() >= kMostConnections) {
     ++self->counters_.refused;
     return TRUE;  // closed with its last reference
   }
@@ -200,15 +209,17 @@ gboolean HttpServer::on_incoming(GSocketService* /*service*/,
   const Ref<GSocketAddress> local(g_socket_get_local_address(socket, nullptr));
   const Ref<GSocketAddress> remote(g_socket_get_remote_address(socket, nullptr));
   if (!local || !remote) return TRUE;
-  ++self->connections_;
-  g_object_weak_ref(G_OBJECT(connection), on_connection_gone, self);
+  const std::string client = text_of(remote.get());
+  (*self->sockets_)[client] = share(socket);
+  g_object_weak_ref(G_OBJECT(connection), on_connection_gone, new Gone{self->sockets_, client});
   soup_server_accept_iostream(
       self->server_.get(), G_IO_STREAM(connection), local.get(), remote.get(), nullptr);
   return TRUE;
 }
 
 void HttpServer::on_connection_gone(gpointer data, GObject* /*connection*/) {
-  --static_cast<HttpServer*>(data)->connections_;
+  const std::unique_ptr<Gone> gone(static_cast<Gone*>(data));
+  gone->sockets->erase(gone->client);
 }
 
 /* Requests */
@@ -216,9 +227,6 @@ void HttpServer::on_connection_gone(gpointer data, GObject* /*connection*/) {
 void HttpServer::refuse(SoupServerMessage* message, int status, const std::string& why) {
   ++counters_.refused;
   answer(message, error_reply(status, why));
-  // What else it was about to send is not waited for.
-  soup_message_headers_replace(
-      soup_server_message_get_response_headers(message), "Connection", "close");
 }
 
 void HttpServer::on_early(SoupServer* /*server*/,
@@ -230,9 +238,12 @@ void HttpServer::on_early(SoupServer* /*server*/,
   ++self->counters_.requests;
   add_policy(message);
   self->check(message, path);
-  GSocket* socket = soup_server_message_get_socket(message);
-  if (socket == nullptr) return;
-  g_object_set_data_full(G_OBJECT(message), kSocketKey, g_object_ref(socket), drop_socket);
+  // Kept for a WebSocket, which loses sight of whose it is.
+  const auto socket =
+      self->sockets_->find(text_of(soup_server_message_get_remote_address(message)));
+  if (socket == self->sockets_->end()) return;
+  g_object_set_data_full(
+      G_OBJECT(message), kSocketKey, g_object_ref(socket->second.get()), drop_socket);
 }
 
 void HttpServer::check(SoupServerMessage* message, const std::string& path) {
@@ -295,6 +306,8 @@ bool HttpServer::take_token_from_link(SoupServerMessage* message, const std::str
       (std::string(kCookie) + "=" + settings_.token + "; Path=/; HttpOnly; SameSite=Strict")
           .c_str());
   soup_server_message_set_redirect(message, 303, "/");
+  soup_message_headers_replace(
+      soup_server_message_get_response_headers(message), "Connection", "close");
   return true;
 }
 
@@ -306,28 +319,31 @@ void HttpServer::on_request(SoupServer* /*server*/,
   static_cast<HttpServer*>(data)->dispatch(message, path, query);
 }
 
+// What stands where a route has its "*"; nullopt where the path is not the route's.
+std::optional<std::string> HttpServer::rest_of(const std::string& path, const Route& route) {
+  if (!route.has_rest) return path == route.before ? std::optional<std::string>("") : std::nullopt;
+  const std::size_t around = route.before.size() + route.after.size();
+  const bool fits =
+      path.size() > around && path.starts_with(route.before) && path.ends_with(route.after);
+  if (!fits) return std::nullopt;
+  std::string rest = path.substr(route.before.size(), path.size() - around);
+  return rest.find('/') == std::string::npos ? std::optional(std::move(rest)) : std::nullopt;
+}
+
 void HttpServer::dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query) {
   std::string method = soup_server_message_get_method(message);
   if (method == "HEAD") method = "GET";
   bool is_known = false;
   for (const Route& route : routes_) {
-    const bool fits = route.has_rest
-                          ? path.size() > route.before.size() + route.after.size() &&
-                                path.starts_with(route.before) && path.ends_with(route.after)
-                          : path == route.before;
-    if (!fits) continue;
+    const std::optional<std::string> rest = rest_of(path, route);
+    if (!rest) continue;
     is_known = true;
     if (route.method != method) continue;
-    Request request{.message = message,
-                    .path = path,
-                    .rest = "",
-                    .body = body_of(message),
-                    .query = map_of(query)};
-    if (route.has_rest) {
-      const std::size_t length = path.size() - route.before.size() - route.after.size();
-      request.rest = path.substr(route.before.size(), length);
-      if (request.rest.find('/') != std::string::npos) continue;
-    }
+    const Request request{.message = message,
+                          .path = path,
+                          .rest = *rest,
+                          .body = body_of(message),
+                          .query = map_of(query)};
     try {
       route.handle(request);
     } catch (const std::invalid_argument& error) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,7 +69,7 @@ class HttpServer {
 
   [[nodiscard]] guint port() const { return port_; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t connections() const { return connections_; }
+  [[nodiscard]] std::size_t connections() const { return sockets_->size(); }
 
  private:
   struct Route {
@@ -77,6 +78,14 @@ class HttpServer {
     std::string after;
     bool has_rest;
     std::function<void(const Request&)> handle;
+  };
+
+  // Those of open connections, by the client's address.
+  using Sockets = std::map<std::string, Ref<GSocket>>;
+  // A connection that will be gone one day, later than this server where a viewer keeps it.
+  struct Gone {
+    std::shared_ptr<Sockets> sockets;
+    std::string client;
   };
 
   static gboolean on_incoming(GSocketService* service,
@@ -97,6 +106,7 @@ class HttpServer {
                            SoupWebsocketConnection* connection,
                            gpointer data);
 
+  static std::optional<std::string> rest_of(const std::string& path, const Route& route);
   void listen();
   void refuse(SoupServerMessage* message, int status, const std::string& why);
   void check(SoupServerMessage* message, const std::string& path);
@@ -113,7 +123,7 @@ class HttpServer {
   std::map<std::string, std::function<void(std::unique_ptr<WebSocket>)>> websockets_;
   std::map<std::string, Allowance> allowances_;  // by the client's address
   Counters counters_;
-  std::size_t connections_ = 0;
+  std::shared_ptr<Sockets> sockets_ = std::make_shared<Sockets>();
 };
 
 }  // namespace live

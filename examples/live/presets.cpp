@@ -13,6 +13,8 @@ namespace live {
 namespace {
 
 constexpr std::size_t kLongestName = 64;
+constexpr char kOrigin[] = "origin";
+constexpr char kOwn[] = "ellipse-live";
 
 std::vector<std::string> names_of(GstElement* tracker) {
   gchar** names = gst_preset_get_preset_names(GST_PRESET(tracker));
@@ -38,15 +40,13 @@ void check_exists(GstElement* tracker, const std::string& name) {
   throw std::invalid_argument("there is no preset \"" + name + "\"");
 }
 
-// Presets that came with the plugin, or with the system, are read and stay as they are.
-bool is_own(const std::string& name) {
-  const Ref<gchar> file(g_build_filename(
-      g_get_user_data_dir(), "gstreamer-1.0", "presets", "GstEllipseTrack.prs", nullptr));
-  GKeyFile* keys = g_key_file_new();
-  const bool is_there = g_key_file_load_from_file(keys, file.get(), G_KEY_FILE_NONE, nullptr) &&
-                        g_key_file_has_group(keys, name.c_str());
-  g_key_file_unref(keys);
-  return is_there;
+// GStreamer copies all presets that it knows into the file of one's own: only the mark tells which
+// were made here.
+bool is_own(GstElement* tracker, const std::string& name) {
+  gchar* origin = nullptr;
+  gst_preset_get_meta(GST_PRESET(tracker), name.c_str(), kOrigin, &origin);
+  const Ref<gchar> owned(origin);
+  return g_strcmp0(origin, kOwn) == 0;
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ std::string presets_json(GstElement* tracker) {
     json.begin_object()
         .member("name", name)
         .member("comment", comment != nullptr ? comment : "")
-        .member("is_own", is_own(name))
+        .member("is_own", is_own(tracker, name))
         .end_object();
   }
   return json.end_array().text() + "\n";
@@ -69,7 +69,13 @@ std::string presets_json(GstElement* tracker) {
 
 void save_preset(GstElement* tracker, const std::string& name) {
   check_name(name);
-  if (!gst_preset_save_preset(GST_PRESET(tracker), name.c_str())) {
+  const std::vector<std::string> names = names_of(tracker);
+  const bool is_there = std::find(names.begin(), names.end(), name) != names.end();
+  if (is_there && !is_own(tracker, name)) {
+    throw std::invalid_argument("the preset \"" + name + "\" is not yours: take another name");
+  }
+  if (!gst_preset_save_preset(GST_PRESET(tracker), name.c_str()) ||
+      !gst_preset_set_meta(GST_PRESET(tracker), name.c_str(), kOrigin, kOwn)) {
     throw std::runtime_error("the preset \"" + name + "\" cannot be written");
   }
 }
@@ -83,7 +89,8 @@ void load_preset(GstElement* tracker, const std::string& name) {
 
 void delete_preset(GstElement* tracker, const std::string& name) {
   check_exists(tracker, name);
-  if (!is_own(name)) throw std::invalid_argument("the preset \"" + name + "\" is not yours");
+  if (!is_own(tracker, name))
+    throw std::invalid_argument("the preset \"" + name + "\" is not yours");
   if (!gst_preset_delete_preset(GST_PRESET(tracker), name.c_str())) {
     throw std::runtime_error("the preset \"" + name + "\" cannot be deleted");
   }

@@ -89,6 +89,24 @@ std::string type_of(const GParamSpec* spec) {
   }
 }
 
+std::string flag_nicks(const GValue* value) {
+  const auto* type = static_cast<const GFlagsClass*>(g_type_class_peek(G_VALUE_TYPE(value)));
+  const guint set = g_value_get_flags(value);
+  std::string nicks;
+  for (guint i = 0; i < type->n_values; ++i) {
+    const GFlagsValue& flag = type->values[i];
+    const bool is_set = flag.value == 0 ? set == 0 : (set & flag.value) == flag.value;
+    if (is_set) nicks += (nicks.empty() ? "" : "+") + std::string(flag.value_nick);
+  }
+  return nicks;
+}
+
+std::string enum_nick(const GValue* value) {
+  auto* type = static_cast<GEnumClass*>(g_type_class_peek(G_VALUE_TYPE(value)));
+  const GEnumValue* found = g_enum_get_value(type, g_value_get_enum(value));
+  return found != nullptr ? found->value_nick : "";
+}
+
 void write_value(JsonWriter& json, const GParamSpec* spec, const GValue* value) {
   if (is_rect(spec)) {
     json.begin_array();
@@ -109,9 +127,12 @@ void write_value(JsonWriter& json, const GParamSpec* spec, const GValue* value) 
   } else if (G_VALUE_HOLDS_STRING(value)) {
     const gchar* text = g_value_get_string(value);
     json.value(text != nullptr ? text : "");
+  } else if (G_VALUE_HOLDS_FLAGS(value)) {
+    json.value(flag_nicks(value));
+  } else if (G_VALUE_HOLDS_ENUM(value)) {
+    json.value(enum_nick(value));
   } else {
-    const Ref<gchar> text(gst_value_serialize(value));
-    json.value(text ? text.get() : "");
+    json.null();
   }
 }
 
@@ -327,6 +348,8 @@ std::string launch_text(const GParamSpec* spec, const GValue* value) {
     write_value(numbers, spec, value);
     return "<" + numbers.text().substr(1, numbers.text().size() - 2) + ">";
   }
+  if (G_VALUE_HOLDS_FLAGS(value)) return flag_nicks(value);
+  if (G_VALUE_HOLDS_ENUM(value)) return enum_nick(value);
   const Ref<gchar> text(gst_value_serialize(value));
   return text ? text.get() : "";
 }
@@ -341,6 +364,7 @@ std::string Properties::to_json() const {
 }
 
 void Properties::set(const std::string& json) {
+  if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
   std::vector<Change> changes = parse_changes(tracker_, json);
   (void)settings_after(tracker_, changes);
   std::stable_partition(changes.begin(), changes.end(), [this](const Change& change) {
