@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/detection_trace.hpp"
 #include "core/ellipse_fit.hpp"
 #include "core/picture_refinement.hpp"
 #include "core/ring_edges.hpp"
@@ -94,19 +95,21 @@ bool is_beyond_doubt(const Detection& target, std::span<const Detection> detecti
 
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
                                                const Thresholds& thresholds) {
+  if (trace_ != nullptr) trace_->clear();
   if (!detect_at_half_size(luma, thresholds)) {
     // Who asks for short contours takes less evidence for enough.
     const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
-    detect_all(luma, thresholds, share * kLeastScore);
+    detect_all(luma, thresholds, share * kLeastScore, 1);
   }
   ring_corrector_.correct(luma, least_gradient_, polarities_, detections_);
+  if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
 
 bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& thresholds) {
   if (thresholds.min_contour_size < kHalfSizeContourPx) return false;
   const ImageView half = scaler_.reduce(luma, 2);
-  detect_all(half, halved(thresholds), kLeastScore);
+  detect_all(half, halved(thresholds), kLeastScore, 2);
   const auto target = select_target(detections_);
   if (!target || !is_beyond_doubt(*target, detections_)) return false;
   refine_at_full_size(luma, thresholds);
@@ -122,7 +125,11 @@ void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& t
     const auto refined =
         refined_on_picture(luma, detection.ellipse, polarities_[i], least_gradient_);
     if (refined) detection.ellipse = refined->ellipse;
-    if (!thresholds.admit_axes_of(detection.ellipse)) continue;
+    const Verdict verdict = thresholds.judge_axes_of(detection.ellipse);
+    if (!verdict.is_accepted()) {
+      reject(detection.candidate, verdict);
+      continue;
+    }
     polarities_[kept] = polarities_[i];
     detections_[kept++] = detection;
   }
@@ -131,7 +138,8 @@ void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& t
 
 void ArcDetector::detect_all(const ImageView& luma,
                              const Thresholds& thresholds,
-                             double least_score) {
+                             double least_score,
+                             int scale) {
   detections_.clear();
   polarities_.clear();
   found_.clear();
@@ -140,8 +148,10 @@ void ArcDetector::detect_all(const ImageView& luma,
   const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
   map_.compute(luma, thresholds.edge_high, floor);
   least_gradient_ = kFullSizeGradient * map_.threshold();
+  if (trace_ != nullptr) trace_edges(luma, scale);
   chains_.trace(map_);
   arcs_ = splitter_.split(map_, chains_);
+  if (trace_ != nullptr) trace_arcs();
   caution_.edge_density = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
   caution_.least_score = least_score;
   is_used_.assign(arcs_.size(), 0);
@@ -154,7 +164,7 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
     const Arc& arc = arcs_[i];
     if (is_used_[i] != 0 || arc.turn_rad < kLeastSingleTurn) continue;
-    try_fit(arc.moments, arc.length_px(), arc.polarity, thresholds);
+    try_arcs({&arc}, thresholds);
   }
 }
 
@@ -170,43 +180,67 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
       if (is_used_[i] != 0 || is_used_[k] != 0 || a.polarity != b.polarity) continue;
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
       if (++pairs > kMostPairs) return;
-      Moments both = a.moments;
-      both.add(b.moments);
-      try_fit(both, a.length_px() + b.length_px(), a.polarity, thresholds);
+      try_arcs({&a, &b}, thresholds);
     }
   }
 }
 
-void ArcDetector::try_fit(const Moments& moments,
-                          double length_px,
-                          Polarity polarity,
-                          const Thresholds& thresholds) {
+void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds) {
+  const Arc& first = **arcs.begin();
+  Moments moments = first.moments;
+  double length_px = first.length_px();
+  for (const Arc* other : std::span(arcs).subspan(1)) {
+    moments.add(other->moments);
+    length_px += other->length_px();
+  }
   const auto fit = fit_with_residual(moments);
-  if (!fit || fit->rms_px > fit_limit(fit->ellipse, length_px)) return;
-  try_ellipse({fit->ellipse, polarity, length_px}, thresholds);
+  VerifiedEllipse verified;
+  Verdict verdict = {Reason::kNoEllipse};
+  if (fit) {
+    verdict = examine({fit->ellipse, first.polarity, length_px, fit->rms_px}, thresholds, verified);
+  }
+  if (trace_ != nullptr) {
+    TracedPiece pieces[2];
+    std::transform(arcs.begin(), arcs.end(), pieces, [](const Arc* arc) {
+      return TracedPiece{arc->begin, arc->end};
+    });
+    const std::optional<Ellipse> guess = fit ? std::optional(fit->ellipse) : std::nullopt;
+    verified.candidate = trace_->add({pieces, arcs.size()}, guess, verdict);
+  }
+  if (verdict.is_accepted()) add(verified);
 }
 
-void ArcDetector::try_ellipse(const Guess& guess, const Thresholds& thresholds) {
-  const auto& [ellipse, polarity, length_px] = guess;
-  if (!EllipseVerifier::is_reasonable(ellipse, map_, thresholds)) return;
+Verdict ArcDetector::examine(const Guess& guess,
+                             const Thresholds& thresholds,
+                             VerifiedEllipse& verified) {
+  const auto& [ellipse, polarity, length_px, rms_px] = guess;
+  Verdict verdict = at_most(Reason::kPoorFit, rms_px, fit_limit(ellipse, length_px));
+  if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, map_, thresholds);
+  if (verdict.is_accepted()) verdict = judge_news(guess);
+  if (verdict.is_accepted()) {
+    verdict = EllipseVerifier::judge_promise(map_, ellipse, polarity, thresholds);
+  }
+  if (!verdict.is_accepted()) return verdict;
+  verdict = verifier_.verify(map_, caution_, ellipse, polarity, thresholds, verified);
+  if (!verdict.is_accepted()) refused_.push_back(guess);
+  return verdict;
+}
+
+Verdict ArcDetector::judge_news(const Guess& guess) const {
   for (const VerifiedEllipse& known : found_) {
     const double tolerance = known.is_crumpled ? kSameCrumpled : kSameExact;
-    if (known.polarity == polarity && are_same(known.ellipse, ellipse, tolerance)) return;
+    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, tolerance)) {
+      return {Reason::kKnown};
+    }
   }
   // One from much more of its edge may do better than the one that was refused.
   for (const Guess& known : refused_) {
-    if (known.polarity == polarity && are_same(known.ellipse, ellipse, kSameRefused) &&
-        length_px < kMuchLonger * known.length_px) {
-      return;
+    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, kSameRefused) &&
+        guess.length_px < kMuchLonger * known.length_px) {
+      return {Reason::kRefused};
     }
   }
-  if (!EllipseVerifier::is_promising(map_, ellipse, polarity, thresholds)) return;
-  const auto verified = verifier_.verify(map_, caution_, ellipse, polarity, thresholds);
-  if (verified) {
-    add(*verified);
-  } else {
-    refused_.push_back(guess);
-  }
+  return {};
 }
 
 // Of two that are the same, the better one stays.
@@ -219,6 +253,7 @@ void ArcDetector::add(const VerifiedEllipse& found) {
     }
     const bool is_better = known.needs_partner != found.needs_partner ? known.needs_partner
                                                                       : found.score > known.score;
+    reject(is_better ? known.candidate : found.candidate, {Reason::kKnown});
     if (is_better) known = found;
     return;
   }
@@ -255,31 +290,69 @@ bool ArcDetector::has_partner(std::size_t i, double largest_ratio) const {
 
 // What is alone must be more than a painted arc, or a petal: whole; or, where the frame cuts it,
 // round, seen to a good part, and there without a gap.
-bool ArcDetector::stands_alone(const VerifiedEllipse& found, const Thresholds& thresholds) {
+Verdict ArcDetector::judge_alone(const VerifiedEllipse& found, const Thresholds& thresholds) {
   const double support = std::min(found.support, found.turn_support);
   const double wanted = thresholds.ellipse_overlap;
-  if (found.inside_fraction < kLoneInside) return false;
-  if (found.inside_fraction < kLoneCut && found.ellipse.aspect_ratio() > kLoneRatio) return false;
+  const Verdict inside = at_least(Reason::kLoneCut, found.inside_fraction, kLoneInside);
+  if (!inside.is_accepted()) return inside;
+  if (found.inside_fraction < kLoneCut) {
+    const double ratio = found.ellipse.aspect_ratio();
+    const Verdict flat = at_most(Reason::kLoneCutFlat, ratio, kLoneRatio);
+    if (!flat.is_accepted()) return flat;
+  }
   const double excess = found.inside_fraction < 0.5 ? kLonePartSupport : kLoneSupport;
-  return support >= wanted + excess;
+  return at_least(Reason::kLoneOpen, support, wanted + excess);
 }
 
 // Both edges of a painted line are partners too. So a thin ring has to stand alone.
-bool ArcDetector::is_credible(std::size_t i, const Thresholds& thresholds) const {
+Verdict ArcDetector::judge_credit(std::size_t i, const Thresholds& thresholds) const {
   const VerifiedEllipse& found = found_[i];
-  if (found.turn_support < kLeastTurnSupport) return false;
-  if (found.needs_partner && !has_partner(i, kThinnestRing)) return false;
-  return has_partner(i, kThickRing) || stands_alone(found, thresholds);
+  const Verdict turn = at_least(Reason::kOpenEnds, found.turn_support, kLeastTurnSupport);
+  if (!turn.is_accepted()) return turn;
+  if (found.needs_partner && !has_partner(i, kThinnestRing)) return {Reason::kNoPartner};
+  return has_partner(i, kThickRing) ? Verdict{} : judge_alone(found, thresholds);
 }
 
 void ArcDetector::report(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < found_.size(); ++i) {
     const VerifiedEllipse& found = found_[i];
-    if (!is_credible(i, thresholds)) continue;
-    if (found.on_ellipse < thresholds.contour_overlap) continue;
-    detections_.push_back({found.ellipse, found.on_ellipse, found.support, found.score});
+    Verdict verdict = judge_credit(i, thresholds);
+    if (verdict.is_accepted()) {
+      verdict = at_least(Reason::kContourOverlap, found.on_ellipse, thresholds.contour_overlap);
+    }
+    if (!verdict.is_accepted()) {
+      reject(found.candidate, verdict);
+      continue;
+    }
+    detections_.push_back(
+        {found.ellipse, found.on_ellipse, found.support, found.score, found.candidate});
     polarities_.push_back(found.polarity);
   }
+}
+
+void ArcDetector::reject(int candidate, const Verdict& verdict) {
+  if (trace_ != nullptr) trace_->revise(candidate, verdict);
+}
+
+void ArcDetector::trace_edges(const ImageView& luma, int scale) {
+  TracedPass& pass = trace_->begin_pass(luma, scale);
+  pass.edge_low = pass.edge_high = map_.threshold() / kGradientGain;
+  for (int y = 0; y < map_.height(); ++y) {
+    const std::uint8_t* row = map_.crests() + std::ptrdiff_t(y) * map_.stride();
+    for (int x = 0; x < map_.width(); ++x) pass.edges.push_back(row[x] != 0 ? 255 : 0);
+  }
+}
+
+void ArcDetector::trace_arcs() {
+  TracedPass& pass = trace_->pass();
+  for (const std::int32_t pixel : chains_.pixels()) {
+    pass.points.push_back({pixel % map_.stride(), pixel / map_.stride()});
+  }
+  for (std::size_t i = 0; i < chains_.size(); ++i) {
+    const std::size_t begin = pass.chains.empty() ? 0 : pass.chains.back().end;
+    pass.chains.push_back({begin, begin + chains_.chain(i).pixels.size()});
+  }
+  for (const Arc& arc : arcs_) pass.arcs.push_back({arc.begin, arc.end});
 }
 
 }  // namespace ellipse

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -39,25 +40,32 @@ class ArcDetector final : public Detector {
     Ellipse ellipse;
     Polarity polarity;
     double length_px;  // of the arcs that it comes from
+    double rms_px;     // and how well it fits them
   };
 
-  void detect_all(const ImageView& luma, const Thresholds& thresholds, double least_score);
+  void detect_all(const ImageView& luma,
+                  const Thresholds& thresholds,
+                  double least_score,
+                  int scale);
   [[nodiscard]] bool detect_at_half_size(const ImageView& luma, const Thresholds& thresholds);
   void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
-  void try_fit(const Moments& moments,
-               double length_px,
-               Polarity polarity,
-               const Thresholds& thresholds);
-  void try_ellipse(const Guess& guess, const Thresholds& thresholds);
+  void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
+  [[nodiscard]] Verdict examine(const Guess& guess,
+                                const Thresholds& thresholds,
+                                VerifiedEllipse& verified);
+  [[nodiscard]] Verdict judge_news(const Guess& guess) const;
   void add(const VerifiedEllipse& found);
   void use_arcs_on(const VerifiedEllipse& found);
   [[nodiscard]] bool has_partner(std::size_t i, double largest_ratio) const;
-  [[nodiscard]] bool is_credible(std::size_t i, const Thresholds& thresholds) const;
-  [[nodiscard]] static bool stands_alone(const VerifiedEllipse& found,
-                                         const Thresholds& thresholds);
+  [[nodiscard]] Verdict judge_credit(std::size_t i, const Thresholds& thresholds) const;
+  [[nodiscard]] static Verdict judge_alone(const VerifiedEllipse& found,
+                                           const Thresholds& thresholds);
   void report(const Thresholds& thresholds);
+  void reject(int candidate, const Verdict& verdict);
+  void trace_edges(const ImageView& luma, int scale);
+  void trace_arcs();
 
   Scaler scaler_;
   GradientMap map_;

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "core/detection_trace.hpp"
 #include "core/ellipse_fit.hpp"
 #include "core/overlap.hpp"
 
@@ -160,25 +161,31 @@ bool is_known(const Ellipse& e, std::span<const Detection> known) {
 }
 
 // [Keipour2021] Algorithm 1, the body of its loop after the contour's size: every rejection in the
-// paper's order.
-std::optional<Detection> examine(std::span<const cv::Point> contour,
-                                 const EdgeField& field,
-                                 const ImageView& thick_edges,
-                                 const Thresholds& limits,
-                                 std::span<const Detection> known) {
+// paper's order. Whatever ellipse there is to judge is in `found`.
+Verdict examine(std::span<const cv::Point> contour,
+                const EdgeField& field,
+                const ImageView& thick_edges,
+                const Thresholds& limits,
+                std::span<const Detection> known,
+                Detection& found) {
   const std::optional<Ellipse> e = fit_contour(contour, field);
-  if (!e) return std::nullopt;
-  if (!limits.admit_axes_of(*e)) return std::nullopt;
+  if (!e) return {Reason::kNoEllipse};
+  found.ellipse = *e;
+  Verdict verdict = limits.judge_axes_of(*e);
+  if (!verdict.is_accepted()) return verdict;
 
   const double on_ellipse = contour_overlap(contour, *e);
-  if (on_ellipse < limits.contour_overlap) return std::nullopt;
-  const Detection found = scored(*e, on_ellipse, thick_edges);
-  if (found.ellipse_overlap < limits.ellipse_overlap) return std::nullopt;
-  if (is_known(*e, known)) return std::nullopt;  // from the other side of the same edge
+  verdict = at_least(Reason::kContourOverlap, on_ellipse, limits.contour_overlap);
+  if (!verdict.is_accepted()) return verdict;
+  found = scored(*e, on_ellipse, thick_edges);
+  verdict = at_least(Reason::kEllipseOverlap, found.ellipse_overlap, limits.ellipse_overlap);
+  if (!verdict.is_accepted()) return verdict;
+  if (is_known(*e, known)) return {Reason::kKnown};  // from the other side of the same edge
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
   const bool is_better =
       better.ellipse_overlap >= found.ellipse_overlap && limits.admit_axes_of(better.ellipse);
-  return is_better ? better : found;
+  if (is_better) found = better;
+  return {};
 }
 
 // Whether a contour turns sharply at one of its pixels.
@@ -204,6 +211,12 @@ void for_each_smooth_part(std::span<const cv::Point> contour, const Use& use) {
 
 ImageView view_of(const cv::Mat& mat) {
   return {mat.data, mat.cols, mat.rows, static_cast<std::ptrdiff_t>(mat.step)};
+}
+
+TracedPiece traced(std::span<const cv::Point> contour, TracedPass& pass) {
+  const std::size_t begin = pass.points.size();
+  for (const cv::Point& pixel : contour) pass.points.push_back({pixel.x, pixel.y});
+  return {begin, pass.points.size()};
 }
 
 }  // namespace
@@ -243,31 +256,69 @@ void ContourDetector::add_detection(const Detection& detection) {
   detections_.resize(kMostDetections);
 }
 
+void ContourDetector::trace_edges(const ImageView& luma) {
+  trace_->clear();
+  TracedPass& pass = trace_->begin_pass(luma, 1);
+  pass.edge_low = edge_thresholds_.low;
+  pass.edge_high = edge_thresholds_.high;
+  pass.edges.assign(edges_.begin<std::uint8_t>(), edges_.end<std::uint8_t>());
+}
+
+// [Keipour2021] Algorithm 1, the loop's first test.
+void ContourDetector::drop_short_contours(int least_size) {
+  std::erase_if(contours_, [&](const auto& contour) {
+    const auto length = static_cast<double>(contour.size());
+    const Verdict verdict = at_least(Reason::kContourTooShort, length, least_size);
+    if (trace_ != nullptr && !verdict.is_accepted()) {
+      const TracedPiece piece = traced(contour, trace_->pass());
+      trace_->pass().chains.push_back(piece);
+      (void)trace_->add({&piece, 1}, {}, verdict);
+    }
+    return !verdict.is_accepted();
+  });
+}
+
+void ContourDetector::try_contour(std::span<const cv::Point> contour,
+                                  const Thresholds& thresholds,
+                                  std::vector<TracedPiece> TracedPass::*stage) {
+  const EdgeField field{edges_, gradient_x_, gradient_y_};
+  Detection found;
+  const Verdict verdict =
+      examine(contour, field, view_of(thick_edges_), thresholds, detections_, found);
+  if (trace_ != nullptr) {
+    const bool has_ellipse = verdict.reason != Reason::kNoEllipse;
+    const TracedPiece piece = traced(contour, trace_->pass());
+    (trace_->pass().*stage).push_back(piece);
+    found.candidate = trace_->add(
+        {&piece, 1}, has_ellipse ? std::optional(found.ellipse) : std::nullopt, verdict);
+  }
+  if (verdict.is_accepted()) add_detection(found);
+}
+
+// Gaps and occluders join an ellipse's edge with others: what is between the corners may be it.
+void ContourDetector::try_parts(const Thresholds& thresholds) {
+  for (const auto& contour : contours_) {
+    for_each_smooth_part(contour, [&](std::span<const cv::Point> part) {
+      if (std::ssize(part) >= kLeastPartPx) try_contour(part, thresholds, &TracedPass::arcs);
+    });
+  }
+}
+
 std::span<const Detection> ContourDetector::detect(const ImageView& luma,
                                                    const Thresholds& thresholds) {
   detections_.clear();
-  if (luma.empty()) return detections_;
+  if (luma.empty()) {
+    if (trace_ != nullptr) trace_->clear();
+    return detections_;
+  }
   detect_edges(luma, thresholds);
+  if (trace_ != nullptr) trace_edges(luma);
   cv::dilate(edges_, thick_edges_, cv::Mat());
   cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
-  const EdgeField field{edges_, gradient_x_, gradient_y_};
-  const ImageView thick = view_of(thick_edges_);
-  const auto try_contour = [&](std::span<const cv::Point> contour) {
-    const auto detection = examine(contour, field, thick, thresholds, detections_);
-    if (detection) add_detection(*detection);
-  };
-  std::erase_if(contours_, [&](const auto& contour) {
-    return std::ssize(contour) < thresholds.min_contour_size;
-  });
-  for (const auto& contour : contours_) try_contour(contour);
-  if (!detections_.empty()) return detections_;
-
-  // Gaps and occluders join an ellipse's edge with others: what is between the corners may be it.
-  for (const auto& contour : contours_) {
-    for_each_smooth_part(contour, [&](std::span<const cv::Point> part) {
-      if (std::ssize(part) >= kLeastPartPx) try_contour(part);
-    });
-  }
+  drop_short_contours(thresholds.min_contour_size);
+  for (const auto& contour : contours_) try_contour(contour, thresholds, &TracedPass::chains);
+  if (detections_.empty()) try_parts(thresholds);
+  if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
 

@@ -7,6 +7,9 @@
 
 namespace ellipse {
 
+struct TracedPass;
+struct TracedPiece;
+
 /// Canny's two thresholds [grey levels / px].
 struct EdgeThresholds {
   double low = 0.0;
@@ -30,6 +33,12 @@ class ContourDetector final : public Detector {
  private:
   void add_detection(const Detection& detection);
   void detect_edges(const ImageView& luma, const Thresholds& thresholds);
+  void drop_short_contours(int least_size);
+  void try_contour(std::span<const cv::Point> contour,
+                   const Thresholds& thresholds,
+                   std::vector<TracedPiece> TracedPass::*stage);
+  void try_parts(const Thresholds& thresholds);
+  void trace_edges(const ImageView& luma);
 
   cv::Mat smooth_;
   cv::Mat gradient_x_;

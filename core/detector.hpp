@@ -8,12 +8,15 @@
 
 namespace ellipse {
 
+class DetectionTrace;
+
 /// An ellipse that passed every test of a detector.
 struct Detection {
   Ellipse ellipse;               ///< [px] of the picture that was searched.
   double contour_overlap = 0.0;  ///< [Keipour2021] Eq. (1).
   double ellipse_overlap = 0.0;  ///< [Keipour2021] Eq. (2).
   double score = 0.0;            ///< Evidence for it; comparable within one detector only.
+  int candidate = -1;            ///< Its number in a DetectionTrace; -1 without one.
 };
 
 /// The two thresholds that say how well an ellipse must fit; [Keipour2021] Table I.
@@ -41,6 +44,13 @@ class Detector {
   [[nodiscard]] virtual Overlaps detecting_overlaps() const = 0;
   /// The lowered ones, for the surroundings of a target that is being tracked.
   [[nodiscard]] virtual Overlaps tracking_overlaps() const = 0;
+
+  /// Every call of detect() from now on tells there what it sees, and why it refuses what it
+  /// refuses; nullptr = no more. The detections stay the same to the bit. Borrowed.
+  void set_trace(DetectionTrace* trace) { trace_ = trace; }
+
+ protected:
+  DetectionTrace* trace_ = nullptr;
 };
 
 }  // namespace ellipse

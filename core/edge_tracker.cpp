@@ -89,6 +89,7 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   if (!model) return false;
   model_ = std::move(*model);
   line_learner_.reserve(model_);
+  line_learner_.start();
   gain_ = 1.0;
   surprise_ = 1.0;
   misses_ = 0;
@@ -320,7 +321,10 @@ void EdgeTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) 
       attempt.support.coverage < kCoverageToLearn) {
     return;
   }
-  line_learner_.learn(window.luma, shifted(view_, -window.origin_px), model_);
+  line_learner_.take(window.luma, shifted(view_, -window.origin_px));
+  if (!line_learner_.is_ready()) return;
+  line_learner_.learn(model_);
+  line_learner_.start();
   learned_radius_px_ = radius;
   motion_.pose(5, 5) += kTurnOfLearnedLines * kTurnOfLearnedLines;
 }

@@ -17,6 +17,7 @@ using Levels = std::array<double, 4>;
 constexpr double kFirstSupport = 0.76;   // of the wanted support, before the first step
 constexpr double kSecondSupport = 0.91;  // after the first step
 constexpr std::size_t kLeastHits = 16;
+constexpr std::size_t kLeastHitsOfStep = 8;
 constexpr double kFirstScore = 0.7;           // of the least, on the way
 constexpr double kScoreOfPart = 1.94;         // of the least, where little of it is inside
 constexpr double kPart = 0.35;                // of the perimeter
@@ -90,10 +91,18 @@ VerifiedEllipse described(const Ellipse& e,
   return result;
 }
 
-bool is_long_enough(const PerimeterEvidence& evidence, const Thresholds& thresholds) {
-  const double least = thresholds.min_contour_size;
-  return evidence.inside_px >= least &&
-         kContourSizeOfLength * evidence.inside_px * evidence.support >= least;
+Verdict judge_length(const PerimeterEvidence& evidence, const Thresholds& thresholds) {
+  const double length_px = kContourSizeOfLength * evidence.inside_px * evidence.support;
+  return at_least(Reason::kContourTooShort, length_px, thresholds.min_contour_size);
+}
+
+Verdict judge_support(const PerimeterEvidence& evidence, double wanted) {
+  return at_least(Reason::kEllipseOverlap, evidence.support, wanted);
+}
+
+Verdict judge_count(std::span<const EdgeHit> hits, std::size_t least) {
+  return at_least(
+      Reason::kTooFewEdges, static_cast<double>(hits.size()), static_cast<double>(least));
 }
 
 }  // namespace
@@ -117,43 +126,52 @@ double EllipseVerifier::crumple_px(const Ellipse& e) {
   return std::min(kMostCrumplePx, 1.5 + kCrumpleRelative * radius_of(e));
 }
 
-bool EllipseVerifier::is_reasonable(const Ellipse& e,
-                                    const GradientMap& map,
-                                    const Thresholds& thresholds) {
-  if (!thresholds.admit_axes_of(e)) return false;
-  return e.cx > -map.width() && e.cx < 2 * map.width() && e.cy > -map.height() &&
-         e.cy < 2 * map.height();
+Verdict EllipseVerifier::judge_shape(const Ellipse& e,
+                                     const GradientMap& map,
+                                     const Thresholds& thresholds) {
+  const Verdict axes = thresholds.judge_axes_of(e);
+  if (!axes.is_accepted()) return axes;
+  const auto judge_place = [](double center, int size) {
+    return at_most(Reason::kFarOutside, std::abs(center / size - 0.5) - 0.5, 1.0);
+  };
+  const Verdict column = judge_place(e.cx, map.width());
+  return column.is_accepted() ? judge_place(e.cy, map.height()) : column;
 }
 
 // One Gauss-Newton step with Tukey's weights over the hits of the last probe.
-bool EllipseVerifier::improve(const Request& request, Ellipse& e, double reach_px) const {
-  if (probe_.hits().size() < 8) return false;
+Verdict EllipseVerifier::improve(const Request& request, Ellipse& e, double reach_px) const {
+  Verdict verdict = judge_count(probe_.hits(), kLeastHitsOfStep);
+  if (!verdict.is_accepted()) return verdict;
   GeometricFit fit(e);
   for (const EdgeHit& hit : probe_.hits()) {
     const double weight = hit.weight * tukey_weight(hit.offset.distance_px, reach_px);
     if (weight > 0.0) fit.add(hit.offset, weight);
   }
   const auto better = fit.solve();
-  if (!better || !is_reasonable(*better, request.map, request.thresholds)) return false;
-  e = *better;
-  return true;
+  if (!better) return {Reason::kNoEllipse};
+  verdict = judge_shape(*better, request.map, request.thresholds);
+  if (verdict.is_accepted()) e = *better;
+  return verdict;
 }
 
 // From the guess to the edges, with a narrowing reach.
-bool EllipseVerifier::approach(const Request& request, Ellipse& e) {
+Verdict EllipseVerifier::approach(const Request& request, Ellipse& e) {
   const int samples = samples_for(e);
   const double wanted = request.thresholds.ellipse_overlap;
   const auto probe = [&](int tolerance_px) {
     return probe_.probe(request.map, e, request.polarity, samples, tolerance_px);
   };
-  if (probe(3).support < kSecondSupport * wanted) return false;
-  if (!improve(request, e, 4.0)) return false;
+  Verdict verdict = judge_support(probe(3), kSecondSupport * wanted);
+  if (verdict.is_accepted()) verdict = improve(request, e, 4.0);
+  if (!verdict.is_accepted()) return verdict;
   const PerimeterEvidence evidence = probe(2);
-  if (evidence.support < wanted) return false;
-  if (!improve(request, e, 2.5)) return false;
+  verdict = judge_support(evidence, wanted);
+  if (verdict.is_accepted()) verdict = improve(request, e, 2.5);
+  if (!verdict.is_accepted()) return verdict;
   const double score = best_significance(
       evidence.levels, evidence.inside_px, request.caution.edge_density, 0.0, 0.5);
-  if (score < kFirstScore * request.caution.least_score) return false;
+  verdict = at_least(Reason::kUnlikely, score, kFirstScore * request.caution.least_score);
+  if (!verdict.is_accepted()) return verdict;
   (void)probe(2);
   return improve(request, e, 2.0);
 }
@@ -170,27 +188,34 @@ double EllipseVerifier::median_direction_error() {
   return median(values_);
 }
 
-std::optional<VerifiedEllipse> EllipseVerifier::verify_exact(const Request& request) {
+Verdict EllipseVerifier::verify_exact(const Request& request, VerifiedEllipse& result) {
   Ellipse e = request.guess;
-  if (!approach(request, e)) return std::nullopt;
+  Verdict verdict = approach(request, e);
+  if (!verdict.is_accepted()) return verdict;
   const PerimeterEvidence found =
       probe_.probe(request.map, e, request.polarity, std::min(256, 2 * samples_for(e)), 1);
-  if (found.support < request.thresholds.ellipse_overlap || probe_.hits().size() < kLeastHits) {
-    return std::nullopt;
-  }
+  verdict = judge_support(found, request.thresholds.ellipse_overlap);
+  if (verdict.is_accepted()) verdict = judge_count(probe_.hits(), kLeastHits);
+  if (!verdict.is_accepted()) return verdict;
   const double score =
       best_significance(found.levels, found.inside_px, request.caution.edge_density, 0.0, 0.5);
   const double part = found.inside_fraction < kPart ? kScoreOfPart : 1.0;
-  if (score < part * request.caution.least_score) return std::nullopt;
-  if (median_direction_error() > direction_limit(0.055, 0.55, found.signal_to_noise)) {
-    return std::nullopt;
-  }
+  verdict = at_least(Reason::kUnlikely, score, part * request.caution.least_score);
+  if (!verdict.is_accepted()) return verdict;
+  verdict = at_most(Reason::kWrongDirection,
+                    median_direction_error(),
+                    direction_limit(0.055, 0.55, found.signal_to_noise));
+  if (!verdict.is_accepted()) return verdict;
   // 1.48 medians are a standard deviation. Blurred edges are less certain.
   const double spread_limit = direction_limit(0.10, 2.0, found.signal_to_noise) +
                               3.0 * std::max(0.0, 0.42 - found.sharpness);
-  if (found.levels[1] < 0.9 && 1.48 * median_residual() > spread_limit) return std::nullopt;
-  if (!is_long_enough(found, request.thresholds)) return std::nullopt;
-  return described(e, request.polarity, found, found.levels, score);
+  if (found.levels[1] < 0.9) {
+    verdict = at_most(Reason::kScattered, 1.48 * median_residual(), spread_limit);
+    if (!verdict.is_accepted()) return verdict;
+  }
+  verdict = judge_length(found, request.thresholds);
+  if (verdict.is_accepted()) result = described(e, request.polarity, found, found.levels, score);
+  return verdict;
 }
 
 // The residual along the perimeter is fitted by a line over a few degrees to both sides of each
@@ -258,15 +283,15 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& r
   };
   const double wanted = request.thresholds.ellipse_overlap;
   if (probe(std::max(32, samples / 2)).support < wanted) return std::nullopt;
-  if (!improve(request, e, 1.6 * reach_px)) return std::nullopt;
+  if (!improve(request, e, 1.6 * reach_px).is_accepted()) return std::nullopt;
   for (int step = 0; step < 2; ++step) {
     if (probe(samples).support < std::max(kCrumpledSupport, wanted)) return std::nullopt;
-    if (!improve(request, e, 1.4 * reach_px)) return std::nullopt;
+    if (!improve(request, e, 1.4 * reach_px).is_accepted()) return std::nullopt;
   }
   const int fine = std::min(256, 2 * samples);
   const PerimeterEvidence found = probe(fine);
   if (found.support < std::max(kCrumpledSupport, wanted)) return std::nullopt;
-  if (probe_.hits().size() < kLeastHits || !is_long_enough(found, request.thresholds)) {
+  if (probe_.hits().size() < kLeastHits || !judge_length(found, request.thresholds).is_accepted()) {
     return std::nullopt;
   }
   const Smoothness smooth = smoothness(fine, found);
@@ -287,28 +312,36 @@ std::optional<VerifiedEllipse> EllipseVerifier::verify_crumpled(const Request& r
   return std::nullopt;
 }
 
-bool EllipseVerifier::is_promising(const GradientMap& map,
-                                   const Ellipse& guess,
-                                   Polarity polarity,
-                                   const Thresholds& thresholds) {
+Verdict EllipseVerifier::judge_promise(const GradientMap& map,
+                                       const Ellipse& guess,
+                                       Polarity polarity,
+                                       const Thresholds& thresholds) {
   const double wanted = thresholds.ellipse_overlap;
   const int samples = std::max(32, samples_for(guess) / 2);
   const double first = kFirstSupport * wanted;
-  if (perimeter_support(map, guess, polarity, samples, 2, first) >= first) return true;
+  const Verdict exact = at_least(
+      Reason::kEllipseOverlap, perimeter_support(map, guess, polarity, samples, 2, first), first);
+  if (exact.is_accepted()) return exact;
   const double reach_px = crumple_px(guess);
-  if (reach_px < 2.2) return false;
+  if (reach_px < 2.2) return exact;
   const int tolerance_px = static_cast<int>(std::lround(reach_px));
-  return perimeter_support(map, guess, polarity, 32, tolerance_px, wanted) >= wanted;
+  const double crumpled = perimeter_support(map, guess, polarity, 32, tolerance_px, wanted);
+  return crumpled >= wanted ? Verdict{} : exact;
 }
 
-std::optional<VerifiedEllipse> EllipseVerifier::verify(const GradientMap& map,
-                                                       const Caution& caution,
-                                                       const Ellipse& guess,
-                                                       Polarity polarity,
-                                                       const Thresholds& thresholds) {
+Verdict EllipseVerifier::verify(const GradientMap& map,
+                                const Caution& caution,
+                                const Ellipse& guess,
+                                Polarity polarity,
+                                const Thresholds& thresholds,
+                                VerifiedEllipse& found) {
   const Request request{map, caution, guess, polarity, thresholds};
-  if (auto exact = verify_exact(request)) return exact;
-  return verify_crumpled(request);
+  const Verdict exact = verify_exact(request, found);
+  if (exact.is_accepted()) return exact;
+  const auto crumpled = verify_crumpled(request);
+  if (!crumpled) return exact;
+  found = *crumpled;
+  return {};
 }
 
 }  // namespace ellipse

@@ -22,6 +22,7 @@ struct VerifiedEllipse {
   double score = 0.0;            ///< Significance: -ln of the odds that chance made it [nats].
   bool is_crumpled = false;      ///< Its edge leaves the ellipse, smoothly.
   bool needs_partner = false;    ///< Too little by itself: counts beside a concentric one only.
+  int candidate = -1;            ///< As in Detection.
 };
 
 /// What it takes to tell an ellipse from chance in a picture.
@@ -39,22 +40,25 @@ struct Caution {
 class EllipseVerifier {
  public:
   /// A quick look: whether enough edges are near the guess.
-  [[nodiscard]] static bool is_promising(const GradientMap& map,
-                                         const Ellipse& guess,
-                                         Polarity polarity,
-                                         const Thresholds& thresholds);
+  [[nodiscard]] static Verdict judge_promise(const GradientMap& map,
+                                             const Ellipse& guess,
+                                             Polarity polarity,
+                                             const Thresholds& thresholds);
 
-  /// @param thresholds    Axes, ratio, overlaps and contour size.
-  [[nodiscard]] std::optional<VerifiedEllipse> verify(const GradientMap& map,
-                                                      const Caution& caution,
-                                                      const Ellipse& guess,
-                                                      Polarity polarity,
-                                                      const Thresholds& thresholds);
+  /// @param thresholds  Axes, ratio, overlaps and contour size.
+  /// @param found       Written where it is accepted.
+  /// @return Why not, as an exact ellipse: as a crumpled one it was refused too.
+  [[nodiscard]] Verdict verify(const GradientMap& map,
+                               const Caution& caution,
+                               const Ellipse& guess,
+                               Polarity polarity,
+                               const Thresholds& thresholds,
+                               VerifiedEllipse& found);
 
   /// Whether axes, ratio and place are such that it is worth a look.
-  [[nodiscard]] static bool is_reasonable(const Ellipse& e,
-                                          const GradientMap& map,
-                                          const Thresholds& thresholds);
+  [[nodiscard]] static Verdict judge_shape(const Ellipse& e,
+                                           const GradientMap& map,
+                                           const Thresholds& thresholds);
 
   /// How far the edge of a crumpled pad of this size may leave its ellipse [px].
   [[nodiscard]] static double crumple_px(const Ellipse& e);
@@ -62,10 +66,10 @@ class EllipseVerifier {
  private:
   struct Request;
 
-  [[nodiscard]] std::optional<VerifiedEllipse> verify_exact(const Request& request);
+  [[nodiscard]] Verdict verify_exact(const Request& request, VerifiedEllipse& result);
   [[nodiscard]] std::optional<VerifiedEllipse> verify_crumpled(const Request& request);
-  [[nodiscard]] bool approach(const Request& request, Ellipse& e);
-  [[nodiscard]] bool improve(const Request& request, Ellipse& e, double reach_px) const;
+  [[nodiscard]] Verdict approach(const Request& request, Ellipse& e);
+  [[nodiscard]] Verdict improve(const Request& request, Ellipse& e, double reach_px) const;
   [[nodiscard]] double median_residual();
   [[nodiscard]] double median_direction_error();
   struct Smoothness;

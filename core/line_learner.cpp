@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/line_learner.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +9,7 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kSize = 208;       // of the pad from above [px]
-constexpr double kExtent = 1.0;  // radii from its middle to its border
-constexpr double kPixel = 2.0 * kExtent / kSize;
+constexpr int kParts = 8;
 constexpr double kStraightPx = 1.2;     // most that a line leaves its chord
 constexpr double kLeastLength = 0.1;    // [radii]
 constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, all along it
@@ -18,8 +17,8 @@ constexpr double kLargestRadius = 0.97;
 constexpr double kShortened = 0.02;  // at both ends, where the direction turns
 constexpr double kContrastShare = 0.3;
 constexpr std::size_t kRoom = 4 * LineLearner::kMostLines;
-constexpr std::size_t kMostChains = kSize * kSize / 40 + 8;  // a quarter are crests, 10 a chain
-constexpr double kGradientOfStep = 48.0;  // the crest of GradientMap's gradient, per grey level
+constexpr std::size_t kCrestsOfChain = 10;  // fewer are rare; a quarter of the pixels are crests
+constexpr double kGradientOfStep = 48.0;    // the crest of GradientMap's gradient, per grey level
 
 }  // namespace
 
@@ -28,28 +27,36 @@ void LineLearner::reserve(PadModel& model) {
   if (!pixels_.empty()) return;
   pixels_.assign(static_cast<std::size_t>(kSize) * kSize, 0);
   lines_.reserve(kRoom);
-  chains_.reserve(kMostChains);
+  chains_.reserve(pixels_.size() / 4 / kCrestsOfChain + 8);
   map_.compute({pixels_.data(), kSize, kSize, kSize}, 1.0, 0.0);
   chains_.trace(map_);
 }
 
 // Pixels that the picture does not show are 0, and no others.
-void LineLearner::rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
-  pixels_.resize(static_cast<std::size_t>(kSize) * kSize);
-  for (int j = 0; j < kSize; ++j) {
-    const double y = -kExtent + (j + 0.5) * kPixel;
-    Eigen::Vector3d at = image_from_pad * Eigen::Vector3d(-kExtent + 0.5 * kPixel, y, 1.0);
-    const Eigen::Vector3d step = kPixel * image_from_pad.col(0);
-    for (int i = 0; i < kSize; ++i, at += step) {
-      const double u = at.x() / at.z();
-      const double v = at.y() / at.z();
-      const bool is_inside =
-          at.z() > 0.0 && u >= 0.0 && v >= 0.0 && u < luma.width - 1 && v < luma.height - 1;
-      const float level =
-          is_inside ? std::max(1.0F, luma.at(static_cast<float>(u), static_cast<float>(v)) + 0.5F)
-                    : 0.0F;
-      const int pixel = j * kSize + i;
-      pixels_[static_cast<std::size_t>(pixel)] = static_cast<std::uint8_t>(level);
+void LineLearner::take(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
+  const Eigen::Matrix3f view = image_from_pad.cast<float>();
+  const Eigen::Vector3f step = kPixel * view.col(0);
+  constexpr float kBorder = 1.01F;  // whose hundredth is for rounding
+  const float right = static_cast<float>(luma.width) - kBorder;
+  const float bottom = static_cast<float>(luma.height) - kBorder;
+  const auto is_inside = [&](const Eigen::Vector3f& at) {
+    return at.z() > 0.0F && at.x() >= 0.0F && at.y() >= 0.0F && at.x() < right * at.z() &&
+           at.y() < bottom * at.z();
+  };
+  const int end = std::min(kSize, rows_ + kSize / kParts);
+  for (; rows_ < end; ++rows_) {
+    const Eigen::Vector2f first = place_of(0, rows_).cast<float>();
+    const Eigen::Vector3f begin = view * first.homogeneous();
+    const Eigen::Vector3f last = begin + static_cast<float>(kSize - 1) * step;
+    const bool is_whole = is_inside(begin) && is_inside(last);  // so is all between
+    std::uint8_t* pixel = pixels_.data() + static_cast<std::ptrdiff_t>(rows_) * kSize;
+    for (int i = 0; i < kSize; ++i) {
+      const Eigen::Vector3f at = begin + static_cast<float>(i) * step;
+      const bool is_shown = is_whole || is_inside(at);
+      const float near = 1.0F / at.z();
+      pixel[i] = is_shown ? static_cast<std::uint8_t>(
+                                std::max(1.0F, luma.at(near * at.x(), near * at.y()) + 0.5F))
+                          : std::uint8_t{0};
     }
   }
 }
@@ -74,15 +81,15 @@ void LineLearner::forget_crests_at_border() {
   }
 }
 
-Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
-  const Eigen::Vector2i at(pixel % map_.stride(), pixel / map_.stride());
-  return kPixel * (at.cast<double>().array() + 0.5) - kExtent;
+Eigen::Vector2d LineLearner::place_of(int column, int row) {
+  return kPixel * (Eigen::Array2d(column, row) + 0.5) - 1.0;
 }
 
-void LineLearner::learn(const ImageView& luma,
-                        const Eigen::Matrix3d& image_from_pad,
-                        PadModel& model) {
-  rectify(luma, image_from_pad);
+Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
+  return place_of(pixel % map_.stride(), pixel / map_.stride());
+}
+
+void LineLearner::learn(PadModel& model) {
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
   const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
   map_.compute(above, least / kGradientGain, 0.0);

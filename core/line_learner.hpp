@@ -17,26 +17,39 @@ namespace ellipse {
 /// made of. The pad is seen from above, its edges are traced, and cut into straight parts.
 class LineLearner {
  public:
-  /// Allocates all that learn() needs, once.
+  /// Allocates all that take() and learn() need, once.
   void reserve(PadModel& model);
 
+  /// Begins a new picture of the pad from above.
+  void start() { rows_ = 0; }
+  /// Adds the next rows of that picture, an eighth of it, so that no frame pays for all. The frames
+  /// may differ: each shows the pad where its view says. Allocates nothing after reserve().
   /// @param image_from_pad  Exact to about a pixel.
+  void take(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  /// Whether the picture is whole.
+  [[nodiscard]] bool is_ready() const { return rows_ == kSize; }
+
+  /// From a whole picture.
   /// @param model  Its circles tell what is no line, and what contrast to expect; its lines are
   ///               replaced. At most kMostLines, the longest.
   /// Allocates nothing after reserve().
-  void learn(const ImageView& luma, const Eigen::Matrix3d& image_from_pad, PadModel& model);
+  void learn(PadModel& model);
 
   static constexpr std::size_t kMostLines = 24;
 
  private:
-  void rectify(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  static constexpr int kSize = 208;              // of the pad from above [px]
+  static constexpr double kPixel = 2.0 / kSize;  // [radii]
+
   void forget_crests_at_border();
   void split(std::span<const std::int32_t> pixels, const PadModel& model);
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
   void keep_longest();
+  [[nodiscard]] static Eigen::Vector2d place_of(int column, int row);
   [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
 
   std::vector<std::uint8_t> pixels_;  // the pad from above
+  int rows_ = 0;                      // that are there
   GradientMap map_;
   ChainTracer chains_;
   std::vector<PadLine> lines_;

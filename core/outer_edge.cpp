@@ -15,6 +15,7 @@ namespace {
 constexpr double kLeastContrast = 0.3;  // of the expected one
 constexpr double kCrestOfStep = 48.0;   // of GradientMap's gradient, per grey level
 constexpr double kLeastSupport = 0.5;   // share of the perimeter with a crest
+constexpr int kPlaces = 48;             // half of what the detector takes: each frame pays
 constexpr double kThinRingPx = 6.0;
 constexpr double kReachOfNextEdgePx = 2.0;  // its blur
 constexpr double kNearPx = 1.0;
@@ -35,14 +36,15 @@ std::optional<Ellipse> on_crests(const ImageView& luma,
                                  double least_contrast) {
   const double least = kCrestOfStep * least_contrast;
   const bool is_bright_outside = model.circles.front().is_bright_outside;
-  const auto edge = refined_on_picture(luma, outer, polarity_of(is_bright_outside), least);
+  const auto edge = refined_on_picture(luma, outer, polarity_of(is_bright_outside), least, kPlaces);
   if (!edge || edge->support < kLeastSupport) return std::nullopt;
   const bool is_ring =
       model.circles.size() > 1 && model.circles[1].is_bright_outside != is_bright_outside;
   if (!is_ring || ring_px >= kThinRingPx) return edge->ellipse;
   const auto inner = project_circle(image_from_pad, model.circles[1].radius);
   if (!inner) return edge->ellipse;
-  const auto next = refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least);
+  const auto next =
+      refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces);
   if (!next || next->support < kLeastSupport) return edge->ellipse;
   return without_repulsion({edge->ellipse, next->ellipse}).outer;
 }

@@ -12,7 +12,6 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kSamples = 96;
 constexpr int kReach = 2;   // pixels to both sides
 constexpr int kBorder = 3;  // of the 5 x 5 kernels and the parabola
 constexpr double kLeastCosine = 0.87;
@@ -58,22 +57,21 @@ std::optional<Crest> crest_across(const ImageView& luma,
 
 }  // namespace
 
-std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
-                                                 const Ellipse& e,
-                                                 Polarity polarity,
-                                                 double least_gradient) {
+std::optional<RefinedEllipse> refined_on_picture(
+    const ImageView& luma, const Ellipse& e, Polarity polarity, double least_gradient, int places) {
+  places = std::min(places, kMostPlaces);
   const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
   const Eigen::Vector2d across(-axis.y(), axis.x());
   const double sign = static_cast<int>(polarity);
-  std::array<Eigen::Vector2d, kSamples> points;
-  std::array<double, kSamples> lengths{};
+  std::array<Eigen::Vector2d, kMostPlaces> points;
+  std::array<double, kMostPlaces> lengths{};
   std::size_t count = 0;
   int inside = 0;
   double heights = 0.0;
-  const double step = 2.0 * std::numbers::pi / kSamples;
+  const double step = 2.0 * std::numbers::pi / places;
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd(step).toRotationMatrix();
   Eigen::Vector2d anomaly(1.0, 0.0);
-  for (std::size_t i = 0; i < kSamples; ++i, anomaly = turn * anomaly) {
+  for (int i = 0; i < places; ++i, anomaly = turn * anomaly) {
     const double u = anomaly.x();
     const double v = anomaly.y();
     const Eigen::Vector2d foot = e.center() + e.semi_major * u * axis + e.semi_minor * v * across;

@@ -15,14 +15,18 @@ struct RefinedEllipse {
   double gradient = 0.0;  ///< Mean of these crests [units of Gradient].
 };
 
+inline constexpr int kMostPlaces = 96;
+
 /// Refines an ellipse that is known within a pixel or two, on the picture itself: looks for the
 /// crest of the gradient across its perimeter at some places, and computes no gradient elsewhere.
 ///
+/// @param places  At most kMostPlaces. With fewer it is faster, and the noise tells more.
 /// @param least_gradient  Weaker crests do not count [units of Gradient].
 /// @return nullopt where too few crests are near. Allocates nothing; the time depends on no size.
 [[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
                                                                const Ellipse& e,
                                                                Polarity polarity,
-                                                               double least_gradient);
+                                                               double least_gradient,
+                                                               int places = kMostPlaces);
 
 }  // namespace ellipse

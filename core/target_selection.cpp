@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/detection_trace.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -34,16 +36,31 @@ bool are_one_edge(const Ellipse& a, const Ellipse& b) {
          std::abs(a.semi_minor - b.semi_minor) <= tolerance;
 }
 
-bool can_be_same_target(const Ellipse& candidate, const Ellipse& last) {
-  return (candidate.center() - last.center()).norm() <= last.semi_major &&
-         candidate.semi_major >= last.semi_major / kLargestGrowth &&
-         candidate.semi_major <= last.semi_major * kLargestGrowth;
+Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
+  const double apart = (candidate.center() - last.center()).norm();
+  const Verdict place = at_most(Reason::kOtherPlace, apart, last.semi_major);
+  if (!place.is_accepted()) return place;
+  const double axis = 2.0 * candidate.semi_major;
+  const double last_axis = 2.0 * last.semi_major;
+  const Verdict shrunk = at_least(Reason::kOtherSize, axis, last_axis / kLargestGrowth);
+  if (!shrunk.is_accepted()) return shrunk;
+  return at_most(Reason::kOtherSize, axis, last_axis * kLargestGrowth);
 }
 
-// Better than another member of the same set, both with enough of the set's best score.
-bool is_better(const Detection& a, const Detection& b) {
-  return are_one_edge(a.ellipse, b.ellipse) ? a.score > b.score
-                                            : a.ellipse.semi_major > b.ellipse.semi_major;
+// Beside another member of the same set, both with enough of the set's best score: only the better
+// one is accepted.
+Verdict judge_beside(const Detection& member, const Detection& other) {
+  const bool is_edge = are_one_edge(member.ellipse, other.ellipse);
+  const double own = is_edge ? member.score : 2.0 * member.ellipse.semi_major;
+  const double others = is_edge ? other.score : 2.0 * other.ellipse.semi_major;
+  if (own > others) return {};
+  return {is_edge ? Reason::kSameEdge : Reason::kInnerEdge, own, others};
+}
+
+// Of a set that is not the best.
+Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
+  if (set.has_two_edges != best.has_two_edges) return {Reason::kSingle};
+  return {Reason::kWeakerSet, set.score, best.score};
 }
 
 }  // namespace
@@ -60,14 +77,22 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
 }
 
 std::optional<Detection> select_target(std::span<const Detection> detections,
-                                       const std::optional<Ellipse>& last_target) {
-  const auto is_possible = [&](const Detection& detection) {
-    return !last_target || can_be_same_target(detection.ellipse, *last_target);
+                                       const std::optional<Ellipse>& last_target,
+                                       DetectionTrace* trace) {
+  const auto reject = [&](const Detection& detection, const Verdict& verdict) {
+    if (trace != nullptr) trace->revise(detection.candidate, verdict);
+  };
+  const auto judge_place = [&](const Detection& detection) {
+    return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
   };
   const Detection* seed = nullptr;
   ConcentricSet best;
   for (const Detection& detection : detections) {
-    if (!is_possible(detection)) continue;
+    const Verdict place = judge_place(detection);
+    if (!place.is_accepted()) {
+      reject(detection, place);
+      continue;
+    }
     const ConcentricSet set = set_around(detection.ellipse, detections);
     if (seed == nullptr || best < set) {
       seed = &detection;
@@ -78,11 +103,24 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
 
   const Detection* target = nullptr;
   for (const Detection& member : detections) {
-    const bool counts = is_possible(member) && are_concentric(seed->ellipse, member.ellipse) &&
-                        member.score >= kLeastShareOfBestScore * best.best_score;
-    if (counts && (target == nullptr || is_better(member, *target))) target = &member;
+    if (!judge_place(member).is_accepted()) continue;
+    if (!are_concentric(seed->ellipse, member.ellipse)) {
+      if (trace != nullptr) reject(member, judge_set(set_around(member.ellipse, detections), best));
+      continue;
+    }
+    const double least = kLeastShareOfBestScore * best.best_score;
+    Verdict verdict = at_least(Reason::kWeakInSet, member.score, least);
+    if (verdict.is_accepted() && target != nullptr) verdict = judge_beside(member, *target);
+    if (verdict.is_accepted()) {
+      if (target != nullptr) reject(*target, judge_beside(*target, member));
+      target = &member;
+    } else {
+      reject(member, verdict);
+    }
   }
-  return target != nullptr ? *target : *seed;
+  if (target == nullptr) target = seed;
+  if (trace != nullptr) trace->choose(target->candidate);
+  return *target;
 }
 
 }  // namespace ellipse

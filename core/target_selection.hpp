@@ -20,9 +20,11 @@ namespace ellipse {
 ///    Where both sides of one edge were found, the better scored of the two.
 ///
 /// @param last_target  The target of the frame before, in the same pixels; nullopt = not tracking.
+/// @param trace        Of the detections, if there is one: is told why each of them is not it.
 /// Deterministic, thread-safe, allocates nothing; O(N^2).
-[[nodiscard]] std::optional<Detection> select_target(
-    std::span<const Detection> detections, const std::optional<Ellipse>& last_target = {});
+[[nodiscard]] std::optional<Detection> select_target(std::span<const Detection> detections,
+                                                     const std::optional<Ellipse>& last_target = {},
+                                                     DetectionTrace* trace = nullptr);
 
 /// What is known of the set of all ellipses that are concentric with one.
 struct ConcentricSet {

@@ -31,9 +31,12 @@ void Thresholds::validate() const {
   check_range("edge_low", edge_low, {0.0, edge_high > 0.0 ? edge_high : kEdgeRange.max});
 }
 
-bool Thresholds::admit_axes_of(const Ellipse& e) const {
-  return 2.0 * e.semi_major <= max_axis_px && 2.0 * e.semi_minor >= min_axis_px &&
-         e.aspect_ratio() <= max_axis_ratio;
+Verdict Thresholds::judge_axes_of(const Ellipse& e) const {
+  const Verdict large = at_most(Reason::kTooLarge, 2.0 * e.semi_major, max_axis_px);
+  if (!large.is_accepted()) return large;
+  const Verdict small = at_least(Reason::kTooSmall, 2.0 * e.semi_minor, min_axis_px);
+  if (!small.is_accepted()) return small;
+  return at_most(Reason::kTooFlat, e.aspect_ratio(), max_axis_ratio);
 }
 
 Thresholds Thresholds::at_scale(int scale) const {

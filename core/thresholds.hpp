@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include "core/ellipse.hpp"
+#include "core/verdict.hpp"
 
 namespace ellipse {
 
@@ -37,8 +38,12 @@ struct Thresholds {
   /// a pair is the wrong way round.
   void validate() const;
 
-  /// Whether both axes of an ellipse and their ratio are within the limits.
-  [[nodiscard]] bool admit_axes_of(const Ellipse& e) const;
+  /// Whether both axes of an ellipse and their ratio are within the limits: too large, too small,
+  /// too flat, in this order.
+  [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;
+  [[nodiscard]] bool admit_axes_of(const Ellipse& e) const {
+    return judge_axes_of(e).is_accepted();
+  }
 
   /// The thresholds for a picture whose pixels are `scale` times larger: lengths shrink with it.
   [[nodiscard]] Thresholds at_scale(int scale) const;

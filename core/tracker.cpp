@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/detection_trace.hpp"
 #include "core/roi.hpp"
 #include "core/target_selection.hpp"
 
@@ -188,7 +189,8 @@ std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tra
   }
   const std::optional<Ellipse> last_target =
       is_tracking_ ? std::optional(to_region(last_ellipse_, search_region_, scale_)) : std::nullopt;
-  const std::optional<Detection> selected = select_target(detections, last_target);
+  const std::optional<Detection> selected = select_target(detections, last_target, trace_);
+  if (trace_ != nullptr) trace_->place_in_frame(search_region_, scale_);
   if (!selected) return std::nullopt;
 
   Target target;
@@ -238,6 +240,11 @@ void Tracker::take_in(const PixelView& frame, const SearchScope& scope) {
   scale_ = adapts ? std::max(scale_, finest_scale_) : finest_scale_;
 }
 
+void Tracker::set_trace(DetectionTrace* trace) {
+  trace_ = trace;
+  detector_->set_trace(trace);
+}
+
 void Tracker::reset() {
   is_tracking_ = false;
   had_target_ = false;
@@ -255,6 +262,7 @@ void Tracker::configure(const TrackerSettings& settings) {
                            settings.ring_ratio != settings_.ring_ratio;
   if (settings.detector != settings_.detector && !is_detector_given_) {
     detector_ = make_detector(settings.detector);
+    detector_->set_trace(trace_);
   }
   settings_ = settings;
   edge_tracker_.configure(settings.refine, settings.ring_ratio);

@@ -70,6 +70,11 @@ class Tracker {
   /// where it was not asked, see TrackerSettings::wants_candidates. Until the next call.
   [[nodiscard]] std::span<const Detection> candidates() const { return candidates_; }
 
+  /// Every search by the detector from now on tells there what it sees, and why what is not the
+  /// target is not it: in pixels of the frame. What is followed by its edges is not told of, and
+  /// where a frame is searched twice, the second time is. nullptr = no more. Borrowed.
+  void set_trace(DetectionTrace* trace);
+
   /// Where the last frame was searched [px].
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
@@ -87,6 +92,7 @@ class Tracker {
 
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;
+  DetectionTrace* trace_ = nullptr;
   std::vector<Detection> candidates_;
   LumaReader luma_reader_;
   Scaler scaler_;

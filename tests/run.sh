@@ -6,13 +6,14 @@
 #   ./tests/run.sh --sanitize=thread   pipelines under ThreadSanitizer
 #   ./tests/run.sh --coverage          all, and the lines of core/ and gst/ that they reach: 90 %
 #   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin
-# Closes with a line "N passed, N failed, N skipped".
+# Closes with what failed, and a line "N passed, N failed, N skipped".
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 least_coverage=90
 passed=0
 failed=0
 skipped=0
+failures=()
 
 # build FOLDER OPTION...: sets up what is not set up yet, and builds.
 build() {
@@ -44,7 +45,10 @@ run() {
   bad=$(($(count "$folder" failures) + $(count "$folder" errors)))
   idle=$(cat "$folder"/*.xml 2> /dev/null | grep -c 'result="skipped"' || true)
   # A suite that died wrote nothing: that is a failure too.
-  if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1; fi
+  if [ "$status" -ne 0 ]; then
+    failures+=("$("$project/tests/failures.py" "$folder")")
+    if [ "$bad" -eq 0 ]; then bad=1; fi
+  fi
   if [ "$total" -eq 0 ]; then bad=1; fi
   local good=$((total - bad - idle))
   passed=$((passed + (good > 0 ? good : 0)))
@@ -55,7 +59,12 @@ run() {
 # check COMMAND...: one that counts as a test.
 check() {
   echo "run.sh: $*"
-  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+  if "$@"; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    failures+=("FAILED $*")
+  fi
 }
 
 "$project/setup.sh"
@@ -105,5 +114,7 @@ case "${1:-}" in
     exit 2
     ;;
 esac
+# Once more at the end: the logs above are long, and are cut.
+[ ${#failures[@]} -eq 0 ] || printf '%s\n' "${failures[@]}"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

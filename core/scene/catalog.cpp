@@ -147,6 +147,12 @@ Scene hover(std::uint64_t seed) {
   return scene;
 }
 
+Scene distractors(std::uint64_t seed) {
+  Scene scene = seeded(seed);
+  scene.ground.kind = GroundKind::kCircles;
+  return scene;
+}
+
 constexpr std::array kCatalog = {
     NamedScene{"approach", "Down from 20 radii to 2.6 and up again, 10 s each", approach},
     NamedScene{"oblique", "60 degrees from the vertical, over a road", oblique},
@@ -165,11 +171,20 @@ constexpr std::array kCatalog = {
     NamedScene{"orbit", "Around a ring with an H, at 45 degrees", orbit},
     NamedScene{"shake", "Hovering, trembling at 7 to 11 Hz", shake},
     NamedScene{"hover", "Hovering over a ring among clutter", hover},
+    NamedScene{"distractors", "The approach over discs and lesser rings", distractors},
 };
 
 constexpr std::array kPatternNicks = {"ring-x", "ring", "disc", "ring-h", "bullseye", "none"};
-constexpr std::array kGroundNicks = {
-    "plain", "asphalt", "grass", "road", "tiles", "squares", "flowers", "rounded", "clutter"};
+constexpr std::array kGroundNicks = {"plain",
+                                     "asphalt",
+                                     "grass",
+                                     "road",
+                                     "tiles",
+                                     "squares",
+                                     "flowers",
+                                     "rounded",
+                                     "clutter",
+                                     "circles"};
 
 }  // namespace
 

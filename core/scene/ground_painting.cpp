@@ -231,6 +231,30 @@ void rounded(Painter& painter, int count) {
   }
 }
 
+std::vector<cv::Point2d> circle(const cv::Point2d& center, double radius) {
+  constexpr int kCorners = 180;
+  std::vector<cv::Point2d> outline;
+  for (int i = 0; i < kCorners; ++i) {
+    outline.push_back(towards(center, 2.0 * kPi * i / kCorners, radius));
+  }
+  return outline;
+}
+
+void circles(Painter& painter, int count) {
+  Random& random = painter.random();
+  for (int i = 0; i < count; ++i) {
+    const cv::Point2d center = painter.somewhere();
+    const double level = strong_level(random);
+    if (i % 2 == 0) {
+      painter.polygon(circle(center, random.between(20.0, 65.0)), level);
+    } else {
+      const double radius = random.between(25.0, 55.0);
+      painter.polygon(circle(center, radius), level);
+      painter.polygon(circle(center, random.between(0.6, 0.8) * radius), 0.0);
+    }
+  }
+}
+
 }  // namespace
 
 cv::Mat draw_ground(GroundKind kind, std::uint64_t seed) {
@@ -263,6 +287,9 @@ cv::Mat draw_ground(GroundKind kind, std::uint64_t seed) {
       flowers(painter, 10);
       rounded(painter, 8);
       arcs(painter, 6);
+      break;
+    case GroundKind::kCircles:
+      circles(painter, 16);
       break;
     case GroundKind::kPlain:
     case GroundKind::kPicture:

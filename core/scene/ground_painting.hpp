@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// What lies around the pad. None of them holds an ellipse; most hold what resembles one.
+/// What lies around the pad. Most hold what resembles an ellipse, none but the circles hold one.
 enum class GroundKind {
   kPlain,
   kAsphalt,  ///< Speckled, with cracks.
@@ -16,6 +16,7 @@ enum class GroundKind {
   kFlowers,  ///< A clutter of flowers.
   kRounded,  ///< A clutter of rounded rectangles.
   kClutter,  ///< All of these clutters together, and arcs.
+  kCircles,  ///< Discs, and rings less than two thirds as large as the pad.
   kPicture,  ///< A picture of one's own.
 };
 

@@ -61,17 +61,21 @@ class Follower {
     ++measures_.empty_frames;
     measures_.locks_on_nothing += result.answer ? 1 : 0;
     end();
+    has_begun_ = false;
     was_lost_ = true;
     was_visible_ = false;
   }
 
   void see_target(double visible, const Verdict& verdict, const Result& result) {
     const bool is_visible = visible >= kLeastToStart;
-    const bool is_first = is_visible && !has_begun_;
     has_begun_ = has_begun_ || is_visible;
-    if (!has_begun_) return;
+    if (!has_begun_) {
+      if (result.answer && !verdict.is_good()) ++measures_.wrong_before;
+      return;
+    }
     if (is_visible) {
-      if (!was_visible_ && was_lost_ && !is_first) waited_ = 1;
+      if (!was_visible_ && was_lost_ && has_begun_before_) waited_ = 1;
+      has_begun_before_ = true;
       see_return(verdict, result);
       was_lost_ = false;
     } else {
@@ -102,7 +106,8 @@ class Follower {
   }
 
   TrackingMeasures& measures_;
-  bool has_begun_ = false;
+  bool has_begun_ = false;  // since the target was out of view
+  bool has_begun_before_ = false;
   bool was_visible_ = false;  // to kLeastToStart, in the frame before
   bool was_lost_ = false;     // since then
   int waited_ = 0;            // frames since a return; 0 = for none
@@ -111,7 +116,7 @@ class Follower {
 }  // namespace
 
 int TrackingMeasures::wrong() const {
-  int sum = 0;
+  int sum = wrong_before;
   for (const RangeCounts& counts : ranges) sum += counts.wrong;
   return sum;
 }

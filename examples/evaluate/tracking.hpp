@@ -27,8 +27,10 @@ struct RangeCounts {
 
 /// How a method followed its target through whole sequences.
 struct TrackingMeasures {
-  /// From each sequence's first frame on that shows kLeastToStart of the perimeter.
+  /// From the first frame on that shows kLeastToStart of the perimeter, in each sequence and after
+  /// each time that nothing of the target was in view.
   std::array<RangeCounts, kVisibleRanges> ranges;
+  int wrong_before = 0;      ///< Wrong answers in the frames before those.
   int empty_frames = 0;      ///< Show nothing of the target; of the whole sequences.
   int locks_on_nothing = 0;  ///< Of these, where a target was reported.
   int given = 0;             ///< Answers that the method was told; counted nowhere else.
@@ -40,7 +42,7 @@ struct TrackingMeasures {
   std::vector<double> centre_errors_px;  ///< Of right answers in the first range.
   std::vector<double> times_ms;          ///< Of all frames.
 
-  [[nodiscard]] int wrong() const;  ///< In all ranges.
+  [[nodiscard]] int wrong() const;  ///< In all ranges, and before.
 };
 
 /// Frames that are not labelled do not count.

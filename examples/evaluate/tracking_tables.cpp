@@ -77,7 +77,9 @@ Table visibility_table(const Evaluation& evaluation, const std::string& dataset)
     }
   }
   table.note =
-      "Shares of the frames from each sequence's first one with half of the perimeter in view. "
+      "Shares of the frames from the first one with half of the perimeter in view, of each "
+      "sequence "
+      "and after each time out of view. "
       "Right: IoU inside the frame >= 0.8. Centre: within 5 and 2 % of the semi-major axis. Wrong: "
       "neither right nor within 5 %.";
   return table;

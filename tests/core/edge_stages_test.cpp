@@ -192,11 +192,21 @@ bool is_on_mark(Pattern pattern, const Vector2d& place) {
   return is_in(y, x - kBarAt, upright) || is_in(y, x + kBarAt, upright) || is_in(x, y, kBarAt);
 }
 
+void learn_at_once(LineLearner& learner,
+                   const ImageView& luma,
+                   const Ellipse& pad,
+                   PadModel& model) {
+  learner.reserve(model);
+  learner.start();
+  while (!learner.is_ready()) learner.take(luma, image_from_pad(pad));
+  learner.learn(model);
+}
+
 struct Learned {
   explicit Learned(const Scene& scene, const Ellipse& pad = kPad) {
     picture = rendered(scene, pad);
     model = learn_circles(picture.view(), image_from_pad(pad)).value();
-    learner.learn(picture.view(), image_from_pad(pad), model);
+    learn_at_once(learner, picture.view(), pad, model);
   }
   Picture picture{0, 0};
   PadModel model;
@@ -257,8 +267,26 @@ TEST(LineLearner, ReplacesTheLinesOfBefore) {
   Learned learned(scene_of(Pattern::kRingX));
   ASSERT_FALSE(learned.model.lines.empty());
   const Picture ring = rendered(scene_of(Pattern::kRing), kPad);
-  learned.learner.learn(ring.view(), image_from_pad(kPad), learned.model);
+  learn_at_once(learned.learner, ring.view(), kPad, learned.model);
   EXPECT_TRUE(learned.model.lines.empty());
+}
+
+// Each part is of another frame, in which the pad is elsewhere.
+TEST(LineLearner, PutsThePadTogetherFromFramesInWhichItMoves) {
+  const Learned at_once(scene_of(Pattern::kRingX));
+  Learned in_motion(scene_of(Pattern::kRingX));
+  in_motion.learner.start();
+  int frames = 0;
+  while (!in_motion.learner.is_ready()) {
+    const Ellipse pad = translated(kPad, 3.0 * frames, -2.0 * frames);
+    const Picture picture = rendered(scene_of(Pattern::kRingX), pad);
+    in_motion.learner.take(picture.view(), image_from_pad(pad));
+    ++frames;
+  }
+  EXPECT_GT(frames, 4);
+  in_motion.learner.learn(in_motion.model);
+  EXPECT_EQ(in_motion.model.lines.size(), at_once.model.lines.size());
+  EXPECT_NEAR(total_length(in_motion.model), total_length(at_once.model), 0.1);
 }
 
 TEST(LineLearner, KeepsTheLongestOfMany) {
@@ -282,7 +310,7 @@ TEST(LineLearner, FindsNothingInEmptyAndTinyPictures) {
   LineLearner learner;
   for (const int size : {0, 1, 2, 7}) {
     PadModel model = ring_model();
-    learner.learn(Picture(size, size, 200).view(), image_from_pad(kPad), model);
+    learn_at_once(learner, Picture(size, size, 200).view(), kPad, model);
     EXPECT_TRUE(model.lines.empty()) << size;
   }
 }

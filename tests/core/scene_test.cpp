@@ -324,6 +324,7 @@ constexpr Fingerprint kFingerprints[] = {
     {"orbit", 0x55e218e98d015aecU},
     {"shake", 0xe8e0eabec5c6925dU},
     {"hover", 0xe61ef2fc8b84c0d6U},
+    {"distractors", 0x401ddade063df8d4U},
 };
 
 TEST(Catalog, PicturesAreTheSameOnEveryMachine) {

@@ -155,7 +155,7 @@ TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
           "scenes:7 --seconds 0.1 --fps 30 --methods arcs+edges,kcf,csrt --json " +
               (folder_ / "json").string());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
-  for (const char* part : {"\n51 frames",  // 17 scenes
+  for (const char* part : {"\n54 frames",  // 17 scenes
                            "Tracking on scenes, by the visible part of the perimeter",
                            "Following through scenes",
                            "touchdown-7"}) {

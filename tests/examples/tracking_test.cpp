@@ -119,8 +119,22 @@ TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
   EXPECT_EQ(m.ranges[1].frames, 2);
   EXPECT_EQ(m.ranges[1].right, 1);
   EXPECT_EQ(m.ranges[1].none, 1);
-  EXPECT_EQ(m.wrong(), 0);
+  EXPECT_EQ(m.wrong(), 1);         // wrong is wrong from the first frame on
   EXPECT_TRUE(m.returns.empty());  // the first time is none
+}
+
+TEST(Tracking, BeginsAnewAfterTheTargetWasOutOfView) {
+  const TrackingMeasures m = measured({{1.0, Says::kRight},
+                                       {0.2, Says::kRight},
+                                       {kOut, Says::kNone},
+                                       {0.2, Says::kNone},
+                                       {0.2, Says::kWrong},
+                                       {0.5, Says::kRight},
+                                       {0.2, Says::kNone}});
+  EXPECT_EQ(m.ranges[2].frames, 2);
+  EXPECT_EQ(m.ranges[2].none, 1);
+  EXPECT_EQ(m.wrong(), 1);
+  EXPECT_EQ(m.returns, std::vector<double>{1.0});
 }
 
 TEST(Tracking, LocksOnNothingCountFromTheFirstFrame) {
@@ -168,7 +182,7 @@ TEST(Tracking, EachSequenceBeginsAfresh) {
                   {{0.2, Says::kWrong}, {0.8, Says::kNone}, {0.8, Says::kRight}}});
   const TrackingMeasures m = two.measures();
   EXPECT_TRUE(m.returns.empty());
-  EXPECT_EQ(m.wrong(), 0);
+  EXPECT_EQ(m.wrong(), 1);  // before the second one begins
   EXPECT_EQ(m.ranges[0].frames, 3);
   EXPECT_EQ(m.times_ms.size(), 5U);
   EXPECT_EQ(tracking_measures_of(two.evaluation(), 0, "another").times_ms.size(), 0U);

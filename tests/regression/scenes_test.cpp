@@ -71,6 +71,8 @@ constexpr Limits kLimits[] = {
     {"shake", 2.0, 1.0 / 30.0, 20, "contours", "none", 20, 0},
     {"hover", 2.0, 0.1, 40, "contours", "redetect", 40, 0},
     {"hover", 2.0, 0.1, 40, "contours", "none", 40, 0},
+    {"distractors", 2.0, 0.1, 40, "contours", "redetect", 40, 0},
+    {"distractors", 2.0, 0.1, 40, "contours", "none", 40, 0},
     {"approach", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"approach", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"oblique", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
@@ -105,6 +107,8 @@ constexpr Limits kLimits[] = {
     {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "none", 20, 0},
     {"hover", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"hover", 2.0, 0.1, 40, "arcs", "none", 40, 0},
+    {"distractors", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
+    {"distractors", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"approach", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"oblique", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"dusk", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
@@ -122,6 +126,7 @@ constexpr Limits kLimits[] = {
     {"orbit", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "edges", 20, 0},
     {"hover", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
+    {"distractors", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
 };
 
 class Scenes : public testing::TestWithParam<const char*> {};
