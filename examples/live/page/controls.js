@@ -3,7 +3,8 @@
 // is called with the value that a person has chosen.
 
 const kSteps = 1000;
-const kFarMax = 1e6;  // a slider does not go as far as what nobody wants
+const kFarMax = 1e6;   // a slider does not go as far as what nobody wants
+const kFarTime = 1e8;  // [ns]
 const kRectParts = ["x", "y", "width", "height"];
 
 function make(tag, attributes = {}, ...children) {
@@ -18,10 +19,21 @@ function make(tag, attributes = {}, ...children) {
 
 export { make };
 
+// Nobody is interrupted while typing: a field shows the value in force when it is left.
+function showWhenLeft(fields, show) {
+  let shown = null;
+  for (const field of fields) field.onblur = () => shown !== null && show(shown);
+  return (value) => {
+    shown = value;
+    if (!fields.includes(document.activeElement)) show(value);
+  };
+}
+
 /** Slider positions of values: even, or by ratio where the range spans more than two decades. */
-export function scaleOf({ type, min, max, default: usual }) {
+export function scaleOf({ type, min, max, unit, default: usual }) {
   const isWhole = type !== "double";
-  const end = max > kFarMax ? Math.max(1000, 100 * usual) : max;
+  const far = unit === "ns" ? kFarTime : Math.max(1000, 100 * usual);
+  const end = max > kFarMax ? far : max;
   const isEven = end - min <= 100 || (min > 0 && end / min <= 100);
   const shift = min > 0 ? 0 : 1;
   const low = Math.log(min + shift);
@@ -59,11 +71,14 @@ function numberControl(property, change) {
   // The middle of the thumb, which is 16 px wide, does not reach the ends.
   const share = toShare(property.default);
   mark.style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
+  const showInField = showWhenLeft([field], (value) => {
+    field.value = Number(value.toPrecision(12));
+  });
   const set = (value) => {
     slider.value = Math.round(kSteps * toShare(value));
     slider.style.setProperty("--at", `${100 * toShare(value)}%`);
     slider.setAttribute("aria-valuetext", `${value}${property.unit ? ` ${property.unit}` : ""}`);
-    if (document.activeElement !== field) field.value = Number(value.toPrecision(12));
+    showInField(value);
   };
   slider.oninput = () => {
     const value = toValue(slider.value / kSteps);
@@ -142,9 +157,9 @@ function rectControl(property, change) {
   for (const field of fields) {
     field.onchange = () => change(fields.map((each) => Math.round(each.valueAsNumber || 0)));
   }
-  const set = (value) => fields.forEach((field, i) => {
-    if (document.activeElement !== field) field.value = value[i] ?? 0;
-  });
+  const set = showWhenLeft(fields, (value) => fields.forEach((field, i) => {
+    field.value = value[i] ?? 0;
+  }));
   return { head: [], body: [make("div", { className: "rect" }, ...fields)], set };
 }
 
@@ -163,9 +178,9 @@ function colorControl(property, change) {
 function textControl(property, change) {
   const field = make("input", { type: "text", "aria-label": property.name, autocomplete: "off" });
   field.onchange = () => change(field.value);
-  const set = (value) => {
-    if (document.activeElement !== field) field.value = value;
-  };
+  const set = showWhenLeft([field], (value) => {
+    field.value = value;
+  });
   return { head: [], body: [field], set };
 }
 

@@ -33,8 +33,9 @@ export function contextOf(canvas, width, height) {
 }
 
 /** @param picture  Anything that can be drawn; spread over the whole frame. */
-export function drawPicture(context, picture, width, height) {
-  context.imageSmoothingEnabled = context.getTransform().a < 3;
+export function drawPicture(context, picture, width, height, showsPixels = false) {
+  context.imageSmoothingEnabled = !showsPixels;
+  context.imageSmoothingQuality = "high";
   context.drawImage(picture, -0.5, -0.5, width, height);
 }
 

@@ -51,7 +51,7 @@ export class Plots {
     canvas.onpointerleave = () => {
       this.#cursor = null;
     };
-    return { ...plot, canvas, keys, spoken: 0 };
+    return { ...plot, canvas, keys, spoken: -Infinity };
   }
 
   // Ten times a second is as smooth as anybody reads, and costs little.
@@ -160,7 +160,7 @@ function drawStates(context, samples, toX, y) {
     const end = i + 1 < samples.length ? toX(samples[i + 1].at) : x + 1;
     context.fillStyle = color(samples[i].target?.state ?? "lost");
     context.globalAlpha = samples[i].target ? 1 : 0.55;
-    context.fillRect(x, y, Math.max(0.5, end - x), 3);
+    context.fillRect(x, y, Math.max(0, end - x) + 0.7, 3);
   }
   context.globalAlpha = 1;
 }

@@ -57,8 +57,9 @@ export class Stages {
   refresh = newestOnly(async () => {
     if (!this.#isOn || !this.screen.frame) return;
     try {
-      const isDrawn = this.#stage === "luma" || this.#stage === "candidates";
-      this.#result = await analyze({ stage: isDrawn ? "luma" : this.#stage });
+      // The candidates are drawn here, over the luma.
+      const stage = this.#stage === "candidates" ? "luma" : this.#stage;
+      this.#result = { stage, ...await analyze({ stage }) };
     } catch (error) {
       at("stage-summary").textContent = error.message;
       return;
@@ -70,9 +71,10 @@ export class Stages {
     if (this.playback.isPlaying) setTimeout(() => this.refresh(), kPauseMs);
   });
 
-  #draw(context, { bitmap }) {
-    const { image, candidates } = this.#result;
-    drawPicture(context, image ?? bitmap, bitmap.width, bitmap.height);
+  #draw(context, { bitmap, pts }) {
+    const { image, candidates, stage, pts_ns: lookedAt } = this.#result;
+    const isSame = String(lookedAt) === pts && stage === "luma";
+    drawPicture(context, isSame || !image ? bitmap : image, bitmap.width, bitmap.height, stage !== "luma");
     if (this.#stage === "candidates") {
       context.fillStyle = "rgb(8 10 14 / .55)";
       context.fillRect(-0.5, -0.5, bitmap.width, bitmap.height);
