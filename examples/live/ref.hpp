@@ -14,6 +14,7 @@ struct Release {
   void operator()(GBytes* bytes) const { g_bytes_unref(bytes); }
   void operator()(GError* error) const { g_error_free(error); }
   void operator()(gchar* text) const { g_free(text); }
+  void operator()(guchar* bytes) const { g_free(bytes); }
   template <class Object>
   void operator()(Object* object) const {
     g_object_unref(object);

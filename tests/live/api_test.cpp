@@ -273,6 +273,38 @@ TEST(LiveApi, TheTargetIsAskedForByItself) {
   EXPECT_GT(json_object_get_double_member(client.get("api/target").object(), "semi_major"), 20.0);
 }
 
+int count_of(const Answer& answer, const char* reason) {
+  JsonObject* counts = json_object_get_object_member(answer.object(), "counts");
+  return static_cast<int>(json_object_get_int_member_with_default(counts, reason, 0));
+}
+
+TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const Answer now = client.post("api/analyze", R"({"stage":"edges"})");
+  ASSERT_EQ(now.status, 200U) << now.body;
+  EXPECT_GE(count_of(now, "accepted"), 1);
+  const std::string url = json_object_get_string_member(now.object(), "picture");
+  gsize size = 0;
+  const support::Ref<guchar> png(g_base64_decode(url.substr(url.find(',') + 1).c_str(), &size));
+  const cv::Mat picture =
+      cv::imdecode(std::vector<unsigned char>(png.get(), png.get() + size), cv::IMREAD_COLOR);
+  EXPECT_GT(picture.cols, 100);
+
+  const Answer strict =
+      client.post("api/analyze", R"({"properties":{"detector":"contours","min-axis":600}})");
+  EXPECT_EQ(count_of(strict, "accepted"), 0);
+  EXPECT_GE(count_of(strict, "too-small"), 1);
+  EXPECT_EQ(json_object_get_int_member(strict.object(), "pts_ns"),
+            json_object_get_int_member(now.object(), "pts_ns"));
+  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // of the pipeline
+  EXPECT_EQ(client.post("api/analyze", R"({"stage":"magic"})").status, 400U);
+  EXPECT_EQ(client.post("api/analyze", R"({"properties":{"min-axis":0}})").status, 400U);
+  EXPECT_EQ(client.post("api/analyze", R"({"properties":7})").status, 400U);
+}
+
 TEST(LiveApi, PresetsSurviveARestart) {
   const support::TemporaryFolder home;
   g_setenv("XDG_DATA_HOME", home.file("").c_str(), TRUE);
