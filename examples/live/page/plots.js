@@ -11,10 +11,10 @@ const color = (name) => style.getPropertyValue(`--${name}`).trim();
 const kFirst = "#86b7ff";
 const kSecond = "#ffb37a";
 const kPlots = [
-  { title: "Centre [px]", curves: [["x", kFirst, (s) => s.target?.cx], ["y", kSecond, (s) => s.target?.cy]], digits: 1 },
-  { title: "Axes [px]", curves: [["major", kFirst, (s) => s.target && 2 * s.target.semi_major], ["minor", kSecond, (s) => s.target && 2 * s.target.semi_minor]], digits: 1, from: 0 },
-  { title: "Overlaps", curves: [["contour", kFirst, (s) => s.target?.contour_overlap], ["ellipse", kSecond, (s) => s.target?.ellipse_overlap]], digits: 2, from: 0, to: 1 },
-  { title: "Analysis [ms]", curves: [["time", kFirst, (s) => s.time_ms]], digits: 2, from: 0 },
+  { title: "Centre", unit: "px", curves: [["x", kFirst, (s) => s.target?.cx], ["y", kSecond, (s) => s.target?.cy]], digits: 1 },
+  { title: "Axes", unit: "px", curves: [["major", kFirst, (s) => s.target && 2 * s.target.semi_major], ["minor", kSecond, (s) => s.target && 2 * s.target.semi_minor]], digits: 1, from: 0 },
+  { title: "Overlaps", unit: "", curves: [["contour", kFirst, (s) => s.target?.contour_overlap], ["ellipse", kSecond, (s) => s.target?.ellipse_overlap]], digits: 2, from: 0, to: 1 },
+  { title: "Analysis", unit: "ms", curves: [["time", kFirst, (s) => s.time_ms]], digits: 2, from: 0 },
 ];
 
 export class Plots {
@@ -44,7 +44,7 @@ export class Plots {
       return key;
     });
     container.append(make("figure", { className: "plot" },
-      make("figcaption", {}, make("b", {}, plot.title), ...keys), canvas));
+      make("figcaption", {}, make("b", {}, `${plot.title} `, make("small", {}, plot.unit)), ...keys), canvas));
     canvas.onpointermove = (event) => {
       this.#cursor = event.offsetX / canvas.clientWidth;
     };
@@ -106,7 +106,7 @@ export class Plots {
     });
     if (now - plot.spoken < 2000) return;
     plot.spoken = now;
-    plot.canvas.setAttribute("aria-label", `${plot.title}: ${texts.join(", ")}`);
+    plot.canvas.setAttribute("aria-label", `${plot.title} ${plot.unit}: ${texts.join(", ")}`);
   }
 }
 

@@ -13,6 +13,8 @@ const kStages = {
   arcs: "Arcs",
   candidates: "Candidates",
 };
+// What the detector of the paper has in the place of chains and arcs.
+const kStagesOfContours = { chains: "Contours", arcs: "Parts" };
 const kMostRows = 30;
 const kPauseMs = 400;
 const kNearPx = 12;
@@ -25,6 +27,7 @@ export class Stages {
   #only = null;    // a reason
   #open = new Set(["accepted"]);
   #isOn = false;
+  #names = {};     // of the stages, as they are shown
 
   constructor(screen, playback, settings, say) {
     Object.assign(this, { screen, playback, settings, say });
@@ -34,7 +37,8 @@ export class Stages {
         this.#stage = stage;
         this.refresh();
       };
-      at("stage-choices").append(make("label", { className: "pill" }, radio, make("span", {}, title)));
+      this.#names[stage] = make("span", {}, title);
+      at("stage-choices").append(make("label", { className: "pill" }, radio, this.#names[stage]));
     }
     screen.canvas.addEventListener("pointerdown", (event) => this.#isOn && this.#pick(event));
   }
@@ -90,14 +94,19 @@ export class Stages {
     const width = context.lineWidth;
     for (const candidate of shown) {
       const isMarked = candidate.number === this.#marked;
+      context.globalAlpha = isMarked || candidate.found ? 1 : 0.6;
       context.lineWidth = isMarked ? 1.8 * width : candidate.found ? width : 0.6 * width;
       drawEllipse(context, candidate.ellipse, lookOf(candidate), { ellipse: true, centre: isMarked });
     }
+    context.globalAlpha = 1;
     context.lineWidth = width;
   }
 
   #list() {
     const { groups, passes, processing_ns: time, detector } = this.#result;
+    for (const stage of Object.keys(kStagesOfContours)) {
+      this.#names[stage].textContent = (detector === "contours" ? kStagesOfContours : kStages)[stage];
+    }
     const total = groups.reduce((sum, { count }) => sum + count, 0);
     const pass = passes.at(-1);
     const parts = [`<b>${total}</b> tried`];
@@ -157,7 +166,7 @@ export class Stages {
         `${member.measured < member.limit ? "at least" : "at most"} ${short(member.limit)}`
       : member.found ? `score ${member.score.toFixed(0)}` : "";
     const button = make("button", {},
-      make("span", {}, (member.is_target ? "The target. " : "") + figure),
+      make("span", {}, (member.is_target ? "The target, " : "") + figure),
       make("span", { className: "where" }, placeText(member.ellipse)));
     button.dataset.focus = `${group.reason} ${member.number}`;
     button.dataset.candidate = member.number;
