@@ -23,6 +23,11 @@
 namespace live {
 namespace {
 
+void write_time(JsonWriter& json, const char* name, GstClockTime time) {
+  json.key(name);
+  GST_CLOCK_TIME_IS_VALID(time) ? json.value(time) : json.null();
+}
+
 Reply done() {
   return {.body = "{}\n"};
 }
@@ -74,6 +79,8 @@ std::string stats_json(Session& session, const HttpServer& server) {
       .member("sent", session.video().sent())
       .member("sent_bytes", session.video().sent_bytes())
       .member("lines_lost", session.lines().lost());
+  write_time(json, "paint_delay_median_ns", session.video().paint_delay(0.5));
+  write_time(json, "paint_delay_p99_ns", session.video().paint_delay(0.99));
   return json.end_object().text() + "\n";
 }
 
@@ -123,11 +130,6 @@ void add_settings(HttpServer& server, Session& session) {
 }
 
 /* What it plays */
-
-void write_time(JsonWriter& json, const char* name, GstClockTime time) {
-  json.key(name);
-  GST_CLOCK_TIME_IS_VALID(time) ? json.value(time) : json.null();
-}
 
 std::string source_json(Session& session, const Options& options) {
   const LivePipeline& pipeline = session.pipeline();

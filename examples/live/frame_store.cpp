@@ -13,7 +13,7 @@ void FrameStore::put(FramePtr frame) {
   FramePtr old;  // given back outside the lock
   {
     const std::lock_guard lock(mutex_);
-    if (is_held_ && steps_ == 0) return;
+    if (is_held_ && steps_ == 0 && newest_) return;
     steps_ = std::max(0, steps_ - 1);
     if (lines_.size() == kMostLines) lines_.pop_front();
     lines_.push_back(frame->line);

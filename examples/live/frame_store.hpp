@@ -29,6 +29,7 @@ class FrameStore {
   /// The lines since the last call, oldest first. Any thread.
   [[nodiscard]] std::vector<std::string> take_lines();
 
+  /// Before the first frame, that one is still let through.
   void hold();
   void release();
   /// Lets one more frame through while the view is held.

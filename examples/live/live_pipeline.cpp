@@ -235,6 +235,12 @@ bool LivePipeline::is_seekable() const {
   return is_seekable != FALSE;
 }
 
+GstClockTime LivePipeline::age_of(GstClockTime pts) const {
+  const GstClockTime now = gst_element_get_current_running_time(pipeline_);
+  const bool is_known = spec_.is_live && GST_CLOCK_TIME_IS_VALID(now) && now >= pts;
+  return is_known ? now - pts : GST_CLOCK_TIME_NONE;
+}
+
 GstClockTime LivePipeline::position() const {
   gint64 position = 0;
   const gboolean is_known = gst_element_query_position(pipeline_, GST_FORMAT_TIME, &position);

@@ -56,6 +56,9 @@ class LivePipeline {
   [[nodiscard]] guint64 reconnections() const { return reconnections_; }
   [[nodiscard]] guint64 frames() const { return frames_; }
   [[nodiscard]] bool is_seekable() const;
+  /// How old a frame is now [ns], from its capture on; GST_CLOCK_TIME_NONE where the source is not
+  /// live, so that its time stamps say nothing of that.
+  [[nodiscard]] GstClockTime age_of(GstClockTime pts) const;
   /// [ns]; GST_CLOCK_TIME_NONE where it is not known.
   [[nodiscard]] GstClockTime position() const;
   [[nodiscard]] GstClockTime duration() const;

@@ -155,7 +155,7 @@ SourceSpec fragment_source(const std::string& text) {
   const std::string inside = text.substr(1, text.size() - 2);
   GError* problem = nullptr;
   const Ref<GstElement> bin(gst_parse_bin_from_description_full(
-      inside.c_str(), FALSE, nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &problem));
+      (inside + " ! videoconvert").c_str(), FALSE, nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &problem));
   const Ref<GError> error(problem);
   if (bin) gst_object_ref_sink(bin.get());
   if (error) refuse(text, error->message);

@@ -7,12 +7,14 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace live {
 namespace {
 
 constexpr guint kGlanceMs = 1000;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
+constexpr std::size_t kMostDelays = 256;
 constexpr std::size_t kMostInFlight = 2;  // one on its way, one being painted
 constexpr char kBoundary[] = "ellipse-frame";
 
@@ -28,9 +30,9 @@ bool parse_ack(std::string_view text, guint64& pts) {
 class SocketViewer : public Viewer {
  public:
   SocketViewer(std::unique_ptr<WebSocket> socket,
-               std::function<void()> on_ready,
+               std::function<void(GstClockTime)> on_painted,
                std::function<void()> on_closed)
-      : socket_(std::move(socket)), on_ready_(std::move(on_ready)) {
+      : socket_(std::move(socket)), on_painted_(std::move(on_painted)) {
     socket_->listen({[this](std::string_view text) { take_ack(text); }, std::move(on_closed)});
   }
 
@@ -57,11 +59,11 @@ class SocketViewer : public Viewer {
     if (acknowledged == in_flight_.end()) return;
     in_flight_.erase(in_flight_.begin(), acknowledged + 1);
     waiting_since_us_ = g_get_monotonic_time();
-    on_ready_();
+    on_painted_(pts);
   }
 
   std::unique_ptr<WebSocket> socket_;
-  std::function<void()> on_ready_;
+  std::function<void(GstClockTime)> on_painted_;
   std::deque<GstClockTime> in_flight_;
   gint64 waiting_since_us_ = 0;
 };
@@ -93,9 +95,12 @@ class StreamViewer : public Viewer {
 
 }  // namespace
 
-VideoFeed::VideoFeed(FrameStore& store, int quality)
+VideoFeed::VideoFeed(FrameStore& store,
+                     int quality,
+                     std::function<GstClockTime(GstClockTime)> age_of)
     : store_(store),
       encoder_(quality, [this](Picture picture) { deliver(std::move(picture)); }),
+      age_of_(std::move(age_of)),
       glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
 
 VideoFeed::~VideoFeed() {
@@ -106,7 +111,12 @@ void VideoFeed::add(std::unique_ptr<WebSocket> socket) {
   auto& place = viewers_.emplace_back();
   const auto remove_it = [this, &place] { remove(place.get()); };
   place = std::make_unique<SocketViewer>(
-      std::move(socket), [this] { update(); }, remove_it);
+      std::move(socket),
+      [this](GstClockTime pts) {
+        note_painted(pts);
+        update();
+      },
+      remove_it);
   update();
 }
 
@@ -116,6 +126,21 @@ void VideoFeed::add_stream(SoupServerMessage* request) {
   place = std::make_unique<StreamViewer>(
       request, [this] { update(); }, remove_it);
   update();
+}
+
+void VideoFeed::note_painted(GstClockTime pts) {
+  const GstClockTime age = age_of_(pts);
+  if (!GST_CLOCK_TIME_IS_VALID(age)) return;
+  if (paint_delays_.size() == kMostDelays) paint_delays_.pop_front();
+  paint_delays_.push_back(age);
+}
+
+GstClockTime VideoFeed::paint_delay(double share) const {
+  if (paint_delays_.empty()) return GST_CLOCK_TIME_NONE;
+  std::vector<GstClockTime> delays(paint_delays_.begin(), paint_delays_.end());
+  const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(delays.size() - 1));
+  std::nth_element(delays.begin(), delays.begin() + index, delays.end());
+  return delays[static_cast<std::size_t>(index)];
 }
 
 void VideoFeed::remove(const Viewer* viewer) {

@@ -1,5 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <deque>
+#include <functional>
 #include <list>
 #include <memory>
 
@@ -29,7 +31,8 @@ class Viewer {
 /// thread.
 class VideoFeed {
  public:
-  VideoFeed(FrameStore& store, int quality);
+  /// @param age_of  How old a frame is now [ns], by its PTS; NONE where that is not known.
+  VideoFeed(FrameStore& store, int quality, std::function<GstClockTime(GstClockTime)> age_of);
   ~VideoFeed();
   VideoFeed(const VideoFeed&) = delete;
   VideoFeed& operator=(const VideoFeed&) = delete;
@@ -44,6 +47,9 @@ class VideoFeed {
 
   [[nodiscard]] std::size_t viewers() const { return viewers_.size(); }
   [[nodiscard]] guint64 encoded() const { return encoder_.encoded(); }
+  /// From a frame's capture until a viewer had painted it and said so, of the last 256 [ns]:
+  /// `share` 0.5 = the median. NONE where none is known.
+  [[nodiscard]] GstClockTime paint_delay(double share) const;
   [[nodiscard]] guint64 sent() const { return sent_; }
   [[nodiscard]] guint64 sent_bytes() const { return sent_bytes_; }
 
@@ -52,11 +58,14 @@ class VideoFeed {
   void deliver(Picture picture);
   void send(Viewer& viewer);
   void remove(const Viewer* viewer);
+  void note_painted(GstClockTime pts);
 
   FrameStore& store_;
   JpegEncoder encoder_;
   Picture picture_;
   std::list<std::unique_ptr<Viewer>> viewers_;
+  std::function<GstClockTime(GstClockTime)> age_of_;
+  std::deque<GstClockTime> paint_delays_;
   guint glance_;
   guint64 sent_ = 0;
   guint64 sent_bytes_ = 0;

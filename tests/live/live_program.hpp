@@ -150,8 +150,17 @@ class Client {
   [[nodiscard]] Answer post(const std::string& path, const std::string& body = "") const {
     return ask("POST", path, body);
   }
+  /// The same, for those who ask until something is so: waits where they ask too often.
+  [[nodiscard]] Answer poll(const std::string& path) const {
+    Answer answer = get(path);
+    for (int i = 0; i < 100 && answer.status != SOUP_STATUS_OK; ++i) {
+      g_usleep(100'000);
+      answer = get(path);
+    }
+    return answer;
+  }
   [[nodiscard]] double stat(const char* name) const {
-    return json_object_get_double_member(get("api/stats").object(), name);
+    return json_object_get_double_member(poll("api/stats").object(), name);
   }
 
  private:

@@ -126,7 +126,7 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
   const TemporaryFolder folder;
   const LiveProgram program({"--labels", folder.file("labels")});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
+  ASSERT_TRUE(wait_until([&] { return client.poll("api/target").object() != nullptr; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
   // The truth of the test source is number 0, the target number 1.
   ASSERT_EQ(client.post("api/snapshot", R"({"choice":1})").status, 200U);

@@ -54,11 +54,11 @@ std::string trouble_with(const std::string& source) {
 }
 
 std::string text_in(const Client& client, const char* member) {
-  return json_object_get_string_member(client.get("api/source").object(), member);
+  return json_object_get_string_member(client.poll("api/source").object(), member);
 }
 
 gint64 number_in(const Client& client, const char* member) {
-  return json_object_get_int_member(client.get("api/source").object(), member);
+  return json_object_get_int_member(client.poll("api/source").object(), member);
 }
 
 TEST(LiveSource, WhatIsWrongIsSaid) {
