@@ -6,16 +6,18 @@ const kMostLines = 256;
 const kPatienceMs = 250;
 
 /**
- * Calls onFrame({pts, bitmap, line}) for each picture that is shown: the line is that of the very
- * frame, or null where none came. The picture is acknowledged when onFrame returns, so that the
- * program sends the next one only when this one is painted.
+ * Calls onFrame({pts, bitmap, line}) for each picture when the browser is about to paint: the line is
+ * that of the very frame, or null where none came. The picture is acknowledged when onFrame returns,
+ * so that the program sends the next one only when this one is painted; a page that nobody sees
+ * paints nothing, and gets no more.
  */
 export function watchFrames({ onFrame, onLine, onConnection }) {
   const lines = new Map();  // by time stamp, in the order of their arrival
   let waiting = null;       // a picture that came before its line
+  let next = null;          // the picture that is painted next
   const isOpen = { video: false, meta: false };
 
-  const show = async ({ pts, bitmap, socket }) => {
+  const show = ({ pts, bitmap, socket }) => {
     clearTimeout(waiting?.timer);
     waiting = null;
     const line = lines.get(pts) ?? null;
@@ -26,8 +28,17 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
         if (old === pts) break;
       }
     }
-    onFrame({ pts, bitmap, line });
-    if (socket.readyState === WebSocket.OPEN) socket.send(`{"ack":${pts}}`);
+    if (next) next.bitmap.close();
+    else requestAnimationFrame(paint);
+    next = { pts, bitmap, line, socket };
+  };
+
+  // One acknowledgement is one for all before it.
+  const paint = () => {
+    const { socket, ...frame } = next;
+    next = null;
+    onFrame(frame);
+    if (socket.readyState === WebSocket.OPEN) socket.send(`{"ack":${frame.pts}}`);
   };
 
   const takePicture = async (data, socket) => {

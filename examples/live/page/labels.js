@@ -4,14 +4,18 @@ import { analyze, placeText } from "./analysis.js";
 import { ask, newestOnly } from "./connection.js";
 import { make } from "./controls.js";
 import { distanceTo, drawEllipse, drawPicture, targetOf } from "./drawing.js";
+import { ellipseThrough, kLeastPoints } from "./hand.js";
 
 const kMostChoices = 12;
 const kSamePx = 2;
+const kFields = ["cx", "cy", "semi_major", "semi_minor", "angle_rad"];
+const kOthers = { drawn: true, none: true };
 const at = (id) => document.getElementById(id);
 
 export class Labels {
   #choices = [];      // ellipses
-  #chosen = null;     // a number, or "none"
+  #chosen = null;     // a number, "drawn" or "none"
+  #points = [];       // clicked on the edge of what no choice tells
   #pts = null;        // of the frame that they are of
   #saved = 0;
   #isOn = false;
@@ -19,6 +23,10 @@ export class Labels {
   constructor(screen, playback) {
     Object.assign(this, { screen, playback });
     at("label-save").onclick = () => this.#save();
+    at("label-undo").onclick = () => {
+      this.#points.pop();
+      this.#choose("drawn");
+    };
     screen.canvas.addEventListener("pointerdown", (event) => this.#isOn && this.#pick(event));
   }
 
@@ -57,6 +65,7 @@ export class Labels {
     if (!this.#isOn) return;
     this.#choices = withoutDoubles([target, ...found].filter(Boolean)).slice(0, kMostChoices);
     this.#chosen = target ? 0 : null;
+    this.#points = [];
     this.#list();
     this.screen.draw();
   });
@@ -64,13 +73,23 @@ export class Labels {
   #list() {
     const choices = this.#choices.map((e, i) => [String(i), `${i + 1}: ${placeText(e)}`]);
     const legend = at("label-choices").querySelector("legend");
-    at("label-choices").replaceChildren(legend, ...[...choices, ["none", "None: no target in this frame"]]
-      .map(([value, text]) => {
-        const radio = make("input", { type: "radio", name: "label", value, checked: value === String(this.#chosen) });
-        radio.onchange = () => this.#choose(value === "none" ? value : Number(value));
-        return make("label", { className: "check" }, radio, make("span", {}, text));
-      }));
-    at("label-save").disabled = this.#chosen === null || !this.playback.source?.can_label;
+    const others = [
+      ["drawn", "Drawn: click points all along its edge"],
+      ["none", "None: no target in this frame"],
+    ];
+    at("label-choices").replaceChildren(legend, ...[...choices, ...others].map(([value, text]) => {
+      const radio = make("input", { type: "radio", name: "label", value });
+      radio.onchange = () => this.#choose(value in kOthers ? value : Number(value));
+      return make("label", { className: "check" }, radio, make("span", {}, text));
+    }));
+    this.#choose(this.#chosen);
+  }
+
+  /** The ellipse that is chosen; null = none of them, undefined = nothing is chosen yet. */
+  #answer() {
+    if (this.#chosen === "none") return null;
+    if (this.#chosen === "drawn") return ellipseThrough(this.#points) ?? undefined;
+    return this.#choices[this.#chosen];
   }
 
   #choose(choice) {
@@ -78,12 +97,21 @@ export class Labels {
     for (const radio of at("label-choices").querySelectorAll("input")) {
       radio.checked = radio.value === String(choice);
     }
-    at("label-save").disabled = !this.playback.source?.can_label;
+    at("label-save").disabled = !this.playback.source?.can_label || this.#answer() === undefined;
+    at("label-undo").hidden = choice !== "drawn";
+    at("label-undo").disabled = this.#points.length === 0;
+    const missing = kLeastPoints - this.#points.length;
+    at("label-undo").textContent = missing > 0 ? `Undo a point (${missing} more)` : "Undo a point";
     this.screen.draw();
   }
 
   #pick(event) {
     const { x, y } = this.screen.placeOf(event);
+    if (this.#chosen === "drawn") {
+      this.#points.push({ x, y });
+      this.#choose("drawn");
+      return;
+    }
     const distances = this.#choices.map((e) => distanceTo(e, x, y));
     const nearest = distances.indexOf(Math.min(...distances));
     if (nearest >= 0) this.#choose(nearest);
@@ -99,6 +127,18 @@ export class Labels {
       this.#number(context, e, i, isChosen);
     });
     context.lineWidth = width;
+    if (this.#chosen === "drawn") this.#drawByHand(context);
+  }
+
+  #drawByHand(context) {
+    const e = ellipseThrough(this.#points);
+    if (e) drawEllipse(context, e, "tracked", { ellipse: true, centre: true });
+    context.fillStyle = "#ffffff";
+    for (const { x, y } of this.#points) {
+      context.beginPath();
+      context.arc(x, y, 1.5 * context.lineWidth, 0, 2 * Math.PI);
+      context.fill();
+    }
   }
 
   // At the right end of the ellipse.
@@ -116,9 +156,9 @@ export class Labels {
 
   async #save() {
     const { frame } = this.screen;
-    const isNone = this.#chosen === "none";
-    const { cx, cy, semi_major, semi_minor, angle_rad } = isNone ? {} : this.#choices[this.#chosen];
-    const choice = isNone ? "none" : { cx, cy, semi_major, semi_minor, angle_rad };
+    const e = this.#answer();
+    const choice = e === null ? "none"
+      : Object.fromEntries(kFields.map((field) => [field, e[field]]));
     try {
       const { image } = await ask("POST", "api/snapshot", { choice, pts_ns: Number(frame.pts) });
       at("label-result").textContent = `${++this.#saved} saved, the last as ${image}`;

@@ -19,13 +19,16 @@ after(async () => { await browser.close(); });
 function withProgram(args, tests) {
   const context = {};
   before(async () => { context.program = await startProgram(...args()); });
+  beforeEach(async () => { await context.program.ask("POST", "/api/play"); });
   after(async () => { await context.program.stop(); });
   tests({
     get program() { return context.program; },
+    labels: join(process.env.XDG_DATA_HOME, "labels/gt.csv"),
     open: async (size) => openPage(browser, context.program.url, size),
   });
 }
 
+const readRows = (file) => readFileSync(file, "utf8").trim().split("\n");
 const setting = (page, name) => page.locator(`[data-setting="${name}"]`);
 const stateIs = (page, state) => page.waitForSelector(`#state[data-state=${state}]`);
 
@@ -35,7 +38,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     const properties = await live.program.ask("GET", "/api/properties");
     const numbers = properties.filter(({ type }) => type !== "rect" && type !== "flags");
     await live.program.ask("PUT", "/api/properties", Object.fromEntries(numbers.map((p) => [p.name, p.default])));
-    await live.program.ask("POST", "/api/play");
   });
 
   it("is shown frame after frame, with its figures", async () => {
@@ -289,10 +291,30 @@ describe("a file", () => withProgram(() => {
     await page.getByLabel("None: no target in this frame").check();
     await page.click("#label-save");
     await page.waitForFunction(() => /^2 saved/.test(document.querySelector("#label-result").textContent));
-    const rows = readFileSync(join(process.env.XDG_DATA_HOME, "labels/gt.csv"), "utf8").trim().split("\n");
+    const rows = readRows(live.labels);
     assert.equal(rows.length, 3);
     assert.match(rows[1], /^images\/labelled\/000001\.png,\d+/);
     assert.match(rows[2], /^images\/labelled\/000002\.png,,,,,,,\d+/);
+    await page.close();
+  });
+  it("takes an ellipse drawn by hand into the data set", async () => {
+    const page = await live.open();
+    await page.click("#tab-label");
+    await page.getByLabel("Drawn: click points all along its edge").check();
+    const { x, y, width } = await page.locator("#screen").boundingBox();
+    const scale = width / 640;
+    for (let i = 0; i < 6; ++i) {
+      assert.equal(await page.isEnabled("#label-save"), i >= 5);
+      const angle = i;
+      await page.mouse.click(x + (200.5 + 60 * Math.cos(angle)) * scale, y + (120.5 + 30 * Math.sin(angle)) * scale);
+    }
+    const before = readRows(live.labels).length;
+    await page.click("#label-save");
+    await page.waitForFunction(() => /^1 saved/.test(document.querySelector("#label-result").textContent));
+    const [, cx, cy, major, minor] = readRows(live.labels)[before].split(",").map(Number);
+    for (const [value, wanted] of [[cx, 200], [cy, 120], [major, 60], [minor, 30]]) {
+      assert.ok(Math.abs(value - wanted) < 1.5, `${value} instead of ${wanted}`);
+    }
     await page.close();
   });
 }));
