@@ -30,7 +30,7 @@ Picture picture_of(const Frame& frame, GstBuffer* jpeg) {
   const guint64 stamp = GUINT64_TO_LE(frame.pts);
   std::memcpy(bytes, &stamp, kStampSize);
   gst_buffer_extract(jpeg, 0, bytes + kStampSize, size);
-  Picture picture{.number = frame.number, .pts = frame.pts};
+  Picture picture{.number = frame.number, .pts = frame.pts, .arrived_us = frame.arrived_us};
   picture.stamped.reset(g_bytes_new_take(bytes, kStampSize + size));
   picture.jpeg.reset(g_bytes_new_from_bytes(picture.stamped.get(), kStampSize, size));
   return picture;

@@ -12,8 +12,9 @@ namespace live {
 
 /// A frame as its viewers get it.
 struct Picture {
-  guint64 number = 0;    ///< That of its frame.
-  GstClockTime pts = 0;  ///< [ns]
+  guint64 number = 0;     ///< That of its frame.
+  GstClockTime pts = 0;   ///< [ns]
+  gint64 arrived_us = 0;  ///< As that of its frame.
   Ref<GBytes> jpeg = {};
   Ref<GBytes> stamped = {};  ///< The PTS as eight bytes, lowest first, and the JPEG.
 };

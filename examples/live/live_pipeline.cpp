@@ -89,6 +89,8 @@ LivePipeline::LivePipeline(Handlers handlers)
   callbacks.new_sample = on_sample;
   callbacks.new_preroll = on_preroll;
   gst_app_sink_set_callbacks(GST_APP_SINK(sink_), &callbacks, this, nullptr);
+  const Ref<GstPad> pad(gst_element_get_static_pad(tracker_, "sink"));
+  gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, on_arrival, this, nullptr);
   const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
   bus_watch_ = gst_bus_add_watch(bus.get(), on_message, this);
   glance_ = g_timeout_add(kGlanceMs, on_glance, this);
@@ -103,6 +105,13 @@ LivePipeline::~LivePipeline() {
 }
 
 /* Frames, in the streaming thread */
+
+GstPadProbeReturn LivePipeline::on_arrival(GstPad* /*pad*/,
+                                           GstPadProbeInfo* /*info*/,
+                                           gpointer data) {
+  static_cast<LivePipeline*>(data)->arrived_us_ = g_get_monotonic_time();
+  return GST_PAD_PROBE_OK;
+}
 
 GstFlowReturn LivePipeline::on_sample(GstAppSink* sink, gpointer data) {
   if (GstSample* sample = gst_app_sink_pull_sample(sink)) {
@@ -127,6 +136,7 @@ void LivePipeline::take(GstSample* sample) {
   // What was shown when paused comes once more when it plays on.
   if (last_ && gst_sample_get_buffer(last_->sample.get()) == buffer) return;
   frame->number = frames_++;
+  frame->arrived_us = arrived_us_;  // no queue lies between: it is this frame's
   frame->pts = GST_BUFFER_PTS_IS_VALID(buffer) ? GST_BUFFER_PTS(buffer) : 0;
   frame->width = GST_VIDEO_INFO_WIDTH(&info);
   frame->height = GST_VIDEO_INFO_HEIGHT(&info);
@@ -233,12 +243,6 @@ bool LivePipeline::is_seekable() const {
   }
   gst_query_unref(query);
   return is_seekable != FALSE;
-}
-
-GstClockTime LivePipeline::age_of(GstClockTime pts) const {
-  const GstClockTime now = gst_element_get_current_running_time(pipeline_);
-  const bool is_known = spec_.is_live && GST_CLOCK_TIME_IS_VALID(now) && now >= pts;
-  return is_known ? now - pts : GST_CLOCK_TIME_NONE;
 }
 
 GstClockTime LivePipeline::position() const {

@@ -56,14 +56,12 @@ class LivePipeline {
   [[nodiscard]] guint64 reconnections() const { return reconnections_; }
   [[nodiscard]] guint64 frames() const { return frames_; }
   [[nodiscard]] bool is_seekable() const;
-  /// How old a frame is now [ns], from its capture on; GST_CLOCK_TIME_NONE where the source is not
-  /// live, so that its time stamps say nothing of that.
-  [[nodiscard]] GstClockTime age_of(GstClockTime pts) const;
   /// [ns]; GST_CLOCK_TIME_NONE where it is not known.
   [[nodiscard]] GstClockTime position() const;
   [[nodiscard]] GstClockTime duration() const;
 
  private:
+  static GstPadProbeReturn on_arrival(GstPad* pad, GstPadProbeInfo* info, gpointer data);
   static GstFlowReturn on_sample(GstAppSink* sink, gpointer data);
   static GstFlowReturn on_preroll(GstAppSink* sink, gpointer data);
   static gboolean on_message(GstBus* bus, GstMessage* message, gpointer data);
@@ -96,7 +94,9 @@ class LivePipeline {
   guint glances_without_frames_ = 0;
 
   std::atomic<guint64> frames_{0};
-  FramePtr last_;  // the streaming thread's
+  // The streaming thread's.
+  FramePtr last_;
+  gint64 arrived_us_ = 0;
 };
 
 }  // namespace live

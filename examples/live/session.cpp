@@ -9,7 +9,7 @@ namespace live {
 Session::Session(const Options& options, std::function<void()> on_failure)
     : loops_(options.loops),
       store_([this] { on_change(); }),
-      video_(store_, options.quality, [this](GstClockTime pts) { return pipeline_.age_of(pts); }),
+      video_(store_, options.quality),
       pipeline_({.on_frame = [this](FramePtr frame) { on_frame(std::move(frame)); },
                  .on_trouble =
                      [this](const std::string& trouble) {

@@ -30,7 +30,7 @@ bool parse_ack(std::string_view text, guint64& pts) {
 class SocketViewer : public Viewer {
  public:
   SocketViewer(std::unique_ptr<WebSocket> socket,
-               std::function<void(GstClockTime)> on_painted,
+               std::function<void(gint64 delay_us)> on_painted,
                std::function<void()> on_closed)
       : socket_(std::move(socket)), on_painted_(std::move(on_painted)) {
     socket_->listen({[this](std::string_view text) { take_ack(text); }, std::move(on_closed)});
@@ -42,7 +42,7 @@ class SocketViewer : public Viewer {
 
   void send(const Picture& picture) override {
     if (in_flight_.empty()) waiting_since_us_ = g_get_monotonic_time();
-    in_flight_.push_back(picture.pts);
+    in_flight_.push_back({picture.pts, picture.arrived_us});
     socket_->send_binary(picture.stamped.get());
   }
 
@@ -52,19 +52,26 @@ class SocketViewer : public Viewer {
   }
 
  private:
+  struct Sent {
+    GstClockTime pts;
+    gint64 arrived_us;
+  };
+
   void take_ack(std::string_view text) {
     guint64 pts = 0;
     if (!parse_ack(text, pts)) return;
-    const auto acknowledged = std::find(in_flight_.begin(), in_flight_.end(), pts);
+    const auto acknowledged = std::find_if(
+        in_flight_.begin(), in_flight_.end(), [pts](const Sent& sent) { return sent.pts == pts; });
     if (acknowledged == in_flight_.end()) return;
+    const gint64 delay_us = g_get_monotonic_time() - acknowledged->arrived_us;
     in_flight_.erase(in_flight_.begin(), acknowledged + 1);
     waiting_since_us_ = g_get_monotonic_time();
-    on_painted_(pts);
+    on_painted_(delay_us);
   }
 
   std::unique_ptr<WebSocket> socket_;
-  std::function<void(GstClockTime)> on_painted_;
-  std::deque<GstClockTime> in_flight_;
+  std::function<void(gint64)> on_painted_;
+  std::deque<Sent> in_flight_;
   gint64 waiting_since_us_ = 0;
 };
 
@@ -95,12 +102,9 @@ class StreamViewer : public Viewer {
 
 }  // namespace
 
-VideoFeed::VideoFeed(FrameStore& store,
-                     int quality,
-                     std::function<GstClockTime(GstClockTime)> age_of)
+VideoFeed::VideoFeed(FrameStore& store, int quality)
     : store_(store),
       encoder_(quality, [this](Picture picture) { deliver(std::move(picture)); }),
-      age_of_(std::move(age_of)),
       glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
 
 VideoFeed::~VideoFeed() {
@@ -112,8 +116,8 @@ void VideoFeed::add(std::unique_ptr<WebSocket> socket) {
   const auto remove_it = [this, &place] { remove(place.get()); };
   place = std::make_unique<SocketViewer>(
       std::move(socket),
-      [this](GstClockTime pts) {
-        note_painted(pts);
+      [this](gint64 delay_us) {
+        note_painted(delay_us);
         update();
       },
       remove_it);
@@ -128,11 +132,9 @@ void VideoFeed::add_stream(SoupServerMessage* request) {
   update();
 }
 
-void VideoFeed::note_painted(GstClockTime pts) {
-  const GstClockTime age = age_of_(pts);
-  if (!GST_CLOCK_TIME_IS_VALID(age)) return;
+void VideoFeed::note_painted(gint64 delay_us) {
   if (paint_delays_.size() == kMostDelays) paint_delays_.pop_front();
-  paint_delays_.push_back(age);
+  paint_delays_.push_back(static_cast<GstClockTime>(delay_us) * GST_USECOND);
 }
 
 GstClockTime VideoFeed::paint_delay(double share) const {

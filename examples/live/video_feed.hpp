@@ -1,7 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <deque>
-#include <functional>
 #include <list>
 #include <memory>
 
@@ -31,8 +30,7 @@ class Viewer {
 /// thread.
 class VideoFeed {
  public:
-  /// @param age_of  How old a frame is now [ns], by its PTS; NONE where that is not known.
-  VideoFeed(FrameStore& store, int quality, std::function<GstClockTime(GstClockTime)> age_of);
+  VideoFeed(FrameStore& store, int quality);
   ~VideoFeed();
   VideoFeed(const VideoFeed&) = delete;
   VideoFeed& operator=(const VideoFeed&) = delete;
@@ -47,8 +45,8 @@ class VideoFeed {
 
   [[nodiscard]] std::size_t viewers() const { return viewers_.size(); }
   [[nodiscard]] guint64 encoded() const { return encoder_.encoded(); }
-  /// From a frame's capture until a viewer had painted it and said so, of the last 256 [ns]:
-  /// `share` 0.5 = the median. NONE where none is known.
+  /// From a frame's arrival at the tracker until a viewer had painted it and said so, of the last
+  /// 256 [ns]: `share` 0.5 = the median. NONE where there were none.
   [[nodiscard]] GstClockTime paint_delay(double share) const;
   [[nodiscard]] guint64 sent() const { return sent_; }
   [[nodiscard]] guint64 sent_bytes() const { return sent_bytes_; }
@@ -58,13 +56,12 @@ class VideoFeed {
   void deliver(Picture picture);
   void send(Viewer& viewer);
   void remove(const Viewer* viewer);
-  void note_painted(GstClockTime pts);
+  void note_painted(gint64 delay_us);
 
   FrameStore& store_;
   JpegEncoder encoder_;
   Picture picture_;
   std::list<std::unique_ptr<Viewer>> viewers_;
-  std::function<GstClockTime(GstClockTime)> age_of_;
   std::deque<GstClockTime> paint_delays_;
   guint glance_;
   guint64 sent_ = 0;
