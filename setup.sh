@@ -38,7 +38,10 @@ if [ "${1:-}" != "--without-tests" ]; then
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
+    chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
   )
+  # npm gets playwright-core for it. A nodejs from elsewhere brings its own.
+  command -v npm > /dev/null || packages+=(nodejs npm)
 fi
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then

@@ -32,6 +32,7 @@ const openTab = setUpTabs((name) => {
   if (stays || views[name] === view) return;
   view?.stop();
   view = views[name] ?? null;
+  at("layers").hidden = view !== null;
   view?.start();
 });
 
