@@ -23,6 +23,13 @@ export class Playback {
     at("play").onclick = () => this.toggle();
     at("step").onclick = () => this.step();
     at("scrub").oninput = () => this.#seek(at("scrub").value / 1000 * this.source.duration_ns);
+    at("source-change").onclick = () => {
+      at("source-spec").value = this.source.spec;
+      at("source-error").textContent = "";
+      at("source-dialog").showModal();
+    };
+    at("source-cancel").onclick = () => at("source-dialog").close();
+    at("source-form").onsubmit = (event) => this.#changeSource(event);
     canvas.addEventListener("keydown", (event) => this.#takeKey(event));
     setInterval(() => this.refresh(), kPollMs);
   }
@@ -67,6 +74,17 @@ export class Playback {
     await this.refresh();
   }
 
+  async #changeSource(event) {
+    event.preventDefault();
+    try {
+      await ask("PUT", "api/source", { spec: at("source-spec").value.trim() });
+      at("source-dialog").close();
+    } catch (error) {
+      at("source-error").textContent = error.message;
+    }
+    await this.refresh();
+  }
+
   #takeKey(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const jump = { ArrowLeft: -kSecondNs, ArrowRight: kSecondNs }[event.key];
@@ -81,6 +99,7 @@ export class Playback {
     const { source } = this;
     const name = at("source-name");
     name.textContent = name.title = source.spec;
+    at("source-change").hidden = !source.can_change;
     at("play").setAttribute("aria-label", source.playing ? "Pause" : "Play");
     at("play").title = source.playing ? "Pause" : "Play";
     at("play-icon").setAttribute("href", source.playing ? "#i-pause" : "#i-play");

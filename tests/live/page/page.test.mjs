@@ -319,6 +319,21 @@ describe("a file", () => withProgram(() => {
   });
 }));
 
+it("changes the source where that is allowed", async () => {
+  const program = await startProgram("--source", "test:approach", "--allow-source-change");
+  const page = await openPage(browser, program.url);
+  await page.click("#source-change");
+  await page.fill("#source-spec", "test:moon");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /no such scene/.test(document.querySelector("#source-error").textContent));
+  await page.fill("#source-spec", "test:orbit");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#source-name").textContent === "test:orbit");
+  await stateIs(page, "tracked");
+  await page.close();
+  await program.stop();
+});
+
 it("says that the program is gone", async () => {
   const program = await startProgram("--source", "test:approach");
   const page = await openPage(browser, program.url);
