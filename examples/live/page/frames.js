@@ -15,6 +15,8 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
   const lines = new Map();  // by time stamp, in the order of their arrival
   let waiting = null;       // a picture that came before its line
   let next = null;          // the picture that is painted next
+  let arrived = 0;          // pictures
+  let decoded = 0;          // the last one that was
   const isOpen = { video: false, meta: false };
 
   const show = ({ pts, bitmap, socket }) => {
@@ -43,6 +45,7 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
 
   const takePicture = async (data, socket) => {
     const pts = String(new DataView(data).getBigUint64(0, true));
+    const number = ++arrived;
     let bitmap;
     try {
       bitmap = await createImageBitmap(new Blob([new Uint8Array(data, 8)], { type: "image/jpeg" }));
@@ -50,6 +53,8 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
       socket.send(`{"ack":${pts}}`);
       return;
     }
+    if (number < decoded) return bitmap.close();  // a newer one was faster
+    decoded = number;
     if (waiting) show(waiting);
     const picture = { pts, bitmap, socket };
     if (lines.has(pts)) {
