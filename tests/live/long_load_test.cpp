@@ -18,14 +18,14 @@ constexpr int kViewers = 50;
 constexpr int kStalled = 5;
 constexpr int kFrames = 3600;  // two minutes
 
-struct Run {
+struct Pace {
   double frames_per_second = 0.0;
   double p99_ms = 0.0;
   double skipped = 0.0;
 };
 
 // Keeps the clients going until so many more frames have come.
-Run run(const Client& client) {
+Pace run(const Client& client) {
   const double first = client.stat("frames");
   const gint64 start_us = g_get_monotonic_time();
   const gint64 most_us = 10 * 60 * G_USEC_PER_SEC;
@@ -45,14 +45,14 @@ Run run(const Client& client) {
 TEST(LiveLongLoad, FiftyViewersAndFiveOfThemStalledDoNotSlowThePipeline) {
   const LiveProgram program({});
   const Client client(program.url());
-  const Run alone = run(client);
+  const Pace alone = run(client);
   std::vector<std::unique_ptr<SocketClient>> viewers;
   for (int i = 0; i < kViewers; ++i) {
     viewers.push_back(std::make_unique<SocketClient>(program.url(), "ws/video"));
     ASSERT_TRUE(viewers.back()->is_open()) << i;
     if (i >= kStalled) viewers.back()->watch();
   }
-  const Run watched = run(client);
+  const Pace watched = run(client);
   std::size_t pictures = 0;
   for (const auto& viewer : viewers) pictures += viewer->watched();
   std::printf(
