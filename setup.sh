@@ -37,6 +37,7 @@ if [ "${1:-}" != "--without-tests" ]; then
     valgrind gcovr clang
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
+    libgstrtspserver-1.0-dev  # the camera of docs/cookbook.md
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
     chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
   )

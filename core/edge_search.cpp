@@ -11,6 +11,7 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kCircleSteps = 128;       // by which the visible part of a circle is told
+constexpr int kFineSteps = 4;           // in one of these, where little of a circle is visible
 constexpr double kMarginPx = 3.0;       // from the border
 constexpr double kLeastContrast = 4.0;  // [grey levels]
 constexpr double kContrastShare = 0.25;
@@ -18,20 +19,18 @@ constexpr int kMostSteps = 24;  // to each side of the expected place
 constexpr int kMostBox = 3;     // samples that are averaged on each side of an edge
 constexpr int kLongestProfile = 2 * (kMostSteps + kMostBox) + 3;
 
-struct Turn {
-  std::array<Eigen::Vector2d, kCircleSteps> directions;
-};
-
-const Turn& turn() {
-  static const Turn kTurn = [] {
-    Turn turn;
-    for (int i = 0; i < kCircleSteps; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / kCircleSteps;
-      turn.directions[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+// Directions all around.
+const Eigen::Vector2d& direction(std::size_t fine_step) {
+  constexpr std::size_t kDirections = kCircleSteps * kFineSteps;
+  static const auto kTurn = [] {
+    std::array<Eigen::Vector2d, kDirections> turn;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kDirections;
+      turn[i] = {std::cos(angle), std::sin(angle)};
     }
     return turn;
   }();
-  return kTurn;
+  return kTurn[fine_step];
 }
 
 // The picture's border, seen on the pad: inside where a . (x, y, 1) >= 0 for all four.
@@ -136,7 +135,7 @@ void EdgeSearch::place(const PadModel& model,
     const double radius = model.circles[c].radius;
     int count = 0;
     for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      seen[c][i] = visible.has(radius * turn().directions[i]);
+      seen[c][i] = visible.has(radius * direction(kFineSteps * i));
       count += seen[c][i] ? 1 : 0;
     }
     if (c == 0) visible_fraction_ = static_cast<double>(count) / kCircleSteps;
@@ -155,15 +154,19 @@ void EdgeSearch::place(const PadModel& model,
   for (std::size_t c = 0; c < circles; ++c) {
     const PadCircle& circle = model.circles[c];
     const double step_px = 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
+    const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+    const int fine = spacing_px < step_px ? kFineSteps : 1;
     double since_px = 0.5 * spacing_px;
     for (std::size_t i = 0; i < kCircleSteps; ++i) {
       if (!seen[c][i]) continue;
-      since_px += step_px;
-      if (since_px < spacing_px) continue;
-      since_px = std::min(since_px - spacing_px, spacing_px);
-      const Eigen::Vector2d& outwards = turn().directions[i];
-      const double sign = circle.is_bright_outside ? 1.0 : -1.0;
-      add(image_from_pad, circle.radius * outwards, sign * outwards, circle.contrast, int(c));
+      for (int k = 0; k < fine; ++k) {
+        since_px += step_px / fine;
+        if (since_px < spacing_px) continue;
+        const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
+        if (k > 0 && !visible.has(circle.radius * outwards)) continue;
+        since_px = std::min(since_px - spacing_px, spacing_px);
+        add(image_from_pad, circle.radius * outwards, sign * outwards, circle.contrast, int(c));
+      }
     }
   }
   for (std::size_t l = 0; l < model.lines.size(); ++l) {

@@ -52,9 +52,8 @@ constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kLeastMetOfLine = 0.5;
 constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
-constexpr double kMostCentreSigma = 0.02;  // [radii], where less is visible
-constexpr double kPatternCoverage = 0.75;  // and
-constexpr double kPatternSpread = 0.15;
+constexpr double kMostCentreSigma = 0.025;  // [radii], where less is visible
+constexpr double kPatternCoverage = 0.75;
 constexpr double kLeastVisibleToRefine = 0.3;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
@@ -258,11 +257,15 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   }
   if (!attempt) {
     miss(prediction, before);
-    return is_locked_ ? told(window, nullptr) : std::nullopt;
+    return is_locked_ ? told(nullptr) : std::nullopt;
   }
+  const Eigen::Matrix3d last_view = view_;
   accept(*attempt, before);
+  refine(window, attempt->visible);
+  motion_.velocity =
+      carried(motion_.velocity, last_view, view_, frame_px_, kTurnNoise, kShiftNoise);
   learn_lines(window, *attempt);
-  return told(window, &*attempt);
+  return told(&*attempt);
 }
 
 void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
@@ -284,10 +287,19 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
   gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
   judge_lines(attempt.last);
   if (attempt.visible >= kLeastVisibleToLearn) learn_radii(attempt.last, kLearningShare);
-  motion_.velocity =
-      carried(motion_.velocity, view_, attempt.view, frame_px_, kTurnNoise, kShiftNoise);
   view_ = attempt.view;
   misses_ = 0;
+}
+
+// The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
+void EdgeTracker::refine(const LumaWindow& window, double visible) {
+  if (visible < kLeastVisibleToRefine) return;
+  const auto exact = refined_outer_edge(
+      window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
+  if (!exact) return;
+  const auto view =
+      with_outer_edge(view_, translated(*exact, window.origin_px.x(), window.origin_px.y()));
+  if (view) view_ = *view;
 }
 
 // The outer circle is the unit; where the others are met tells their radii.
@@ -362,7 +374,7 @@ void EdgeTracker::miss(const Eigen::Matrix3d& prediction, const PoseMotion& befo
   if (++misses_ > kMostMisses) is_locked_ = false;
 }
 
-std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attempt* attempt) const {
+std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
   const auto ellipse = project_circle(view_, 1.0);
   if (!ellipse) return std::nullopt;
   EdgeTrack track;
@@ -372,12 +384,7 @@ std::optional<EdgeTrack> EdgeTracker::told(const LumaWindow& window, const Attem
   track.coverage = attempt->support.coverage;
   track.visible = attempt->visible;
   track.is_seen = track.visible >= kEnoughVisible ||
-                  (motion_.centre_sigma() <= kMostCentreSigma &&
-                   track.coverage >= kPatternCoverage && attempt->support.spread >= kPatternSpread);
-  if (track.visible < kLeastVisibleToRefine || refinement_ == Refinement::kNone) return track;
-  const auto exact = refined_outer_edge(
-      window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
-  if (exact) track.ellipse = translated(*exact, window.origin_px.x(), window.origin_px.y());
+                  (motion_.centre_sigma() <= kMostCentreSigma && track.coverage >= kPatternCoverage);
   return track;
 }
 

@@ -44,7 +44,7 @@ class EdgeTracker {
   /// nullopt where the pad is lost.
   [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
 
-  /// @param refinement  Of the reported ellipses; the following itself needs none.
+  /// @param refinement  Of the outer edge in each frame, which the view is then laid upon.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
   void configure(Refinement refinement, double ring_ratio) {
     refinement_ = refinement;
@@ -83,12 +83,12 @@ class EdgeTracker {
                                    const PoseEstimate& estimate,
                                    const PoseChange& last) const;
   void accept(const Attempt& attempt, const PoseMotion& before);
+  void refine(const LumaWindow& window, double visible);
   void learn_radii(const PoseChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const PoseChange& change);
   void miss(const Eigen::Matrix3d& prediction, const PoseMotion& before);
-  [[nodiscard]] std::optional<EdgeTrack> told(const LumaWindow& window,
-                                              const Attempt* attempt) const;
+  [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
   Refinement refinement_ = Refinement::kEdges;

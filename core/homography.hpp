@@ -18,6 +18,11 @@ namespace ellipse {
 [[nodiscard]] std::optional<Ellipse> project_circle(const Eigen::Matrix3d& image_from_pad,
                                                     double radius);
 
+/// The view next to this one in which the outer circle is exactly this ellipse: the pad is moved
+/// and stretched in its own plane, and not turned. nullopt where the view shows no such ellipse.
+[[nodiscard]] std::optional<Eigen::Matrix3d> with_outer_edge(const Eigen::Matrix3d& image_from_pad,
+                                                             const Ellipse& outer_edge);
+
 /// A small change of a view, in the pad's own measure: H becomes H exp(A) with
 /// A = [S+E1, E2-R, T1+B1; E2+R, S-E1, T2+B2; B1, B2, 0].
 /// T (0, 1) shifts, S (2) grows, E (3, 4) stretches the outer circle; R (5) turns and B (6, 7)

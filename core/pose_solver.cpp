@@ -67,7 +67,6 @@ PoseSupport support_of(std::span<const EdgeSample> samples,
                        double tolerance_px,
                        int circles) {
   PoseSupport support;
-  Eigen::Matrix2d directions = Eigen::Matrix2d::Zero();
   std::array<int, 8> seen{};
   std::array<int, 8> met{};
   std::array<float, EdgeSearch::kMostSamples> gains;
@@ -77,7 +76,6 @@ PoseSupport support_of(std::span<const EdgeSample> samples,
     const EdgeCandidate* edge = nearest_candidate(sample, predicted);
     const bool is_met = edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
     if (is_met) gains[static_cast<std::size_t>(support.met)] = edge->contrast / sample.contrast;
-    if (is_met) directions += sample.view.normal * sample.view.normal.transpose();
     ++support.seen;
     support.met += is_met ? 1 : 0;
     if (sample.feature >= circles) continue;
@@ -94,10 +92,6 @@ PoseSupport support_of(std::span<const EdgeSample> samples,
     }
   }
   if (support.met > 0) {
-    // The smaller eigenvalue over the mean of both.
-    const double mean = 0.5 * directions.trace();
-    const double apart = std::sqrt(std::max(0.0, mean * mean - directions.determinant()));
-    support.spread = (mean - apart) / mean;
     const auto middle = gains.begin() + support.met / 2;
     std::nth_element(gains.begin(), middle, gains.begin() + support.met);
     support.gain = *middle;

@@ -26,7 +26,6 @@ struct PoseSupport {
   double coverage = 0.0;  ///< met over seen.
   double weakest = 0.0;   ///< Coverage of the circle with the least.
   double gain = 1.0;      ///< Median contrast over the model's.
-  double spread = 0.0;    ///< Of the met edges' directions: 0 all parallel, 1 all directions alike.
 };
 
 /// Solves for the change that brings all edges to what was met, weighted by what is known of it:

@@ -78,7 +78,10 @@ const std::array kSettings = {
     setting<kLimits, &Thresholds::min_contour_size>(
         "min-contour-size", kContourSizeRangePx, true, "Shortest contour that is looked at, in px"),
     setting<&TrackerSettings::max_scale>(
-        "max-scale", kMaxScaleRange, false, "Coarsest frame scale: frames shrink up to this"),
+        "max-scale",
+        kMaxScaleRange,
+        false,
+        "Coarsest scale: a frame is shrunk by this factor at the most"),
     setting<&TrackerSettings::min_target_size_px>(
         "min-target-size",
         kAxisRangePx,

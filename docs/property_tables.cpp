@@ -3,6 +3,8 @@
 // Writes the tables of properties in a document from what the elements themselves say, between
 //   <!-- properties of ELEMENT -->   and   <!-- end of properties -->
 // With --check it writes nothing, and fails where the document says something else.
+// The last column, the version that a property came with, is the document's: it is kept, and a
+// property that is new there gets the version of today. Signals are written by hand, and checked.
 #include <gst/base/gstbasetransform.h>
 #include <gst/gst.h>
 
@@ -10,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -19,6 +22,7 @@ namespace {
 
 constexpr char kBegin[] = "<!-- properties of ";
 constexpr char kEnd[] = "<!-- end of properties -->";
+constexpr char kVersion[] = ELLIPSE_VERSION;  // major and minor
 
 std::string quoted(const std::string& text) {
   return "`" + text + "`";
@@ -117,12 +121,41 @@ std::string changeable(const GParamSpec* spec) {
   return "-";
 }
 
-std::string table_of(const std::string& name) {
+// The last column of a row that begins with this name; empty where there is none.
+std::string since_of(const std::string& name, const std::string& document) {
+  const std::regex row("\\n\\| " + quoted(name) + " \\|.*\\| (\\d+\\.\\d+) \\|(?=\\n)");
+  std::smatch found;
+  return std::regex_search(document, found, row) ? found[1].str() : "";
+}
+
+// What stands about an element in the document, up to the next one.
+std::string section_of(const std::string& element, const std::string& document) {
+  const std::size_t begin = document.find("\n## " + element + "\n");
+  if (begin == std::string::npos) throw std::runtime_error("no section ## " + element);
+  const std::size_t end = document.find("\n## ", begin + 1);
+  return document.substr(begin, end == std::string::npos ? end : end - begin);
+}
+
+void check_signals(GType type, const std::string& section) {
+  guint count = 0;
+  const std::unique_ptr<guint, decltype(&g_free)> ids(g_signal_list_ids(type, &count), g_free);
+  for (guint i = 0; i < count; ++i) {
+    const std::string name = g_signal_name(ids.get()[i]);
+    if (since_of(name, section).empty()) {
+      throw std::runtime_error("no version in the last column of the signal " + name);
+    }
+  }
+}
+
+std::string table_of(const std::string& name, const std::string& document) {
   const std::unique_ptr<GstElement, decltype(&gst_object_unref)> element(
       gst_element_factory_make(name.c_str(), nullptr), gst_object_unref);
   if (!element) throw std::runtime_error("no element " + name);
+  const std::string section = section_of(name, document);
+  check_signals(G_OBJECT_TYPE(element.get()), section);
   std::string table =
-      "| property | type, range | default | changeable | what it is |\n|---|---|---|---|---|\n";
+      "| property | type, range | default | changeable | what it is | since |\n"
+      "|---|---|---|---|---|---|\n";
   guint count = 0;
   const std::unique_ptr<GParamSpec*, decltype(&g_free)> specs(
       g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count), g_free);
@@ -130,23 +163,26 @@ std::string table_of(const std::string& name) {
     GParamSpec* spec = specs.get()[i];
     const bool is_qos = spec->owner_type == GST_TYPE_BASE_TRANSFORM;
     if (spec->owner_type != G_OBJECT_TYPE(element.get()) && !is_qos) continue;
+    const std::string since = since_of(spec->name, section);
     table += "| " + quoted(spec->name) + " | " + type_of(spec) + " | " +
              default_of(element.get(), spec) + " | " + changeable(spec) + " | " +
-             escaped(g_param_spec_get_blurb(spec)) + " |\n";
+             escaped(g_param_spec_get_blurb(spec)) + " | " + (since.empty() ? kVersion : since) +
+             " |\n";
   }
   return table;
 }
 
-std::string with_tables(std::istream& document) {
+std::string with_tables(const std::string& document) {
+  std::istringstream lines(document);
   std::string result;
   std::string line;
   bool is_in_table = false;
-  while (std::getline(document, line)) {
+  while (std::getline(lines, line)) {
     if (line == kEnd) is_in_table = false;
     if (!is_in_table) result += line + "\n";
     if (line.rfind(kBegin, 0) != 0) continue;
     const std::string name = line.substr(std::strlen(kBegin));
-    result += table_of(name.substr(0, name.find(' ')));
+    result += table_of(name.substr(0, name.find(' ')), document);
     is_in_table = true;
   }
   if (is_in_table) throw std::runtime_error(std::string("a table without ") + kEnd);
@@ -157,7 +193,7 @@ int run(const std::string& file, bool is_check) {
   std::ifstream in(file);
   std::stringstream before;
   before << in.rdbuf();
-  const std::string after = with_tables(before);
+  const std::string after = with_tables(before.str());
   if (after == before.str()) return 0;
   if (!is_check) {
     std::ofstream(file) << after;

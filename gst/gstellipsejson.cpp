@@ -10,6 +10,8 @@
  * |[
  * gst-launch-1.0 -q ellipsetestsrc num-buffers=3 ! ellipsetrack ! ellipsejson ! fdsink
  * ]|
+ *
+ * Since: 0.1
  */
 
 #include "gst/gstellipsejson.h"

@@ -15,6 +15,8 @@
  * gst-launch-1.0 ellipsetestsrc ! ellipsetrack ! videoscale ! video/x-raw,width=1280,height=720 \
  *     ! ellipseoverlay ! videoconvert ! autovideosink
  * ]|
+ *
+ * Since: 0.1
  */
 
 #include "gst/gstellipseoverlay.h"

@@ -4,15 +4,17 @@
  * SECTION:element-ellipsetestsrc
  * @title: ellipsetestsrc
  *
- * Renders what a drone's camera sees above a landing pad: seventeen scenes, from a plain approach
- * to dusk, glare, occlusion, motion blur and clutter without any pad. Each
- * buffer carries the exact ellipse of the pad's outer edge as a #GstEllipseMeta with the role
- * "truth". The same properties give the same frames on any machine.
+ * Renders what a drone's camera sees above a landing pad: scenes from a plain approach to dusk,
+ * glare, occlusion, motion blur and clutter without any pad. Each buffer carries the exact ellipse
+ * of the pad's outer edge as a #GstEllipseMeta with the role "truth". The same properties give the
+ * same frames on any machine.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
  *     ! videoconvert ! autovideosink
  * ]|
+ *
+ * Since: 0.1
  */
 
 #include "gst/gstellipsetestsrc.h"
@@ -351,8 +353,13 @@ static void install_properties(GObjectClass* object_class) {
                               -1.0,
                               flags));
   install(PROP_SEED,
-          g_param_spec_uint(
-              "seed", "Seed", "Of all that is random: ground and noise", 0, G_MAXUINT32, 1, flags));
+          g_param_spec_uint("seed",
+                            "Seed",
+                            "Seed of all that is random: ground and noise",
+                            0,
+                            G_MAXUINT32,
+                            1,
+                            flags));
   install(PROP_IS_LIVE,
           g_param_spec_boolean("is-live",
                                "Is live",

@@ -97,13 +97,14 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
                             gst_ellipse_tracking_get_type(),
                             static_cast<gint>(initial.tracker.tracking),
                             playing));
-  install(first_id + PROP_REFINE,
-          g_param_spec_enum("refine",
-                            "Refine",
-                            "What makes an ellipse exact that is followed by its edges",
-                            gst_ellipse_refinement_get_type(),
-                            static_cast<gint>(initial.tracker.refine),
-                            playing));
+  install(
+      first_id + PROP_REFINE,
+      g_param_spec_enum("refine",
+                        "Refine",
+                        "How exact the ellipse is made of a target that is followed by its edges",
+                        gst_ellipse_refinement_get_type(),
+                        static_cast<gint>(initial.tracker.refine),
+                        playing));
   install(first_id + PROP_INTERVAL,
           g_param_spec_uint("interval",
                             "Interval",
@@ -159,7 +160,7 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
           g_param_spec_uint64("max-processing-time",
                               "Maximum processing time",
                               "Time for a frame in ns: beyond it the search gets coarser, then "
-                              "frames pass without analysis; 0 = any",
+                              "frames pass without analysis; 0 = no limit",
                               0,
                               G_MAXUINT64,
                               initial.max_processing_time,

@@ -12,6 +12,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 LAST_LINES = 20
+LONGEST_LINE = 300
 
 
 def failed_cases(report):
@@ -45,7 +46,7 @@ def failures(folder):
         for case, messages in cases or [(suite["result"].lower(), ["\n".join(last_words(suite))])]:
             yield f"FAILED {name}: {case}"
             for message in messages:
-                yield "\n".join(f"    {line}" for line in message.splitlines())
+                yield "\n".join(f"    {line[:LONGEST_LINE]}" for line in message.splitlines())
 
 
 if __name__ == "__main__":

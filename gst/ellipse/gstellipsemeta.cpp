@@ -42,6 +42,8 @@ GType gst_ellipse_state_get_type(void) {
  * [method@Gst.Buffer.get_n_meta]. Thread-safe.
  *
  * Returns: the type of the metadata's API
+ *
+ * Since: 0.1
  */
 GType gst_ellipse_meta_api_get_type(void) {
   static const gchar* kTags[] = {GST_META_TAG_VIDEO_STR,
@@ -165,6 +167,8 @@ static gboolean ellipse_meta_transform(
  * What GStreamer knows of the metadata: its size, and how it is copied and scaled. Thread-safe.
  *
  * Returns: (transfer none): the registration, never freed
+ *
+ * Since: 0.1
  */
 const GstMetaInfo* gst_ellipse_meta_get_info(void) {
   static const GstMetaInfo* kInfo = gst_meta_register(GST_ELLIPSE_META_API_TYPE,
@@ -186,6 +190,8 @@ const GstMetaInfo* gst_ellipse_meta_get_info(void) {
  * a time.
  *
  * Returns: (transfer none): the ellipse, owned by the buffer
+ *
+ * Since: 0.1
  */
 GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
@@ -204,6 +210,8 @@ GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
  * Allocates nothing.
  *
  * Returns: (transfer none) (nullable): the next ellipse, `NULL` after the last one
+ *
+ * Since: 0.1
  */
 GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* state) {
   return reinterpret_cast<GstEllipseMeta*>(
@@ -219,6 +227,8 @@ GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* sta
  *
  * Returns: (transfer container) (element-type GstEllipseMeta): a new list of the ellipses, which
  *   the buffer owns; empty where there are none. `g_list_free()` frees it
+ *
+ * Since: 0.1
  */
 GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
@@ -239,6 +249,8 @@ GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
  *
  * Returns: (transfer none) (nullable): the first ellipse with that role, owned by the buffer;
  *   `NULL` where there is none
+ *
+ * Since: 0.1
  */
 GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole role) {
   gpointer state = nullptr;
@@ -255,6 +267,8 @@ GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
  * Its role in a word. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "target", "candidate" or "truth"; "unknown" for any other number
+ *
+ * Since: 0.1
  */
 const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
@@ -268,6 +282,8 @@ const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta) {
  * Its state in a word. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "detected", "tracked" or "predicted"; "unknown" for any other number
+ *
+ * Since: 0.1
  */
 const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
@@ -282,6 +298,8 @@ const gchar* gst_ellipse_meta_get_state_name(const GstEllipseMeta* meta) {
  * to outlive the buffer is kept this way.
  *
  * Returns: (transfer full): a new structure, of the caller's
+ *
+ * Since: 0.1
  */
 GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
@@ -331,6 +349,8 @@ static void append_number(GString* json, const gchar* name, const gchar* format,
  * state nor overlaps nor scale; a number that is not finite is null.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
+ *
+ * Since: 0.1
  */
 gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
@@ -386,6 +406,8 @@ static void append_time(GString* json, const gchar* name, GstClockTime time) {
  * element ellipsejson writes.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
+ *
+ * Since: 0.1
  */
 gchar* gst_buffer_ellipses_to_json(GstBuffer* buffer, guint64 frame, guint width, guint height) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);

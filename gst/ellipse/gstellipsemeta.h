@@ -11,6 +11,8 @@ G_BEGIN_DECLS
  * @GST_ELLIPSE_ROLE_TRUTH: where a test source has really drawn the target
  *
  * What an ellipse on a buffer stands for.
+ *
+ * Since: 0.1
  */
 typedef enum {
   GST_ELLIPSE_ROLE_TARGET,
@@ -25,6 +27,8 @@ typedef enum {
  * @GST_ELLIPSE_STATE_PREDICTED: not seen; its motion was continued
  *
  * How a target came to be known in its frame.
+ *
+ * Since: 0.1
  */
 typedef enum {
   GST_ELLIPSE_STATE_DETECTED,
@@ -67,6 +71,8 @@ GType gst_ellipse_state_get_type(void);
  *
  * It belongs to its buffer and is gone with it, in every language: take its numbers while the
  * buffer is at hand, or keep what [method@GstEllipse.EllipseMeta.to_structure] returns.
+ *
+ * Since: 0.1
  */
 typedef struct _GstEllipseMeta GstEllipseMeta;
 struct _GstEllipseMeta {

@@ -10,6 +10,8 @@
  * The type that this metadata is filtered by, as in [method@Gst.Buffer.get_meta]. Thread-safe.
  *
  * Returns: the type of the metadata's API
+ *
+ * Since: 0.1
  */
 GType gst_ellipse_search_meta_api_get_type(void) {
   // Those of the ellipses, though a time has no size: where they are lost, "nothing was found" must
@@ -42,6 +44,8 @@ static gboolean search_meta_transform(
  * What GStreamer knows of the metadata: its size, and how it is copied. Thread-safe.
  *
  * Returns: (transfer none): the registration, never freed
+ *
+ * Since: 0.1
  */
 const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
   static const GstMetaInfo* kInfo = gst_meta_register(GST_ELLIPSE_SEARCH_META_API_TYPE,
@@ -61,6 +65,8 @@ const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
  * Notes on a buffer that its frame was searched.
  *
  * Returns: (transfer none): the #GstEllipseSearchMeta, owned by the buffer
+ *
+ * Since: 0.1
  */
 GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
                                                          GstClockTime processing_time) {
@@ -79,6 +85,8 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
  *
  * Returns: (transfer none) (nullable): what is known of the frame's search, %NULL where it was not
  * searched or an element has lost its metadata
+ *
+ * Since: 0.1
  */
 GstEllipseSearchMeta* gst_buffer_get_ellipse_search_meta(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);

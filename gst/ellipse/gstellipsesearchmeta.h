@@ -11,6 +11,8 @@ G_BEGIN_DECLS
  *
  * Says that a frame was searched for a target, also where none was found. Lives as long as the
  * #GstEllipseMeta beside it would: an element that keeps those keeps this.
+ *
+ * Since: 0.1
  */
 typedef struct _GstEllipseSearchMeta GstEllipseSearchMeta;
 struct _GstEllipseSearchMeta {

@@ -32,6 +32,25 @@ TEST(Homography, ShowsTheOuterCircleAsItsEllipse) {
   EXPECT_LT(max_difference_px(*circle, e), 1e-9);
 }
 
+TEST(Homography, IsLaidUponAnOuterEdge) {
+  const Matrix3d view = tilted_view();
+  const Ellipse seen_edge = project_circle(view, 1.0).value();
+  for (const Ellipse& e : {seen_edge,
+                           translated(seen_edge, 3.0, -2.0),
+                           Ellipse{312.0, 171.0, 90.0, 50.0, 0.7},
+                           Ellipse{300.0, 165.0, 70.0, 70.0, 0.0}}) {
+    const auto laid = with_outer_edge(view, e);
+    ASSERT_TRUE(laid);
+    EXPECT_LT(max_difference_px(project_circle(*laid, 1.0).value(), e), 1e-8);
+  }
+  EXPECT_LT((with_outer_edge(view, seen_edge).value() - view).norm(), 1e-8 * view.norm());
+  const Ellipse moved_edge = translated(seen_edge, 3.0, -2.0);
+  const Vector2d mark(0.4, 0.1);  // goes along
+  const Vector2d by = seen(with_outer_edge(view, moved_edge).value(), mark) - seen(view, mark);
+  EXPECT_LT((by - Vector2d(3.0, -2.0)).norm(), 0.2);
+  EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), seen_edge));
+}
+
 TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {
   const Matrix3d view = tilted_view();
   constexpr double kStep = 1e-6;

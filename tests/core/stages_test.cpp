@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
+#include "core/detectors.hpp"
 #include "core/luma.hpp"
 #include "core/overlap.hpp"
 #include "core/roi.hpp"
@@ -141,6 +143,37 @@ TEST(TrackerSettings, EachNumberIsSetByItsName) {
   }
 }
 
+TEST(TrackerSettings, EachChoiceIsSetByItsNick) {
+  TrackerSettings s;
+  const auto set_each = [&](const char* name, std::span<const char* const> nicks, auto& field) {
+    for (std::size_t i = 0; i < nicks.size(); ++i) {
+      set_by_name(s, name, nicks[i]);
+      EXPECT_EQ(static_cast<std::size_t>(field), i) << name << ' ' << nicks[i];
+    }
+  };
+  set_each("detector", detector_nicks(), s.detector);
+  set_each("tracking", tracking_nicks(), s.tracking);
+  set_each("refine", refinement_nicks(), s.refine);
+}
+
+TEST(TrackerSettings, AreSetInWholeNumbersWhereTheyAre) {
+  TrackerSettings s;
+  EXPECT_NE(message_of([&] { set_by_name(s, "min-contour-size", "60.5"); }).find("whole number"),
+            std::string::npos);
+  EXPECT_EQ(s, TrackerSettings{});
+  set_by_name(s, "min-axis", "60.5");
+  EXPECT_EQ(s.limits.min_axis_px, 60.5);
+}
+
+TEST(Detectors, HaveTheOverlapsOfTheDocumentation) {
+  const auto contours = make_detector(DetectorKind::kContours);
+  EXPECT_EQ(contours->detecting_overlaps(), (Overlaps{0.95, 0.95}));  // [Keipour2021] Table I
+  EXPECT_EQ(contours->tracking_overlaps(), (Overlaps{0.7, 0.3}));
+  const auto arcs = make_detector(DetectorKind::kArcs);
+  EXPECT_EQ(arcs->detecting_overlaps(), (Overlaps{0.7, 0.55}));
+  EXPECT_EQ(arcs->tracking_overlaps(), (Overlaps{0.6, 0.45}));
+}
+
 TEST(TrackerSettings, RefuseWhatTheyDoNotKnow) {
   TrackerSettings s;
   const auto set = [&](const char* name, const char* value) {
@@ -151,6 +184,8 @@ TEST(TrackerSettings, RefuseWhatTheyDoNotKnow) {
   EXPECT_NE(set("min-axis", "nan").find("min-axis"), std::string::npos);
   EXPECT_NE(set("roi-expansion", "99").find("roi-expansion"), std::string::npos);
   EXPECT_NE(set("tracking", "magic").find("redetect"), std::string::npos);
+  EXPECT_NE(set("detector", "magic").find("arcs"), std::string::npos);
+  EXPECT_NE(set("refine", "magic").find("photometric"), std::string::npos);
   EXPECT_EQ(s, TrackerSettings{});
 }
 

@@ -63,6 +63,9 @@ class PropertyValue {
         break;
     }
   }
+  [[nodiscard]] const GValue& value() const { return value_; }
+  /// Whether it lies in the property's range.
+  [[nodiscard]] bool is_valid() const { return g_param_value_is_valid(spec_, &value_) != FALSE; }
   void give_to(GstElement* element) const {
     g_object_set_property(G_OBJECT(element), spec_->name, &value_);
   }

@@ -163,6 +163,7 @@ class Broker {
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
+  [[nodiscard]] const std::string& port() const { return port_; }
   [[nodiscard]] std::string address() const {
     return " -h 127.0.0.1 -p " + port_ + " -t pad -q 1 ";
   }

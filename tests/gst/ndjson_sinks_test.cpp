@@ -19,6 +19,7 @@
 namespace {
 
 using support::Broker;
+using support::contents_of;
 using support::count_lines;
 using support::object_of;
 using support::Pipeline;
@@ -42,12 +43,6 @@ void expect_frames(const std::string& text, std::size_t first, std::size_t count
     ASSERT_NE(line, nullptr) << "line " << i << " is no JSON";
     ASSERT_EQ(json_object_get_int_member(line, "frame"), static_cast<gint64>(first + i));
   }
-}
-
-std::string contents_of(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
 }
 
 TEST(NdjsonSinks, FileSink) {

@@ -16,15 +16,13 @@ namespace {
 
 using ellipse::Ellipse;
 using support::add_circle;
+using support::all_formats;
 using support::caps_of;
 using support::harness_of;
 using support::info_of;
 using support::Owned;
 using support::Picture;
 
-constexpr const char* kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "NV16", "Y41B", "Y42B",
-                                    "Y444",  "YUY2", "UYVY", "YVYU", "RGB",  "BGR",  "RGBx", "BGRx",
-                                    "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
 constexpr const char* kAllParts = "overlay=ellipse+axes+centre+roi+label";
 
 using Bytes = std::vector<guint8>;
@@ -120,7 +118,7 @@ bool is_near(const Ellipse& e, const ellipse::Rect& block, double reach_px) {
 
 TEST(EllipseOverlay, ChangesNoByteAwayFromTheLine) {
   const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
-  for (const char* format : kFormats) {
+  for (const char* format : all_formats()) {
     for (const int line_width : {1, 2, 5, 8}) {
       const GstVideoInfo info = info_of(format, 161, 121);
       const std::string caps = caps_of(format, 161, 121);
@@ -144,7 +142,7 @@ TEST(EllipseOverlay, ChangesNoByteAwayFromTheLine) {
 
 TEST(EllipseOverlay, CoversTheWholeLineInEachFormat) {
   const Ellipse circle{80.5, 60.5, 30.0, 30.0, 0.0};
-  for (const char* format : kFormats) {
+  for (const char* format : all_formats()) {
     const auto buffer = drawn("overlay=ellipse overlay-color=0xffffffff", format, 161, 121, circle);
     const Bytes bytes = bytes_of(buffer.get());
     int on_line = 0;
@@ -168,7 +166,7 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
                              {"bt709", {63, 102, 240}},
                              {"1:4:5:1", {76, 85, 255}},
                              {"1:3:5:1", {54, 99, 255}}};
-  for (const char* format : kFormats) {
+  for (const char* format : all_formats()) {
     for (const Case& of : kCases) {
       const GstVideoInfo info = info_of(format, 97, 97);
       if (!GST_VIDEO_INFO_IS_YUV(&info)) continue;
@@ -189,7 +187,7 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
 
 TEST(EllipseOverlay, HasItsColourInRgb) {
   constexpr int kRed[] = {0xf0, 0x40, 0x10, 0xff};
-  for (const char* format : kFormats) {
+  for (const char* format : all_formats()) {
     const GstVideoInfo info = info_of(format, 96, 96);
     if (!GST_VIDEO_INFO_IS_RGB(&info)) continue;
     const auto buffer = drawn("overlay=ellipse line-width=8 overlay-color=0xfff04010",
@@ -246,7 +244,7 @@ TEST(EllipseOverlay, BorderCutsAndChangesNothingElse) {
 }
 
 TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
-  for (const char* format : kFormats) {
+  for (const char* format : all_formats()) {
     for (const int size : {1, 2, 3, 5}) {
       const auto buffer = drawn(kAllParts, format, size, size, {0.0, 0.0, 2.0, 0.5, 0.3});
       EXPECT_NE(bytes_of(buffer.get()), bytes_of(even_buffer(format, size, size).get()))
@@ -332,6 +330,42 @@ TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
               &foreign,
               sizeof foreign);
   EXPECT_TRUE(push(harness, std::move(buffer)));
+}
+
+TEST(EllipseOverlay, DrawsCandidatesThinAndGrey) {
+  const Ellipse e{160.0, 120.0, 80.0, 60.0, 0.0};
+  const auto drawn_as = [&](GstEllipseRole role) {
+    const std::string caps = caps_of("GRAY8", 320, 240);
+    auto buffer = even_buffer("GRAY8", 320, 240);
+    add_ellipse(buffer.get(), e);
+    gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->role = role;
+    const auto harness = harness_of(
+        "ellipseoverlay overlay=ellipse line-width=6 overlay-color=0xffffffff", caps, caps);
+    return bytes_of(push(harness, std::move(buffer)).get());
+  };
+  const auto changed = [](const Bytes& bytes) {
+    return std::count_if(bytes.begin(), bytes.end(), [](guint8 byte) { return byte != 128; });
+  };
+  const Bytes target = drawn_as(GST_ELLIPSE_ROLE_TARGET);
+  const Bytes candidate = drawn_as(GST_ELLIPSE_ROLE_CANDIDATE);
+  EXPECT_EQ(target.at(120 * 320 + 240), 255);
+  EXPECT_NEAR(candidate.at(120 * 320 + 240), 0xb0, 1);
+  EXPECT_NEAR(
+      static_cast<double>(changed(candidate)) / static_cast<double>(changed(target)), 0.5, 0.15);
+  EXPECT_EQ(changed(drawn_as(GST_ELLIPSE_ROLE_TRUTH)), 0);  // unless truth=true
+}
+
+TEST(EllipseOverlay, ABufferTooSmallForItsCapsPassesWithAWarning) {
+  const std::string caps = caps_of("GRAY8", 320, 240);
+  const auto harness = harness_of("ellipseoverlay name=overlay", caps, caps);
+  const Owned<GstElement> overlay(gst_bin_get_by_name(GST_BIN(harness->element), "overlay"));
+  support::BusTap bus(overlay.get());  // a bin's messages would keep each other alive on it
+  Owned<GstBuffer> small(gst_buffer_new_allocate(nullptr, 100, nullptr));
+  gst_buffer_memset(small.get(), 0, 128, 100);
+  add_ellipse(small.get(), {160.0, 120.0, 80.0, 60.0, 0.0});
+  const auto out = push(harness, std::move(small));
+  EXPECT_EQ(bytes_of(out.get()), Bytes(100, 128));
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
 }
 
 TEST(EllipseOverlay, TransparentColourDrawsNothing) {

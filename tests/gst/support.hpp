@@ -5,10 +5,12 @@
 #include <gst/video/video.h>
 #include <json-glib/json-glib.h>
 
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,29 @@ struct Unref {
 };
 template <class T>
 using Owned = std::unique_ptr<T, Unref>;
+
+/// The formats of the pads of ellipsetrack and ellipseoverlay: luma in a plane of its own, then
+/// packed YUV and RGB.
+inline constexpr std::array kPlanarFormats{
+    "GRAY8", "I420", "YV12", "NV12", "NV21", "NV16", "Y41B", "Y42B", "Y444"};
+inline constexpr std::array kPackedFormats{"YUY2",
+                                           "UYVY",
+                                           "YVYU",
+                                           "RGB",
+                                           "BGR",
+                                           "RGBx",
+                                           "BGRx",
+                                           "xRGB",
+                                           "xBGR",
+                                           "RGBA",
+                                           "BGRA",
+                                           "ARGB",
+                                           "ABGR"};
+inline std::vector<const char*> all_formats() {
+  std::vector<const char*> all(kPlanarFormats.begin(), kPlanarFormats.end());
+  all.insert(all.end(), kPackedFormats.begin(), kPackedFormats.end());
+  return all;
+}
 
 inline std::string caps_of(const std::string& format, int width, int height) {
   return "video/x-raw,format=" + format + ",width=" + std::to_string(width) +
@@ -208,6 +233,13 @@ inline std::string run_pipeline(const std::string& description,
   if (prepare) prepare(pipeline.get());
   pipeline.play();
   return pipeline.wait_for_end();
+}
+
+/// All of a file; empty where there is none.
+inline std::string contents_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
 }
 
 /// The lines of NDJSON, parsed; fails to a null root where a line is no JSON.

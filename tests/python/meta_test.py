@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""GstEllipseMeta as Python sees it."""
+"""The metadata and the elements as Python sees them."""
 import json
+import os
 import sys
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 import gi
 
 gi.require_version("Gst", "1.0")
 gi.require_version("GstEllipse", "1.0")
-from gi.repository import GLib, Gst, GstEllipse  # noqa: E402
+from gi.repository import GLib, GObject, Gst, GstEllipse  # noqa: E402
 
 TARGET = GstEllipse.EllipseRole.TARGET
 CANDIDATE = GstEllipse.EllipseRole.CANDIDATE
@@ -82,6 +84,65 @@ class EllipseMeta(unittest.TestCase):
         self.assertEqual(buffer.get_n_meta(GstEllipse.ellipse_meta_api_get_type()), 2)
         self.assertEqual(Gst.Meta.get_info("GstEllipseMeta").size,
                          GstEllipse.EllipseMeta.get_info().size)
+
+
+class SearchRegion(unittest.TestCase):
+    """ellipsetrack's property roi, a GstValueArray of four ints."""
+
+    def setUp(self):
+        self.track = Gst.ElementFactory.make("ellipsetrack")
+
+    def region(self):
+        is_array, four = Gst.util_get_object_array(self.track, "roi")
+        self.assertTrue(is_array)
+        return [four.get_nth(i) for i in range(four.n_values)]
+
+    def test_is_written_as_text_and_read_as_numbers(self):
+        self.assertEqual(self.region(), [0, 0, 0, 0])
+        Gst.util_set_object_arg(self.track, "roi", "<10,-20,300,200>")
+        self.assertEqual(self.region(), [10, -20, 300, 200])
+
+    def test_is_written_as_numbers(self):
+        four = GObject.ValueArray.new(4)
+        for number in (1, 2, 30, 40):
+            four.append(number)
+        self.assertTrue(Gst.util_set_object_array(self.track, "roi", four))
+        self.assertEqual(self.region(), [1, 2, 30, 40])
+
+    def targets_inside(self, region):
+        pipeline = Gst.parse_launch(
+            "ellipsetestsrc num-buffers=5 ! ellipsetrack name=track roi-source=property"
+            " ! appsink name=sink sync=false")
+        Gst.util_set_object_arg(pipeline.get_by_name("track"), "roi", region)
+        pipeline.set_state(Gst.State.PLAYING)
+        sink = pipeline.get_by_name("sink")
+        found = []
+        while (sample := sink.emit("pull-sample")) is not None:
+            ellipse = GstEllipse.buffer_get_ellipse_meta(sample.get_buffer(), TARGET)
+            if ellipse is not None:
+                found.append((ellipse.cx, ellipse.cy))
+        pipeline.set_state(Gst.State.NULL)
+        return found
+
+    def test_is_where_the_target_is_looked_for(self):
+        inside = self.targets_inside("<200,100,300,200>")
+        self.assertEqual(len(inside), 5)
+        self.assertAlmostEqual(inside[0][0], 319.8, delta=0.5)
+        self.assertEqual(self.targets_inside("<0,0,100,100>"), [])
+
+
+class Reference(unittest.TestCase):
+    """What the API reference is made from."""
+
+    def test_says_of_everything_since_when(self):
+        gir = ElementTree.parse(os.environ["ELLIPSE_GIR"])
+        core = "{http://www.gtk.org/introspection/core/1.0}"
+        namespace = gir.find(f"{core}namespace")
+        kinds = ("function", "method", "constructor", "record", "enumeration", "bitfield", "class")
+        symbols = [symbol for kind in kinds for symbol in namespace.iter(core + kind)]
+        self.assertGreater(len(symbols), 15)
+        without = [symbol.get("name") for symbol in symbols if symbol.get("version") is None]
+        self.assertEqual(without, [])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,89 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+// The command lines of a document, as its readers find them.
+namespace recipes {
+
+/// One block of command lines.
+struct Recipe {
+  std::string section;
+  std::string text;
+  std::string shown;              ///< What the document says that it writes; empty: nothing of it.
+  bool waits_for_ctrl_c = false;  ///< Serves or receives, beside another one with the same port.
+  bool is_left_out = false;       ///< Says so in front of the block.
+};
+
+struct Document {
+  std::vector<Recipe> recipes;
+  std::map<std::string, std::string> files;  ///< Programs by the name in the sentence before them.
+};
+
+/// Reads a Markdown document: a test that it cannot be opened is up to the caller.
+inline Document read(const std::string& path) {
+  Document document;
+  std::ifstream in(path);
+  std::string section;
+  std::string before;  // the paragraph in front of a block
+  bool is_below_recipe = false;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("```")) {
+      if (line.starts_with("#")) section = line.substr(line.find(' ') + 1);
+      before = line.empty() ? "" : before + line + " ";
+      if (!line.empty()) is_below_recipe = false;
+      continue;
+    }
+    const std::string language = line.substr(3);
+    std::string text;
+    while (std::getline(in, line) && line != "```") text += line + "\n";
+    std::smatch name;
+    if (language == "sh") {
+      const bool waits = text.starts_with("# until Ctrl-C\n");
+      const bool is_elsewhere = text.starts_with("./examples/") || text.starts_with("./tests/");
+      const bool is_left_out = is_elsewhere || before.ends_with("*Not run by the tests:* ");
+      document.recipes.push_back({section, text, "", waits, is_left_out});
+    } else if (language.empty() && is_below_recipe) {
+      document.recipes.back().shown = text;
+    } else if (std::regex_search(before, name, std::regex("`(\\w+\\.(c|py))`"))) {
+      document.files[name[1]] = text;
+    }
+    is_below_recipe = language == "sh";
+    before.clear();
+  }
+  return document;
+}
+
+/// Every first group of a pattern in a text.
+inline std::vector<std::string> all_of(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<std::string> found;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), regex);
+       it != std::sregex_iterator();
+       ++it) {
+    found.push_back((*it)[1]);
+  }
+  return found;
+}
+
+/// The ports that a recipe names, itself or in the programs that it starts.
+inline std::vector<std::string> ports_of(const Recipe& recipe, const Document& document) {
+  std::string text = recipe.text;
+  for (const auto& [name, program] : document.files) {
+    if (recipe.text.find(name) != std::string::npos) text += program;
+  }
+  return all_of(text, "\\b(1883|5000|5005|8554)\\b");
+}
+
+inline bool share_a_port(const Recipe& a, const Recipe& b, const Document& document) {
+  const std::vector<std::string> ports = ports_of(a, document);
+  const std::vector<std::string> others = ports_of(b, document);
+  return std::find_first_of(ports.begin(), ports.end(), others.begin(), others.end()) !=
+         ports.end();
+}
+
+}  // namespace recipes
