@@ -27,7 +27,7 @@ export class Labels {
       this.#points.pop();
       this.#choose("drawn");
     };
-    screen.canvas.addEventListener("pointerdown", (event) => this.#isOn && this.#pick(event));
+    screen.canvas.addEventListener("click", (event) => this.#isOn && this.#pick(event));
   }
 
   async start() {

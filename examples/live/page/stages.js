@@ -40,7 +40,7 @@ export class Stages {
       this.#names[stage] = make("span", {}, title);
       at("stage-choices").append(make("label", { className: "pill" }, radio, this.#names[stage]));
     }
-    screen.canvas.addEventListener("pointerdown", (event) => this.#isOn && this.#pick(event));
+    screen.canvas.addEventListener("click", (event) => this.#isOn && this.#pick(event));
   }
 
   start() {

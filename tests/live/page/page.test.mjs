@@ -154,6 +154,23 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     await page.close();
   });
 
+  it("finds what is clicked on the screen in the list", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await page.click("#tab-stages");
+    await page.waitForSelector("#stage-summary b");
+    const { candidates, width } = await live.program.ask("POST", "/api/analyze", {});
+    const { ellipse: e } = candidates.find(({ is_target: isTarget }) => isTarget);
+    const box = await page.locator("#screen").boundingBox();
+    const scale = box.width / width;
+    const [x, y] = [e.cx + e.semi_major * Math.cos(e.angle_rad), e.cy + e.semi_major * Math.sin(e.angle_rad)];
+    await page.mouse.click(box.x + (x + 0.5) * scale, box.y + (y + 0.5) * scale);
+    await page.waitForFunction(() => /^The target/.test(document.activeElement.textContent));
+    await page.close();
+  });
+
   it("works by keys alone", async () => {
     const page = await live.open();
     await page.keyboard.press("Tab");
