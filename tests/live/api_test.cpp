@@ -136,7 +136,8 @@ TEST(LiveApi, SetsPairsThatPassEachOther) {
   EXPECT_EQ(json_array_get_int_element(roi, 3), 200);
 }
 
-// The pad moves by 40 px a frame: an ellipse of the frame before would be far off.
+// The pad moves by up to 40 px a frame, blurred by it: an ellipse of the frame before would be far
+// off, one of the same frame, seen once more through JPEG and without a past, by a few px.
 TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
   const LiveProgram program({"--source", "test:dash"});
   SocketClient lines(program.url(), "ws/meta");
@@ -156,8 +157,8 @@ TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
     const auto seen = ellipse::Tracker().process(
         ellipse::ImageView{picture.data, picture.cols, picture.rows, picture.cols}, 0);
     if (target == nullptr || !seen) continue;
-    EXPECT_NEAR(json_object_get_double_member(target, "cx"), seen->ellipse.cx, 2.0);
-    EXPECT_NEAR(json_object_get_double_member(target, "cy"), seen->ellipse.cy, 2.0);
+    EXPECT_NEAR(json_object_get_double_member(target, "cx"), seen->ellipse.cx, 8.0);
+    EXPECT_NEAR(json_object_get_double_member(target, "cy"), seen->ellipse.cy, 8.0);
     ++compared;
   }
   EXPECT_GT(compared, 20);
