@@ -16,6 +16,7 @@ packages=(
   # examples
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
   python3-gi gir1.2-gstreamer-1.0
+  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
@@ -30,7 +31,7 @@ if [ "${1:-}" != "--without-tests" ]; then
   packages+=(
     libgtest-dev libbenchmark-dev
     # what the metadata is sent through, and what carries the JSON lines
-    gstreamer1.0-plugins-bad gstreamer1.0-plugins-ugly gstreamer1.0-x
+    gstreamer1.0-plugins-bad gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
     valgrind gcovr clang
@@ -39,7 +40,10 @@ if [ "${1:-}" != "--without-tests" ]; then
     libgstrtspserver-1.0-dev  # the camera of docs/cookbook.md
     python3-yaml  # reads what 06_ros_yaml.py writes
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
+    chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
   )
+  # npm gets playwright-core for it. A nodejs from elsewhere brings its own.
+  command -v npm > /dev/null || packages+=(nodejs npm)
 fi
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then

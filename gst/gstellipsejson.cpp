@@ -18,8 +18,9 @@
 
 #include <gst/video/video.h>
 
+#include <cstring>
+
 #include "gst/ellipse/gstellipsemeta.h"
-#include "gst/ellipse/gstellipsesearchmeta.h"
 
 struct _GstEllipseJson {
   GstBaseTransform parent;
@@ -56,46 +57,18 @@ static gboolean gst_ellipse_json_set_caps(GstBaseTransform* base, GstCaps* in, G
   return gst_video_info_from_caps(&GST_ELLIPSE_JSON(base)->info, in);
 }
 
-static void append_time(GString* line, const gchar* name, GstClockTime time) {
-  if (GST_CLOCK_TIME_IS_VALID(time)) {
-    g_string_append_printf(line, ",\"%s\":%" G_GUINT64_FORMAT, name, time);
-  } else {
-    g_string_append_printf(line, ",\"%s\":null", name);
-  }
-}
-
-static GString* line_of(GstEllipseJson* self, GstBuffer* buffer) {
-  GString* line = g_string_new(nullptr);
-  g_string_append_printf(line, "{\"frame\":%" G_GUINT64_FORMAT, self->frame);
-  append_time(line, "pts_ns", GST_BUFFER_PTS(buffer));
-  g_string_append_printf(line,
-                         ",\"width\":%d,\"height\":%d",
-                         GST_VIDEO_INFO_WIDTH(&self->info),
-                         GST_VIDEO_INFO_HEIGHT(&self->info));
-  const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
-  append_time(
-      line, "processing_ns", search != nullptr ? search->processing_time : GST_CLOCK_TIME_NONE);
-  g_string_append(line, ",\"targets\":[");
-  gpointer state = nullptr;
-  const gchar* separator = "";
-  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
-    gchar* json = gst_ellipse_meta_to_json(meta);
-    g_string_append_printf(line, "%s%s", separator, json);
-    g_free(json);
-    separator = ",";
-  }
-  g_string_append(line, "]}\n");
-  return line;
-}
-
 static GstFlowReturn gst_ellipse_json_prepare_output_buffer(GstBaseTransform* base,
                                                             GstBuffer* in,
                                                             GstBuffer** out) {
   auto* self = GST_ELLIPSE_JSON(base);
-  GString* line = line_of(self, in);
+  gchar* json = gst_buffer_ellipses_to_json(in,
+                                            self->frame,
+                                            static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info)),
+                                            static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info)));
   ++self->frame;
-  const gsize length = line->len;
-  *out = gst_buffer_new_wrapped(g_string_free(line, FALSE), length);
+  gchar* line = g_strconcat(json, "\n", nullptr);
+  g_free(json);
+  *out = gst_buffer_new_wrapped(line, std::strlen(line));
   gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
   return GST_FLOW_OK;
 }

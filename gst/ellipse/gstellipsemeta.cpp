@@ -12,6 +12,7 @@
 
 #include "core/ellipse.hpp"
 #include "core/image_view.hpp"
+#include "gst/ellipse/gstellipsesearchmeta.h"
 
 GType gst_ellipse_role_get_type(void) {
   static const GEnumValue kValues[] = {
@@ -463,10 +464,11 @@ static void append_position(GString* json, const GstEllipseMeta* meta) {
  * @meta: an ellipse
  *
  * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians. With a camera
- * also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
- * diameter position, other_position, position_covariance; metres. The truth has neither state nor
- * overlaps nor scale; a number that is not finite is null.
+ * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians; and, where one
+ * is known, the region that was searched, roi, as x, y, width and height. With a camera also
+ * bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter
+ * position, other_position, position_covariance; metres. The truth has neither state nor overlaps
+ * nor scale; a number that is not finite is null.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
  *
@@ -494,8 +496,61 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   }
   append_number(json, "visible", "%.4f", meta->visible_fraction);
   if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);
+  if (meta->roi_width > 0 && meta->roi_height > 0) {
+    g_string_append_printf(json,
+                           ",\"roi\":[%d,%d,%u,%u]",
+                           meta->roi_x,
+                           meta->roi_y,
+                           meta->roi_width,
+                           meta->roi_height);
+  }
   if (meta->has_pose) append_pose(json, meta);
   if (meta->has_position) append_position(json, meta);
   g_string_append_c(json, '}');
+  return g_string_free(json, FALSE);
+}
+
+static void append_time(GString* json, const gchar* name, GstClockTime time) {
+  if (GST_CLOCK_TIME_IS_VALID(time)) {
+    g_string_append_printf(json, ",\"%s\":%" G_GUINT64_FORMAT, name, time);
+  } else {
+    g_string_append_printf(json, ",\"%s\":null", name);
+  }
+}
+
+/**
+ * gst_buffer_ellipses_to_json:
+ * @buffer: a buffer
+ * @frame: the number of the frame
+ * @width: width of the frame in px
+ * @height: height of the frame in px
+ *
+ * All that a frame says of ellipses as a JSON object on one line, without a newline: frame, pts_ns,
+ * width, height, processing_ns, and the array targets, also where nothing was found. It is what the
+ * element ellipsejson writes.
+ *
+ * Returns: (transfer full): a new string, which `g_free()` frees
+ *
+ * Since: 0.1
+ */
+gchar* gst_buffer_ellipses_to_json(GstBuffer* buffer, guint64 frame, guint width, guint height) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  GString* json = g_string_new(nullptr);
+  g_string_append_printf(json, "{\"frame\":%" G_GUINT64_FORMAT, frame);
+  append_time(json, "pts_ns", GST_BUFFER_PTS(buffer));
+  g_string_append_printf(json, ",\"width\":%u,\"height\":%u", width, height);
+  const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
+  append_time(
+      json, "processing_ns", search != nullptr ? search->processing_time : GST_CLOCK_TIME_NONE);
+  g_string_append(json, ",\"targets\":[");
+  gpointer state = nullptr;
+  const gchar* separator = "";
+  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    gchar* ellipse = gst_ellipse_meta_to_json(meta);
+    g_string_append_printf(json, "%s%s", separator, ellipse);
+    g_free(ellipse);
+    separator = ",";
+  }
+  g_string_append(json, "]}");
   return g_string_free(json, FALSE);
 }

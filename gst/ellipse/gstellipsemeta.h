@@ -174,4 +174,6 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta);
 
 gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta);
 
+gchar* gst_buffer_ellipses_to_json(GstBuffer* buffer, guint64 frame, guint width, guint height);
+
 G_END_DECLS

@@ -46,6 +46,9 @@ class Socket {
     EXPECT_TRUE(g_socket_connect(socket_, there, nullptr, nullptr));
     g_object_unref(there);
   }
+  void send(const std::string& bytes) {
+    g_socket_send(socket_, bytes.data(), bytes.size(), nullptr, nullptr);
+  }
   void keep_little_unread() { g_socket_set_option(socket_, SOL_SOCKET, SO_RCVBUF, 4096, nullptr); }
   /// @return One datagram, or what there is of a stream; empty where nothing more comes.
   std::string receive() {

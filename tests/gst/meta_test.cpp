@@ -198,7 +198,24 @@ TEST(EllipseMeta, JsonIsOneValidObjectWithoutNaN) {
   EXPECT_DOUBLE_EQ(json_object_get_double_member(object, "cx"), 99.5);
   EXPECT_STREQ(json_object_get_string_member(object, "state"), "tracked");
   EXPECT_TRUE(json_object_get_null_member(object, "contour_overlap"));
+  EXPECT_EQ(json_array_get_int_element(json_object_get_array_member(object, "roi"), 2), 101);
   EXPECT_EQ(std::strchr(text, '\n'), nullptr);
+  g_free(text);
+}
+
+TEST(EllipseMeta, JsonOfAFrameListsAllOfItsEllipses) {
+  const auto buffer = empty_buffer();
+  add_example(buffer.get());
+  gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
+  gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  gchar* text = gst_buffer_ellipses_to_json(buffer.get(), 17, 320, 240);
+  const Owned<JsonParser> parser(json_parser_new());
+  ASSERT_TRUE(json_parser_load_from_data(parser.get(), text, -1, nullptr)) << text;
+  JsonObject* object = json_node_get_object(json_parser_get_root(parser.get()));
+  EXPECT_EQ(json_object_get_int_member(object, "frame"), 17);
+  EXPECT_EQ(json_object_get_int_member(object, "processing_ns"), 250);
+  EXPECT_TRUE(json_object_get_null_member(object, "pts_ns"));
+  EXPECT_EQ(json_array_get_length(json_object_get_array_member(object, "targets")), 2U);
   g_free(text);
 }
 

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/api.hpp"
+
+#include <json-glib/json-glib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "examples/live/analyst.hpp"
+#include "examples/live/json_writer.hpp"
+#include "examples/live/label_store.hpp"
+#include "examples/live/launch_line.hpp"
+#include "examples/live/metrics.hpp"
+#include "examples/live/page_files.hpp"
+#include "examples/live/presets.hpp"
+#include "examples/live/request_json.hpp"
+#include "examples/live/structure_json.hpp"
+#include "gst/ellipse/gstellipsemeta.h"
+
+namespace live {
+namespace {
+
+void write_time(JsonWriter& json, const char* name, GstClockTime time) {
+  json.key(name);
+  GST_CLOCK_TIME_IS_VALID(time) ? json.value(time) : json.null();
+}
+
+Reply done() {
+  return {.body = "{}\n"};
+}
+
+void add_page(HttpServer& server, const Options& options) {
+  const PageFiles page(options.page);
+  server.route("GET", "/", [page](const Request&) { return page.get("index.html"); });
+  server.route("GET", "/*", [page](const Request& request) { return page.get(request.rest); });
+}
+
+void add_feeds(HttpServer& server, Session& session) {
+  server.websocket("/ws/video", [&](auto socket) { session.video().add(std::move(socket)); });
+  server.websocket("/ws/meta", [&](auto socket) { session.lines().add(std::move(socket)); });
+  server.route_open("GET", "/video.mjpeg", [&](const Request& request) {
+    session.video().add_stream(request.message);
+  });
+  server.route_open("GET", "/api/events", [&](const Request& request) {
+    session.lines().add_events(request.message);
+  });
+}
+
+/* What it sees */
+
+std::string target_json(GstElement* tracker) {
+  GstStructure* fields = nullptr;
+  g_object_get(tracker, "target", &fields, nullptr);
+  if (fields == nullptr) return "null\n";
+  const Ref<GstStructure> target(fields);
+  JsonWriter json;
+  json.begin_object();
+  write_fields(json, target.get());
+  return json.end_object().text() + "\n";
+}
+
+std::string stats_json(Session& session, const HttpServer& server) {
+  GstStructure* fields = nullptr;
+  g_object_get(session.pipeline().tracker(), "stats", &fields, nullptr);
+  const Ref<GstStructure> stats(fields);
+  JsonWriter json;
+  json.begin_object().key("tracker").begin_object();
+  write_fields(json, stats.get());
+  json.end_object()
+      .member("frames", session.pipeline().frames())
+      .member("reconnections", session.pipeline().reconnections())
+      .member("viewers", session.video().viewers())
+      .member("listeners", session.lines().listeners())
+      .member("connections", server.connections())
+      .member("encoded", session.video().encoded())
+      .member("sent", session.video().sent())
+      .member("sent_bytes", session.video().sent_bytes())
+      .member("lines_lost", session.lines().lost());
+  write_time(json, "paint_delay_median_ns", session.video().paint_delay(0.5));
+  write_time(json, "paint_delay_p99_ns", session.video().paint_delay(0.99));
+  return json.end_object().text() + "\n";
+}
+
+void add_state(HttpServer& server, Session& session) {
+  server.route("GET", "/api/target", [&](const Request&) {
+    return Reply{.body = target_json(session.pipeline().tracker())};
+  });
+  server.route("GET", "/api/stats", [&](const Request&) {
+    return Reply{.body = stats_json(session, server)};
+  });
+  server.route("GET", "/metrics", [&](const Request&) {
+    return Reply{.type = "text/plain; version=0.0.4; charset=utf-8",
+                 .body = metrics_text(session, server)};
+  });
+}
+
+/* How it is set */
+
+void add_settings(HttpServer& server, Session& session) {
+  GstElement* tracker = session.pipeline().tracker();
+  server.route("GET", "/api/properties", [&](const Request&) {
+    return Reply{.body = session.properties().to_json()};
+  });
+  server.route("PUT", "/api/properties", [&](const Request& request) {
+    session.properties().set(request.body);
+    return done();
+  });
+  server.route("GET", "/api/presets", [tracker](const Request&) {
+    return Reply{.body = presets_json(tracker)};
+  });
+  server.route("PUT", "/api/presets/*", [tracker](const Request& request) {
+    save_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("POST", "/api/presets/*/load", [tracker](const Request& request) {
+    load_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("DELETE", "/api/presets/*", [tracker](const Request& request) {
+    delete_preset(tracker, request.rest);
+    return done();
+  });
+  server.route("GET", "/api/launch-line", [&](const Request&) {
+    return Reply{.type = "text/plain; charset=utf-8",
+                 .body = launch_line(session.pipeline().source(), session.properties())};
+  });
+}
+
+/* What it plays */
+
+std::string source_json(Session& session, const Options& options) {
+  const LivePipeline& pipeline = session.pipeline();
+  const FramePtr frame = session.store().newest();
+  JsonWriter json;
+  json.begin_object()
+      .member("spec", pipeline.source().text)
+      .member("kind", nick_of(pipeline.source().kind))
+      .member("live", pipeline.source().is_live)
+      .member("seekable", pipeline.is_seekable())
+      .member("playing", session.is_playing())
+      .member("state", session.store().is_held() ? "held" : nick_of(pipeline.state()))
+      .member("error", pipeline.trouble())
+      .member("can_change", options.allows_source_change)
+      .member("can_label", !options.labels.empty())
+      .member("width", frame ? frame->width : 0)
+      .member("height", frame ? frame->height : 0)
+      .member("fps", frame ? frame->rate : 0.0);
+  write_time(json, "pts_ns", frame ? frame->pts : GST_CLOCK_TIME_NONE);
+  write_time(json, "position_ns", pipeline.position());
+  write_time(json, "duration_ns", pipeline.duration());
+  return json.end_object().text() + "\n";
+}
+
+void add_playback(HttpServer& server, Session& session, const Options& options) {
+  server.route("GET", "/api/source", [&session, options](const Request&) {
+    return Reply{.body = source_json(session, options)};
+  });
+  server.route("POST", "/api/play", [&](const Request&) { return session.play(), done(); });
+  server.route("POST", "/api/pause", [&](const Request&) { return session.pause(), done(); });
+  server.route("POST", "/api/step", [&](const Request&) {
+    if (session.is_playing()) return error_reply(409, "pause it first");
+    session.step();
+    return done();
+  });
+  server.route("POST", "/api/seek", [&](const Request& request) {
+    const RequestJson json(request.body);
+    return session.seek(json.time("position_ns"))
+               ? done()
+               : error_reply(409, "this source cannot be sought");
+  });
+  server.route("PUT", "/api/source", [&session, options](const Request& request) {
+    if (!options.allows_source_change) {
+      return error_reply(403, "the source may be changed with --allow-source-change only");
+    }
+    session.open(RequestJson(request.body).text("spec"));
+    return done();
+  });
+}
+
+/* Why it finds what it finds */
+
+std::optional<ellipse::Stage> stage_in(const RequestJson& json) {
+  if (!json.has("stage")) return std::nullopt;
+  const std::string nick = json.text("stage");
+  const auto nicks = ellipse::stage_nicks();
+  const auto found = std::find(nicks.begin(), nicks.end(), nick);
+  if (found != nicks.end()) return static_cast<ellipse::Stage>(found - nicks.begin());
+  throw std::invalid_argument("stage: there is no stage \"" + nick + "\"");
+}
+
+std::string text_of(JsonNode* node) {
+  if (node == nullptr) return "";
+  const Ref<gchar> text(json_to_string(node, FALSE));
+  return text.get();
+}
+
+void add_analysis(HttpServer& server, Session& session) {
+  const auto analyst = std::make_shared<Analyst>();
+  server.route_open("POST", "/api/analyze", [&session, analyst](const Request& request) {
+    const RequestJson json(request.body);
+    AnalysisRequest wanted{
+        .frame = session.store().newest(),
+        .settings = session.properties().settings_with(text_of(json.node("properties"))),
+        .stage = stage_in(json)};
+    const auto reply = std::make_shared<LaterReply>(request.message);
+    if (!wanted.frame) return reply->send(error_reply(409, "there is no frame yet"));
+    const bool is_taken =
+        analyst->ask(std::move(wanted), [reply](const auto& text, const auto& error) {
+          reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));
+        });
+    if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
+  });
+}
+
+/* What it shows, according to a person */
+
+ellipse::Ellipse shown_ellipse(const Frame& frame, double index) {
+  GstBuffer* buffer = gst_sample_get_buffer(frame.sample.get());
+  gpointer state = nullptr;
+  double number = 0.0;
+  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    if (number++ != index) continue;
+    return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
+  }
+  throw std::invalid_argument("choice: the frame has no ellipse of this number");
+}
+
+ellipse::Ellipse drawn_ellipse(const RequestJson& json) {
+  const ellipse::Ellipse e{json.number("cx"),
+                           json.number("cy"),
+                           json.number("semi_major"),
+                           json.number("semi_minor"),
+                           json.number("angle_rad")};
+  const bool is_one = e.semi_major >= e.semi_minor && e.semi_minor > 0.0 &&
+                      std::abs(e.cx) + std::abs(e.cy) + e.semi_major < 1e5;
+  if (!is_one) throw std::invalid_argument("choice: the axes must be major >= minor > 0 [px]");
+  return e;
+}
+
+// The number of one in the frame's line, an ellipse itself, or "none".
+std::optional<ellipse::Ellipse> chosen(const RequestJson& json, const Frame& frame) {
+  JsonNode* choice = json.node("choice");
+  if (choice != nullptr && JSON_NODE_HOLDS_OBJECT(choice)) {
+    return drawn_ellipse(RequestJson(json_node_get_object(choice)));
+  }
+  if (choice != nullptr && JSON_NODE_HOLDS_VALUE(choice) &&
+      json_node_get_value_type(choice) == G_TYPE_INT64) {
+    return shown_ellipse(frame, json.number("choice"));
+  }
+  if (json.text("choice") != "none") {
+    throw std::invalid_argument("choice: a number, an ellipse or \"none\" is wanted");
+  }
+  return std::nullopt;
+}
+
+void add_labels(HttpServer& server, Session& session, const Options& options) {
+  if (options.labels.empty()) {
+    server.route("POST", "/api/snapshot", [](const Request&) {
+      return error_reply(409, "there is no folder for them: start with --labels FOLDER");
+    });
+    return;
+  }
+  const auto labels = std::make_shared<LabelStore>(options.labels);
+  server.route("POST", "/api/snapshot", [&session, labels](const Request& request) {
+    const FramePtr frame = session.store().newest();
+    if (!frame) return error_reply(409, "there is no frame yet");
+    const RequestJson json(request.body);
+    if (json.has("pts_ns") && json.time("pts_ns") != frame->pts) {
+      return error_reply(409, "another frame is shown now: pause it first");
+    }
+    const std::string image = labels->add(*frame, chosen(json, *frame));
+    return Reply{.body =
+                     JsonWriter().begin_object().member("image", image).end_object().text() + "\n"};
+  });
+}
+
+}  // namespace
+
+void add_api(HttpServer& server, Session& session, const Options& options) {
+  add_feeds(server, session);
+  add_state(server, session);
+  add_settings(server, session);
+  add_playback(server, session, options);
+  add_analysis(server, session);
+  add_labels(server, session, options);
+  add_page(server, options);
+}
+
+}  // namespace live

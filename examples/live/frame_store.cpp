@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/frame_store.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace live {
+
+FrameStore::FrameStore(std::function<void()> on_change) : wakeup_(std::move(on_change)) {}
+
+void FrameStore::put(FramePtr frame) {
+  FramePtr old;  // given back outside the lock
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_held_ && steps_ == 0 && newest_) return;
+    steps_ = std::max(0, steps_ - 1);
+    if (lines_.size() == kMostLines) lines_.pop_front();
+    lines_.push_back(frame->line);
+    old = std::exchange(newest_, std::move(frame));
+  }
+  wakeup_.raise();
+}
+
+FramePtr FrameStore::newest() const {
+  const std::lock_guard lock(mutex_);
+  return newest_;
+}
+
+std::vector<std::string> FrameStore::take_lines() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> lines(std::make_move_iterator(lines_.begin()),
+                                 std::make_move_iterator(lines_.end()));
+  lines_.clear();
+  return lines;
+}
+
+void FrameStore::hold() {
+  const std::lock_guard lock(mutex_);
+  is_held_ = true;
+  steps_ = 0;
+}
+
+void FrameStore::release() {
+  const std::lock_guard lock(mutex_);
+  is_held_ = false;
+}
+
+void FrameStore::step() {
+  const std::lock_guard lock(mutex_);
+  if (is_held_) ++steps_;
+}
+
+bool FrameStore::is_held() const {
+  const std::lock_guard lock(mutex_);
+  return is_held_;
+}
+
+}  // namespace live

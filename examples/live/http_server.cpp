@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/http_server.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "examples/live/json_writer.hpp"
+
+namespace live {
+namespace {
+
+constexpr std::size_t kMostConnections = 160;
+constexpr guint kIdleSeconds = 20;  // for a request to come, or to go on
+constexpr goffset kLargestBody = 64 * 1024;
+constexpr std::size_t kLongestPath = 1024;
+constexpr gsize kLargestHeaders = 16 * 1024;
+constexpr double kRequestsPerSecond = 100.0;
+constexpr double kRequestsAtOnce = 300.0;
+constexpr std::size_t kMostAddresses = 1024;
+constexpr char kCookie[] = "ellipse_token";
+constexpr char kSocketKey[] = "live-socket";
+
+std::string header(SoupServerMessage* message, const char* name) {
+  const char* value =
+      soup_message_headers_get_one(soup_server_message_get_request_headers(message), name);
+  return value != nullptr ? value : "";
+}
+
+bool is_write(SoupServerMessage* message) {
+  const std::string method = soup_server_message_get_method(message);
+  return method != "GET" && method != "HEAD";
+}
+
+gsize size_of_headers(SoupServerMessage* message) {
+  SoupMessageHeadersIter iter;
+  soup_message_headers_iter_init(&iter, soup_server_message_get_request_headers(message));
+  const char* name = nullptr;
+  const char* value = nullptr;
+  gsize size = 0;
+  while (soup_message_headers_iter_next(&iter, &name, &value)) {
+    size += std::string_view(name).size() + std::string_view(value).size();
+  }
+  return size;
+}
+
+std::string cookie_of(SoupServerMessage* message) {
+  const std::string cookies = "; " + header(message, "Cookie");
+  const std::string start = std::string("; ") + kCookie + "=";
+  const std::size_t at = cookies.find(start);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + start.size();
+  return cookies.substr(begin, cookies.find(';', begin) - begin);
+}
+
+// What a browser may do with all that comes from here.
+void add_policy(SoupServerMessage* message) {
+  SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
+  soup_message_headers_replace(headers, "X-Content-Type-Options", "nosniff");
+  soup_message_headers_replace(headers, "Referrer-Policy", "no-referrer");
+  soup_message_headers_replace(headers, "Cross-Origin-Resource-Policy", "same-origin");
+  soup_message_headers_replace(headers,
+                               "Content-Security-Policy",
+                               "default-src 'self'; img-src 'self' blob: data:; "
+                               "frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+}
+
+void answer(SoupServerMessage* message, const Reply& reply) {
+  soup_server_message_set_status(message, static_cast<guint>(reply.status), nullptr);
+  SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
+  soup_message_headers_replace(headers, "Cache-Control", "no-store");
+  // libsoup keeps those connections alive only that it has accepted itself.
+  soup_message_headers_replace(headers, "Connection", "close");
+  soup_server_message_set_response(
+      message, reply.type.c_str(), SOUP_MEMORY_COPY, reply.body.data(), reply.body.size());
+}
+
+std::string body_of(SoupServerMessage* message) {
+  const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
+  gsize size = 0;
+  const auto* data = static_cast<const char*>(g_bytes_get_data(bytes.get(), &size));
+  return data != nullptr ? std::string(data, size) : std::string();
+}
+
+std::map<std::string, std::string> map_of(GHashTable* query) {
+  std::map<std::string, std::string> map;
+  if (query == nullptr) return map;
+  g_hash_table_foreach(
+      query,
+      [](gpointer key, gpointer value, gpointer data) {
+        auto& result = *static_cast<std::map<std::string, std::string>*>(data);
+        result[static_cast<const char*>(key)] = static_cast<const char*>(value);
+      },
+      &map);
+  return map;
+}
+
+// The address and the port of a client.
+std::string text_of(GSocketAddress* address) {
+  if (address == nullptr) return "";
+  const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
+  return text.get();
+}
+
+void drop_socket(gpointer socket) {
+  g_object_unref(socket);
+}
+
+}  // namespace
+
+Reply error_reply(int status, const std::string& message) {
+  return {.status = status, .body = error_json(message)};
+}
+
+LaterReply::LaterReply(SoupServerMessage* message) : message_(share(message)) {
+  soup_server_message_pause(message);
+}
+
+void LaterReply::send(const Reply& reply) {
+  answer(message_.get(), reply);
+  soup_server_message_unpause(message_.get());
+}
+
+HttpServer::HttpServer(Settings settings)
+    : settings_(std::move(settings)),
+      server_(soup_server_new("server-header", "ellipse-live", nullptr)),
+      service_(g_socket_service_new()) {
+  soup_server_add_handler(server_.get(), nullptr, on_request, this, nullptr);
+  soup_server_add_early_handler(server_.get(), nullptr, on_early, this, nullptr);
+  listen();
+}
+
+HttpServer::~HttpServer() {
+  g_signal_handlers_disconnect_by_data(service_.get(), this);
+  g_socket_service_stop(service_.get());
+  g_socket_listener_close(G_SOCKET_LISTENER(service_.get()));
+  soup_server_disconnect(server_.get());
+}
+
+void HttpServer::listen() {
+  const Ref<GSocketAddress> wanted(
+      g_inet_socket_address_new_from_string(settings_.address.c_str(), settings_.port));
+  if (!wanted) throw std::runtime_error("\"" + settings_.address + "\" is no address to listen at");
+  GSocketAddress* effective = nullptr;
+  GError* problem = nullptr;
+  g_socket_listener_add_address(G_SOCKET_LISTENER(service_.get()),
+                                wanted.get(),
+                                G_SOCKET_TYPE_STREAM,
+                                G_SOCKET_PROTOCOL_TCP,
+                                nullptr,
+                                &effective,
+                                &problem);
+  if (problem != nullptr) {
+    const Ref<GError> error(problem);
+    throw std::runtime_error("cannot listen at " + settings_.address + ":" +
+                             std::to_string(settings_.port) + ": " + error->message);
+  }
+  const Ref<GSocketAddress> owned(effective);
+  port_ = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(effective));
+  g_signal_connect(service_.get(), "incoming", G_CALLBACK(on_incoming), this);
+  g_socket_service_start(service_.get());
+}
+
+void HttpServer::route(const char* method,
+                       const std::string& path,
+                       std::function<Reply(const Request&)> handle) {
+  route_open(method, path, [handle = std::move(handle)](const Request& request) {
+    answer(request.message, handle(request));
+  });
+}
+
+void HttpServer::route_open(const char* method,
+                            const std::string& path,
+                            std::function<void(const Request&)> handle) {
+  const std::size_t star = path.find('*');
+  const bool has_rest = star != std::string::npos;
+  routes_.push_back({method,
+                     path.substr(0, star),
+                     has_rest ? path.substr(star + 1) : "",
+                     has_rest,
+                     std::move(handle)});
+}
+
+void HttpServer::websocket(const std::string& path,
+                           std::function<void(std::unique_ptr<WebSocket>)> on_open) {
+  websockets_[path] = std::move(on_open);
+  soup_server_add_early_handler(server_.get(), path.c_str(), on_early, this, nullptr);
+  soup_server_add_websocket_handler(
+      server_.get(), path.c_str(), nullptr, nullptr, on_websocket, this, nullptr);
+}
+
+/* Connections */
+
+gboolean HttpServer::on_incoming(GSocketService* /*service*/,
+                                 GSocketConnection* connection,
+                                 GObject* /*source*/,
+                                 gpointer data) {
+  auto* self = static_cast<HttpServer*>(data);
+  if (self->sockets_->size() >= kMostConnections) {
+    ++self->counters_.refused;
+    return TRUE;  // closed with its last reference
+  }
+  GSocket* socket = g_socket_connection_get_socket(connection);
+  g_socket_set_timeout(socket, kIdleSeconds);
+  g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
+  const Ref<GSocketAddress> local(g_socket_get_local_address(socket, nullptr));
+  const Ref<GSocketAddress> remote(g_socket_get_remote_address(socket, nullptr));
+  if (!local || !remote) return TRUE;
+  const std::string client = text_of(remote.get());
+  (*self->sockets_)[client] = share(socket);
+  g_object_weak_ref(G_OBJECT(connection), on_connection_gone, new Gone{self->sockets_, client});
+  soup_server_accept_iostream(
+      self->server_.get(), G_IO_STREAM(connection), local.get(), remote.get(), nullptr);
+  return TRUE;
+}
+
+void HttpServer::on_connection_gone(gpointer data, GObject* /*connection*/) {
+  const std::unique_ptr<Gone> gone(static_cast<Gone*>(data));
+  gone->sockets->erase(gone->client);
+}
+
+/* Requests */
+
+void HttpServer::refuse(SoupServerMessage* message, int status, const std::string& why) {
+  ++counters_.refused;
+  answer(message, error_reply(status, why));
+}
+
+void HttpServer::on_early(SoupServer* /*server*/,
+                          SoupServerMessage* message,
+                          const char* path,
+                          GHashTable* /*query*/,
+                          gpointer data) {
+  auto* self = static_cast<HttpServer*>(data);
+  ++self->counters_.requests;
+  add_policy(message);
+  self->check(message, path);
+  // Kept for a WebSocket, which loses sight of whose it is.
+  const auto socket =
+      self->sockets_->find(text_of(soup_server_message_get_remote_address(message)));
+  if (socket == self->sockets_->end()) return;
+  g_object_set_data_full(
+      G_OBJECT(message), kSocketKey, g_object_ref(socket->second.get()), drop_socket);
+}
+
+void HttpServer::check(SoupServerMessage* message, const std::string& path) {
+  if (!may_ask_now(message)) return refuse(message, 429, "too many requests");
+  const std::string host = header(message, "Host");
+  if (settings_.token.empty() && !is_loopback_host(host)) {
+    return refuse(message, 403, "the Host is not this machine");
+  }
+  if (is_foreign({host, header(message, "Origin"), header(message, "Sec-Fetch-Site")})) {
+    return refuse(message, 403, "another site's page may not do this");
+  }
+  if (path.size() > kLongestPath) return refuse(message, 414, "the path is too long");
+  if (size_of_headers(message) > kLargestHeaders) {
+    return refuse(message, 431, "the headers are too large");
+  }
+  if (take_token_from_link(message, path)) return;
+  if (!has_token(message)) {
+    soup_message_headers_replace(
+        soup_server_message_get_response_headers(message), "WWW-Authenticate", "Bearer");
+    return refuse(message, 401, "the token is missing or wrong");
+  }
+  SoupMessageHeaders* headers = soup_server_message_get_request_headers(message);
+  const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
+  if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "the length must be given");
+  const goffset length = soup_message_headers_get_content_length(headers);
+  if (length > (is_write(message) ? kLargestBody : 0)) {
+    return refuse(message, 413, "the body is too large");
+  }
+}
+
+bool HttpServer::may_ask_now(SoupServerMessage* message) {
+  const char* host = soup_server_message_get_remote_host(message);
+  const std::string address = host != nullptr ? host : "";
+  if (allowances_.size() >= kMostAddresses) allowances_.clear();
+  return allowances_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
+}
+
+bool HttpServer::has_token(SoupServerMessage* message) const {
+  if (settings_.token.empty()) return true;
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string authorization = header(message, "Authorization");
+  if (std::string_view(authorization).starts_with(kBearer)) {
+    return is_same_secret(std::string_view(authorization).substr(kBearer.size()), settings_.token);
+  }
+  return is_same_secret(cookie_of(message), settings_.token);
+}
+
+// The link that was printed, /?token=...: a browser goes on with a cookie, and a clean address.
+bool HttpServer::take_token_from_link(SoupServerMessage* message, const std::string& path) {
+  const char* query = g_uri_get_query(soup_server_message_get_uri(message));
+  constexpr std::string_view kStart = "token=";
+  if (settings_.token.empty() || path != "/" || query == nullptr) return false;
+  const std::string_view given = query;
+  if (!given.starts_with(kStart) || !is_same_secret(given.substr(kStart.size()), settings_.token)) {
+    return false;
+  }
+  soup_message_headers_replace(
+      soup_server_message_get_response_headers(message),
+      "Set-Cookie",
+      (std::string(kCookie) + "=" + settings_.token + "; Path=/; HttpOnly; SameSite=Strict")
+          .c_str());
+  soup_server_message_set_redirect(message, 303, "/");
+  soup_message_headers_replace(
+      soup_server_message_get_response_headers(message), "Connection", "close");
+  return true;
+}
+
+void HttpServer::on_request(SoupServer* /*server*/,
+                            SoupServerMessage* message,
+                            const char* path,
+                            GHashTable* query,
+                            gpointer data) {
+  static_cast<HttpServer*>(data)->dispatch(message, path, query);
+}
+
+// What stands where a route has its "*"; nullopt where the path is not the route's.
+std::optional<std::string> HttpServer::rest_of(const std::string& path, const Route& route) {
+  if (!route.has_rest) return path == route.before ? std::optional<std::string>("") : std::nullopt;
+  const std::size_t around = route.before.size() + route.after.size();
+  const bool fits =
+      path.size() > around && path.starts_with(route.before) && path.ends_with(route.after);
+  if (!fits) return std::nullopt;
+  std::string rest = path.substr(route.before.size(), path.size() - around);
+  return rest.find('/') == std::string::npos ? std::optional(std::move(rest)) : std::nullopt;
+}
+
+void HttpServer::dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query) {
+  std::string method = soup_server_message_get_method(message);
+  if (method == "HEAD") method = "GET";
+  bool is_known = false;
+  for (const Route& route : routes_) {
+    const std::optional<std::string> rest = rest_of(path, route);
+    if (!rest) continue;
+    is_known = true;
+    if (route.method != method) continue;
+    const Request request{.message = message,
+                          .path = path,
+                          .rest = *rest,
+                          .body = body_of(message),
+                          .query = map_of(query)};
+    try {
+      route.handle(request);
+    } catch (const std::invalid_argument& error) {
+      answer(message, error_reply(400, error.what()));
+    } catch (const std::exception& error) {
+      answer(message, error_reply(500, error.what()));
+    }
+    return;
+  }
+  answer(message,
+         is_known ? error_reply(405, "this path does not know " + method)
+                  : error_reply(404, "there is nothing at this path"));
+}
+
+void HttpServer::on_websocket(SoupServer* /*server*/,
+                              SoupServerMessage* message,
+                              const char* path,
+                              SoupWebsocketConnection* connection,
+                              gpointer data) {
+  auto* self = static_cast<HttpServer*>(data);
+  auto* socket = static_cast<GSocket*>(g_object_get_data(G_OBJECT(message), kSocketKey));
+  const auto handler = self->websockets_.find(path);
+  if (socket == nullptr || handler == self->websockets_.end()) return;
+  g_socket_set_timeout(socket, 0);  // it may be silent for as long as it likes
+  handler->second(std::make_unique<WebSocket>(connection, socket));
+}
+
+}  // namespace live

@@ -1,0 +1,129 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <libsoup/soup.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "examples/live/ref.hpp"
+#include "examples/live/security.hpp"
+#include "examples/live/web_socket.hpp"
+
+namespace live {
+
+struct Request {
+  SoupServerMessage* message;  ///< Borrowed for the call.
+  std::string path;
+  std::string rest;  ///< What of the path came where the route has its "*".
+  std::string body;
+  std::map<std::string, std::string> query;
+};
+
+struct Reply {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body;
+};
+
+[[nodiscard]] Reply error_reply(int status, const std::string& message);
+
+/// Answers a request later. For the main loop's thread.
+class LaterReply {
+ public:
+  explicit LaterReply(SoupServerMessage* message);
+  void send(const Reply& reply);
+
+ private:
+  Ref<SoupServerMessage> message_;
+};
+
+/// HTTP and WebSockets on libsoup, behind the checks that concern every request: who asks, from
+/// where, how often, how much. In the main loop's thread.
+class HttpServer {
+ public:
+  struct Settings {
+    std::string address = "127.0.0.1";
+    guint port = 8080;  ///< 0 = one that is free.
+    std::string token;  ///< Empty = none is asked for.
+  };
+  struct Counters {
+    guint64 requests = 0;
+    guint64 refused = 0;  ///< Without a right to it, too often, too much.
+  };
+
+  /// Throws std::runtime_error where it cannot listen there.
+  explicit HttpServer(Settings settings);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  /// A path may have one "*", for one part of a path. std::invalid_argument becomes a 400.
+  void route(const char* method, const std::string& path, std::function<Reply(const Request&)>);
+  /// The same, for what answers later or without an end: it has to set a status or to pause.
+  void route_open(const char* method, const std::string& path, std::function<void(const Request&)>);
+  void websocket(const std::string& path, std::function<void(std::unique_ptr<WebSocket>)>);
+
+  [[nodiscard]] guint port() const { return port_; }
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] std::size_t connections() const { return sockets_->size(); }
+
+ private:
+  struct Route {
+    std::string method;
+    std::string before;  // the "*"
+    std::string after;
+    bool has_rest;
+    std::function<void(const Request&)> handle;
+  };
+
+  // Those of open connections, by the client's address.
+  using Sockets = std::map<std::string, Ref<GSocket>>;
+  // A connection that will be gone one day, later than this server where a viewer keeps it.
+  struct Gone {
+    std::shared_ptr<Sockets> sockets;
+    std::string client;
+  };
+
+  static gboolean on_incoming(GSocketService* service,
+                              GSocketConnection* connection,
+                              GObject* source,
+                              gpointer data);
+  static void on_connection_gone(gpointer data, GObject* connection);
+  static void on_early(
+      SoupServer* server, SoupServerMessage* message, const char* path, GHashTable*, gpointer data);
+  static void on_request(SoupServer* server,
+                         SoupServerMessage* message,
+                         const char* path,
+                         GHashTable* query,
+                         gpointer data);
+  static void on_websocket(SoupServer* server,
+                           SoupServerMessage* message,
+                           const char* path,
+                           SoupWebsocketConnection* connection,
+                           gpointer data);
+
+  static std::optional<std::string> rest_of(const std::string& path, const Route& route);
+  void listen();
+  void refuse(SoupServerMessage* message, int status, const std::string& why);
+  void check(SoupServerMessage* message, const std::string& path);
+  [[nodiscard]] bool has_token(SoupServerMessage* message) const;
+  bool take_token_from_link(SoupServerMessage* message, const std::string& path);
+  [[nodiscard]] bool may_ask_now(SoupServerMessage* message);
+  void dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query);
+
+  Settings settings_;
+  Ref<SoupServer> server_;
+  Ref<GSocketService> service_;
+  guint port_ = 0;
+  std::vector<Route> routes_;
+  std::map<std::string, std::function<void(std::unique_ptr<WebSocket>)>> websockets_;
+  std::map<std::string, Allowance> allowances_;  // by the client's address
+  Counters counters_;
+  std::shared_ptr<Sockets> sockets_ = std::make_shared<Sockets>();
+};
+
+}  // namespace live

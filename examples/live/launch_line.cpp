@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/launch_line.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include "examples/live/ref.hpp"
+
+namespace live {
+namespace {
+
+// So that a shell takes each word as it is.
+std::string for_shell(const std::string& description) {
+  std::istringstream words(description);
+  std::string line;
+  for (std::string word; words >> word;) {
+    const bool is_plain = word == "!" || std::all_of(word.begin(), word.end(), [](unsigned char c) {
+                            return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '=' ||
+                                   c == '.' || c == '/' || c == ':' || c == ',' || c == '+';
+                          });
+    const Ref<gchar> quoted(g_shell_quote(word.c_str()));
+    line += (line.empty() ? "" : " ") + (is_plain ? word : std::string(quoted.get()));
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string launch_line(const SourceSpec& source, const Properties& properties) {
+  return "gst-launch-1.0 " +
+         for_shell(source.description + " ! videoconvert ! ellipsetrack" +
+                   properties.launch_settings() +
+                   " ! ellipseoverlay ! videoconvert ! autovideosink") +
+         "\n";
+}
+
+}  // namespace live

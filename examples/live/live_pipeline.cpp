@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/live_pipeline.hpp"
+
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "gst/ellipse/gstellipsemeta.h"
+
+namespace live {
+namespace {
+
+constexpr guint kGlanceMs = 1000;
+constexpr guint kPatience = 5;  // glances without a frame, after which a live source has dropped
+constexpr guint kFirstRetryMs = 500;
+constexpr guint kSlowestRetryMs = 5000;
+
+GstElement* add(GstElement* pipeline, const char* factory) {
+  GstElement* element = gst_element_factory_make(factory, nullptr);
+  if (element == nullptr) throw std::runtime_error(std::string("no element \"") + factory + "\"");
+  gst_bin_add(GST_BIN(pipeline), element);
+  return element;
+}
+
+// What went wrong; of a missing decoder also which.
+std::string error_of(GstMessage* message) {
+  GError* error = nullptr;
+  gchar* details = nullptr;
+  gst_message_parse_error(message, &error, &details);
+  const Ref<GError> owned_error(error);
+  const Ref<gchar> owned_details(details);
+  const std::string text = error->message;
+  const char* missing = details != nullptr ? std::strstr(details, "Missing ") : nullptr;
+  return missing != nullptr ? text + " " + std::string(missing, std::strcspn(missing, "(\n"))
+                            : text;
+}
+
+// A bin with one pad, of raw video. The pad is there before a decoder knows its own.
+GstElement* source_bin(const std::string& description) {
+  GError* problem = nullptr;
+  GstElement* bin = gst_parse_bin_from_description_full(
+      (description + " ! videoconvert name=live-source-end").c_str(),
+      FALSE,
+      nullptr,
+      static_cast<GstParseFlags>(GST_PARSE_FLAG_FATAL_ERRORS | GST_PARSE_FLAG_PLACE_IN_BIN),
+      &problem);
+  if (problem != nullptr) {
+    const Ref<GError> error(problem);
+    throw std::runtime_error(error->message);
+  }
+  const Ref<GstElement> end(gst_bin_get_by_name(GST_BIN(bin), "live-source-end"));
+  const Ref<GstPad> pad(gst_element_get_static_pad(end.get(), "src"));
+  gst_element_add_pad(bin, gst_ghost_pad_new("src", pad.get()));
+  return bin;
+}
+
+}  // namespace
+
+const char* nick_of(PlayState state) {
+  switch (state) {
+    case PlayState::kStarting:
+      return "starting";
+    case PlayState::kPlaying:
+      return "playing";
+    case PlayState::kPaused:
+      return "paused";
+    case PlayState::kEnded:
+      return "ended";
+    case PlayState::kReconnecting:
+      return "reconnecting";
+    case PlayState::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+LivePipeline::LivePipeline(Handlers handlers)
+    : handlers_(std::move(handlers)),
+      pipeline_(gst_pipeline_new("live")),
+      tracker_(add(pipeline_, "ellipsetrack")),
+      sink_(add(pipeline_, "appsink")) {
+  gst_element_link(tracker_, sink_);
+  // One buffer at most waits here, and only while on_sample() takes it.
+  g_object_set(sink_, "max-buffers", 1, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
+  GstAppSinkCallbacks callbacks{};
+  callbacks.new_sample = on_sample;
+  callbacks.new_preroll = on_preroll;
+  gst_app_sink_set_callbacks(GST_APP_SINK(sink_), &callbacks, this, nullptr);
+  const Ref<GstPad> pad(gst_element_get_static_pad(tracker_, "sink"));
+  gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, on_arrival, this, nullptr);
+  const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
+  bus_watch_ = gst_bus_add_watch(bus.get(), on_message, this);
+  glance_ = g_timeout_add(kGlanceMs, on_glance, this);
+}
+
+LivePipeline::~LivePipeline() {
+  cancel_retry();
+  g_source_remove(glance_);
+  g_source_remove(bus_watch_);
+  gst_element_set_state(pipeline_, GST_STATE_NULL);
+  gst_object_unref(pipeline_);
+}
+
+/* Frames, in the streaming thread */
+
+GstPadProbeReturn LivePipeline::on_arrival(GstPad* /*pad*/,
+                                           GstPadProbeInfo* /*info*/,
+                                           gpointer data) {
+  static_cast<LivePipeline*>(data)->arrived_us_ = g_get_monotonic_time();
+  return GST_PAD_PROBE_OK;
+}
+
+GstFlowReturn LivePipeline::on_sample(GstAppSink* sink, gpointer data) {
+  if (GstSample* sample = gst_app_sink_pull_sample(sink)) {
+    static_cast<LivePipeline*>(data)->take(sample);
+  }
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn LivePipeline::on_preroll(GstAppSink* sink, gpointer data) {
+  if (GstSample* sample = gst_app_sink_pull_preroll(sink)) {
+    static_cast<LivePipeline*>(data)->take(sample);
+  }
+  return GST_FLOW_OK;
+}
+
+void LivePipeline::take(GstSample* sample) {
+  auto frame = std::make_shared<Frame>();
+  frame->sample.reset(sample);
+  GstBuffer* buffer = gst_sample_get_buffer(sample);
+  GstVideoInfo info;
+  if (buffer == nullptr || !gst_video_info_from_caps(&info, gst_sample_get_caps(sample))) return;
+  // What was shown when paused comes once more when it plays on.
+  if (last_ && gst_sample_get_buffer(last_->sample.get()) == buffer) return;
+  frame->number = frames_++;
+  frame->arrived_us = arrived_us_;  // no queue lies between: it is this frame's
+  frame->pts = GST_BUFFER_PTS_IS_VALID(buffer) ? GST_BUFFER_PTS(buffer) : 0;
+  frame->width = GST_VIDEO_INFO_WIDTH(&info);
+  frame->height = GST_VIDEO_INFO_HEIGHT(&info);
+  if (GST_VIDEO_INFO_FPS_N(&info) > 0) {
+    gst_util_fraction_to_double(
+        GST_VIDEO_INFO_FPS_N(&info), GST_VIDEO_INFO_FPS_D(&info), &frame->rate);
+  }
+  const Ref<gchar> json(gst_buffer_ellipses_to_json(
+      buffer, frame->number, static_cast<guint>(frame->width), static_cast<guint>(frame->height)));
+  frame->line = std::string(json.get()) + "\n";
+  last_ = frame;
+  handlers_.on_frame(std::move(frame));
+}
+
+/* The source, in the main loop */
+
+void LivePipeline::open(SourceSpec spec, bool loops) {
+  cancel_retry();
+  stop();
+  spec_ = std::move(spec);
+  loops_ = loops;
+  retries_ = 0;
+  trouble_.clear();
+  start();
+}
+
+void LivePipeline::start() {
+  state_ = PlayState::kStarting;
+  glances_without_frames_ = 0;
+  try {
+    source_ = source_bin(spec_.description);
+  } catch (const std::exception& error) {
+    source_dropped(error.what());
+    return;
+  }
+  gst_bin_add(GST_BIN(pipeline_), source_);
+  gst_element_link(source_, tracker_);
+  // A file is shown at its own pace; of a camera the newest frame is wanted at once.
+  const GstStateChangeReturn paused = gst_element_set_state(pipeline_, GST_STATE_PAUSED);
+  if (paused == GST_STATE_CHANGE_NO_PREROLL) spec_.is_live = true;
+  g_object_set(sink_, "sync", spec_.is_live ? FALSE : TRUE, nullptr);
+  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  if (paused != GST_STATE_CHANGE_FAILURE) state_ = PlayState::kPlaying;
+}
+
+void LivePipeline::stop() {
+  gst_element_set_state(pipeline_, GST_STATE_NULL);
+  const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
+  gst_bus_set_flushing(bus.get(), TRUE);  // what the old source still had to say
+  gst_bus_set_flushing(bus.get(), FALSE);
+  if (source_ == nullptr) return;
+  gst_element_unlink(source_, tracker_);
+  gst_bin_remove(GST_BIN(pipeline_), source_);
+  source_ = nullptr;
+}
+
+void LivePipeline::play() {
+  if (state_ == PlayState::kEnded) {
+    if (!seek(0)) {
+      stop();
+      start();
+      return;
+    }
+  } else if (state_ != PlayState::kPaused) {
+    return;
+  }
+  state_ = PlayState::kPlaying;
+  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+}
+
+void LivePipeline::pause() {
+  if (state_ != PlayState::kPlaying) return;
+  state_ = PlayState::kPaused;
+  gst_element_set_state(pipeline_, GST_STATE_PAUSED);
+}
+
+void LivePipeline::step() {
+  if (state_ != PlayState::kPaused) return;
+  gst_element_send_event(sink_, gst_event_new_step(GST_FORMAT_BUFFERS, 1, 1.0, TRUE, FALSE));
+}
+
+bool LivePipeline::seek(GstClockTime position) {
+  if (!is_seekable()) return false;
+  if (!gst_element_seek_simple(
+          pipeline_,
+          GST_FORMAT_TIME,
+          static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE),
+          static_cast<gint64>(position))) {
+    return false;
+  }
+  if (state_ == PlayState::kEnded) {
+    state_ = PlayState::kPaused;
+    gst_element_set_state(pipeline_, GST_STATE_PAUSED);
+  }
+  return true;
+}
+
+bool LivePipeline::is_seekable() const {
+  if (spec_.is_live) return false;
+  GstQuery* query = gst_query_new_seeking(GST_FORMAT_TIME);
+  gboolean is_seekable = FALSE;
+  if (gst_element_query(pipeline_, query)) {
+    gst_query_parse_seeking(query, nullptr, &is_seekable, nullptr, nullptr);
+  }
+  gst_query_unref(query);
+  return is_seekable != FALSE;
+}
+
+GstClockTime LivePipeline::position() const {
+  gint64 position = 0;
+  const gboolean is_known = gst_element_query_position(pipeline_, GST_FORMAT_TIME, &position);
+  return is_known ? static_cast<GstClockTime>(position) : GST_CLOCK_TIME_NONE;
+}
+
+GstClockTime LivePipeline::duration() const {
+  if (spec_.is_live) return GST_CLOCK_TIME_NONE;
+  gint64 duration = 0;
+  const gboolean is_known = gst_element_query_duration(pipeline_, GST_FORMAT_TIME, &duration);
+  return is_known ? static_cast<GstClockTime>(duration) : GST_CLOCK_TIME_NONE;
+}
+
+/* What becomes of it */
+
+gboolean LivePipeline::on_message(GstBus* /*bus*/, GstMessage* message, gpointer data) {
+  auto* self = static_cast<LivePipeline*>(data);
+  switch (GST_MESSAGE_TYPE(message)) {
+    case GST_MESSAGE_ERROR:
+      self->source_dropped(error_of(message));
+      break;
+    case GST_MESSAGE_EOS:
+      self->end_of_stream();
+      break;
+    case GST_MESSAGE_LATENCY:
+      gst_bin_recalculate_latency(GST_BIN(self->pipeline_));
+      break;
+    default:
+      break;
+  }
+  return G_SOURCE_CONTINUE;
+}
+
+void LivePipeline::end_of_stream() {
+  if (spec_.is_live) {
+    source_dropped("it has ended");
+    return;
+  }
+  state_ = PlayState::kEnded;
+  if (loops_) play();
+}
+
+void LivePipeline::source_dropped(const std::string& why) {
+  const bool is_news = why != trouble_;
+  trouble_ = why;
+  stop();
+  if (!spec_.is_live) {
+    state_ = PlayState::kFailed;
+    handlers_.on_trouble(trouble_);
+    handlers_.on_failure();
+    return;
+  }
+  if (is_news) handlers_.on_trouble(trouble_);
+  state_ = PlayState::kReconnecting;
+  cancel_retry();
+  const guint delay = std::min(kFirstRetryMs << std::min(retries_, 8U), kSlowestRetryMs);
+  ++retries_;
+  retry_ = g_timeout_add(delay, on_retry, this);
+}
+
+gboolean LivePipeline::on_retry(gpointer data) {
+  auto* self = static_cast<LivePipeline*>(data);
+  self->retry_ = 0;
+  ++self->reconnections_;
+  self->start();
+  return G_SOURCE_REMOVE;
+}
+
+void LivePipeline::cancel_retry() {
+  if (retry_ != 0) g_source_remove(retry_);
+  retry_ = 0;
+}
+
+gboolean LivePipeline::on_glance(gpointer data) {
+  static_cast<LivePipeline*>(data)->watch_arrivals();
+  return G_SOURCE_CONTINUE;
+}
+
+// A network camera may fall silent without a word.
+void LivePipeline::watch_arrivals() {
+  const guint64 frames = frames_;
+  const bool has_arrived = frames != std::exchange(glanced_frames_, frames);
+  if (has_arrived) {
+    if (!trouble_.empty()) handlers_.on_trouble("");
+    trouble_.clear();
+    retries_ = 0;
+    glances_without_frames_ = 0;
+  } else if (spec_.is_live && state_ == PlayState::kPlaying &&
+             ++glances_without_frames_ >= kPatience) {
+    source_dropped("no frame for " + std::to_string(kPatience * kGlanceMs / 1000) + " s");
+  }
+}
+
+}  // namespace live

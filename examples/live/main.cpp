@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+//
+// ellipse-live: runs the tracker on a machine without a screen, to be watched and tuned from a
+// browser. Read examples/live/README.md first.
+#include <glib-unix.h>
+#include <gst/gst.h>
+
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+#include "examples/live/api.hpp"
+#include "examples/live/http_server.hpp"
+#include "examples/live/options.hpp"
+#include "examples/live/presets.hpp"
+#include "examples/live/security.hpp"
+#include "examples/live/session.hpp"
+
+namespace {
+
+using MainLoop = std::unique_ptr<GMainLoop, decltype(&g_main_loop_unref)>;
+
+gboolean on_signal(gpointer loop) {
+  g_main_loop_quit(static_cast<GMainLoop*>(loop));
+  return G_SOURCE_CONTINUE;
+}
+
+std::string token_for(const live::Options& options) {
+  const bool is_open = !live::is_loopback_address(options.bind);
+  return is_open && options.token.empty() ? live::make_token() : options.token;
+}
+
+void tell_addresses(const live::Options& options,
+                    const live::HttpServer& server,
+                    const live::Session& session) {
+  const bool is_ipv6 = options.bind.find(':') != std::string::npos;
+  const std::string host = is_ipv6 ? "[" + options.bind + "]" : options.bind;
+  std::cout << "ellipse-live: http://" << host << ":" << server.port() << "/"
+            << (options.token.empty() ? "" : "?token=" + options.token) << std::endl;
+  if (!session.rtsp()) return;
+  std::cout << "ellipse-live: rtsp://"
+            << (options.token.empty() ? "" : "ellipse:" + options.token + "@") << host << ":"
+            << session.rtsp()->port() << "/live" << std::endl;
+}
+
+int run(live::Options options) {
+  options.token = token_for(options);
+  const MainLoop loop(g_main_loop_new(nullptr, FALSE), g_main_loop_unref);
+  bool has_failed = false;
+  live::Session session(options, [&] {
+    // Who changes the source while it runs sees what was wrong, and can choose another.
+    if (session.pipeline().frames() > 0 || options.allows_source_change) return;
+    has_failed = true;
+    g_main_loop_quit(loop.get());
+  });
+  if (!options.preset.empty()) {
+    live::load_preset(session.pipeline().tracker(), options.preset);
+  }
+  live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
+  live::add_api(server, session, options);
+  session.open(options.source);
+  tell_addresses(options, server, session);
+  g_unix_signal_add(SIGINT, on_signal, loop.get());
+  g_unix_signal_add(SIGTERM, on_signal, loop.get());
+  if (!has_failed) g_main_loop_run(loop.get());
+  return has_failed ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const live::Options options = live::parse_options(argc, argv);
+  gst_init(nullptr, nullptr);
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::cerr << "ellipse-live: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The page, put together. Read this first.
+import { Compare } from "./compare.js";
+import { watchFrames } from "./frames.js";
+import { Labels } from "./labels.js";
+import { Playback } from "./playback.js";
+import { Plots } from "./plots.js";
+import { setUpPresets } from "./presets.js";
+import { Screen } from "./screen.js";
+import { Settings } from "./settings.js";
+import { Stages } from "./stages.js";
+import { Status } from "./status.js";
+import { setUpTabs } from "./tabs.js";
+
+const at = (id) => document.getElementById(id);
+
+const status = new Status();
+const screen = new Screen(at("screen"), at("layers"));
+const playback = new Playback(screen.canvas, status.say);
+const settings = new Settings(at("settings"), at("filter"), at("reset-all"));
+const plots = new Plots(at("plots"));
+const views = {
+  stages: new Stages(screen, playback, settings, status.say),
+  compare: new Compare(screen, playback, settings),
+  label: new Labels(screen, playback),
+};
+let view = null;
+
+const openTab = setUpTabs((name) => {
+  // While settings are tuned, two of them can still be compared.
+  const stays = name === "tune" && view === views.compare && view.isKept;
+  if (stays || views[name] === view) return;
+  view?.stop();
+  view = views[name] ?? null;
+  at("layers").hidden = view !== null;
+  view?.start();
+});
+
+watchFrames({
+  onFrame: (frame) => {
+    const isAnother = frame.pts !== screen.frame?.pts;
+    screen.show(frame);
+    status.takeFrame();
+    playback.showFrame(frame.pts);
+    if (isAnother && !playback.isPlaying) view?.refresh();
+  },
+  onLine: (line) => {
+    status.takeLine(line);
+    plots.add(line);
+  },
+  onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live: trying again"),
+});
+settings.onChange = () => view?.refresh();
+playback.onChange = (source) => status.setTrouble(source.error);
+views.stages.onSetting = (name) => {
+  openTab("tune");
+  settings.reveal(name);
+};
+
+screen.canvas.addEventListener("keydown", (event) => {
+  if (event.key === "o" || event.key === "O") screen.toggleAll();
+});
+at("help-button").onclick = () => at("help-dialog").showModal();
+
+setUpPresets(settings, status.say);
+settings.refresh();
+playback.refresh();

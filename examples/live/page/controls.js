@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// One control for each kind of property. Each returns {nodes, set}: `set` shows a value; `change`
+// is called with the value that a person has chosen.
+
+const kSteps = 1000;
+const kFarMax = 1e6;   // a slider does not go as far as what nobody wants
+const kFarTime = 1e8;  // [ns]
+const kRectParts = ["x", "y", "width", "height"];
+
+function make(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name in node) node[name] = value;
+    else node.setAttribute(name, value);
+  }
+  node.append(...children);
+  return node;
+}
+
+export { make };
+
+// Nobody is interrupted while typing: a field shows the value in force when it is left.
+function showWhenLeft(fields, show) {
+  let shown = null;
+  for (const field of fields) field.onblur = () => shown !== null && show(shown);
+  return (value) => {
+    shown = value;
+    if (!fields.includes(document.activeElement)) show(value);
+  };
+}
+
+/** Slider positions of values: even, or by ratio where the range spans more than two decades. */
+export function scaleOf({ type, min, max, unit, default: usual }) {
+  const isWhole = type !== "double";
+  const far = unit === "ns" ? kFarTime : Math.max(1000, 100 * usual);
+  const end = max > kFarMax ? far : max;
+  const isEven = end - min <= 100 || (min > 0 && end / min <= 100);
+  const shift = min > 0 ? 0 : 1;
+  const low = Math.log(min + shift);
+  const high = Math.log(end + shift);
+  const round = (value) => {
+    if (isWhole) return Math.round(value);
+    return isEven ? Math.round(100 * value) / 100 : Number(value.toPrecision(3));
+  };
+  return {
+    toShare: (value) => {
+      const share = isEven ? (value - min) / (end - min)
+                           : (Math.log(value + shift) - low) / (high - low);
+      return Math.min(1, Math.max(0, share));
+    },
+    toValue: (share) => {
+      const value = isEven ? min + share * (end - min)
+                           : Math.exp(low + share * (high - low)) - shift;
+      return Math.min(max, Math.max(min, round(value)));
+    },
+  };
+}
+
+function numberControl(property, change) {
+  const { toShare, toValue } = scaleOf(property);
+  const label = property.name;
+  const slider = make("input", { type: "range", min: 0, max: kSteps, "aria-label": label });
+  const field = make("input", {
+    type: "number",
+    min: property.min,
+    max: property.max,
+    step: property.type === "double" ? "any" : 1,
+    "aria-label": `${label}, number`,
+  });
+  const mark = make("i", { className: "default", title: `default ${property.default}` });
+  // The middle of the thumb, which is 16 px wide, does not reach the ends.
+  const share = toShare(property.default);
+  mark.style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
+  const showInField = showWhenLeft([field], (value) => {
+    field.value = Number(value.toPrecision(12));
+  });
+  const set = (value) => {
+    slider.value = Math.round(kSteps * toShare(value));
+    slider.style.setProperty("--at", `${100 * toShare(value)}%`);
+    slider.setAttribute("aria-valuetext", `${value}${property.unit ? ` ${property.unit}` : ""}`);
+    showInField(value);
+  };
+  slider.oninput = () => {
+    const value = toValue(slider.value / kSteps);
+    set(value);
+    change(value);
+  };
+  // Arrow keys: the next value that differs, where a step of the slider is too short for one.
+  slider.onkeydown = (event) => {
+    const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+    if (!way) return;
+    event.preventDefault();
+    const now = Number(field.value);
+    let position = Math.round(kSteps * toShare(now));
+    let value = now;
+    while (value === now && position + way >= 0 && position + way <= kSteps) {
+      position += way;
+      value = toValue(position / kSteps);
+    }
+    if (value === now) return;
+    set(value);
+    field.value = value;
+    change(value);
+  };
+  field.onchange = () => {
+    if (field.value !== "" && !Number.isNaN(field.valueAsNumber)) change(field.valueAsNumber);
+  };
+  return { head: [field], body: [make("div", { className: "slider" }, slider, mark)], set };
+}
+
+function boolControl(property, change) {
+  const box = make("input", { type: "checkbox", "aria-label": property.name });
+  box.onchange = () => change(box.checked);
+  return { head: [box], body: [], set: (value) => { box.checked = value; } };
+}
+
+function enumControl(property, change) {
+  const group = make("div", { className: "choices", role: "radiogroup", "aria-label": property.name });
+  const radios = property.values.map(({ nick, name }) => {
+    const radio = make("input", { type: "radio", name: `of-${property.name}`, value: nick });
+    radio.onchange = () => change(nick);
+    group.append(make("label", { className: "pill", title: name }, radio, make("span", {}, nick)));
+    return radio;
+  });
+  const set = (value) => {
+    for (const radio of radios) radio.checked = radio.value === value;
+  };
+  return { head: [], body: [group], set };
+}
+
+// Written by their nicks, read by nicks or names.
+function flagsControl(property, change) {
+  const flags = property.values.filter(({ nick }) => nick !== "none");
+  const group = make("div", { className: "choices", role: "group", "aria-label": property.name });
+  const boxes = flags.map(({ nick, name }) => {
+    const box = make("input", { type: "checkbox", value: nick });
+    box.onchange = () => {
+      const chosen = boxes.filter((each) => each.checked).map((each) => each.value);
+      change(chosen.join("+") || "none");
+    };
+    group.append(make("label", { className: "pill", title: name }, box, make("span", {}, nick)));
+    return box;
+  });
+  const set = (value) => {
+    const parts = value.split("+");
+    flags.forEach(({ nick, name }, i) => {
+      boxes[i].checked = parts.includes(nick) || parts.includes(name);
+    });
+  };
+  return { head: [], body: [group], set };
+}
+
+function rectControl(property, change) {
+  const fields = kRectParts.map((part) => make("input", {
+    type: "number", step: 1, title: part, placeholder: part, "aria-label": `${property.name}, ${part}`,
+  }));
+  for (const field of fields) {
+    field.onchange = () => change(fields.map((each) => Math.round(each.valueAsNumber || 0)));
+  }
+  const set = showWhenLeft(fields, (value) => fields.forEach((field, i) => {
+    field.value = value[i] ?? 0;
+  }));
+  return { head: [], body: [make("div", { className: "rect" }, ...fields)], set };
+}
+
+// 0xAARRGGBB. The alpha stays as it is.
+function colorControl(property, change) {
+  let alpha = 0xff;
+  const picker = make("input", { type: "color", "aria-label": property.name });
+  picker.onchange = () => change(alpha * 2 ** 24 + parseInt(picker.value.slice(1), 16));
+  const set = (value) => {
+    alpha = Math.floor(value / 2 ** 24);
+    picker.value = `#${(value % 2 ** 24).toString(16).padStart(6, "0")}`;
+  };
+  return { head: [picker], body: [], set };
+}
+
+function textControl(property, change) {
+  const field = make("input", { type: "text", "aria-label": property.name, autocomplete: "off" });
+  field.onchange = () => change(field.value);
+  const set = showWhenLeft([field], (value) => {
+    field.value = value;
+  });
+  return { head: [], body: [field], set };
+}
+
+export function makeControl(property, change) {
+  const kinds = {
+    bool: boolControl,
+    enum: enumControl,
+    flags: flagsControl,
+    rect: rectControl,
+    int: numberControl,
+    uint: numberControl,
+    uint64: numberControl,
+    double: numberControl,
+  };
+  const isColor = property.name.endsWith("-color");
+  return (isColor ? colorControl : kinds[property.type] ?? textControl)(property, change);
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Presets of the element, and the gst-launch-1.0 line of what runs.
+import { ask } from "./connection.js";
+import { make } from "./controls.js";
+
+const at = (id) => document.getElementById(id);
+
+export function setUpPresets(settings, say) {
+  const list = at("preset");
+  const dialog = at("save-dialog");
+  let presets = [];
+
+  const refresh = async (chosen = list.value) => {
+    presets = await ask("GET", "api/presets");
+    list.replaceChildren(...presets.map(({ name, comment }) => {
+      return make("option", { value: name, title: comment }, name);
+    }));
+    if (presets.some(({ name }) => name === chosen)) list.value = chosen;
+    showWhatCanBeDone();
+  };
+  const showWhatCanBeDone = () => {
+    const preset = presets.find(({ name }) => name === list.value);
+    at("preset-load").disabled = !preset;
+    at("preset-delete").disabled = !preset?.is_own;
+  };
+  const attempt = async (task) => {
+    try {
+      await task();
+    } catch (error) {
+      say(error.message);
+    }
+  };
+  const pathOf = (name) => `api/presets/${encodeURIComponent(name)}`;
+
+  list.onchange = showWhatCanBeDone;
+  at("preset-load").onclick = () => attempt(async () => {
+    await ask("POST", `${pathOf(list.value)}/load`);
+    await settings.refresh();
+    say(`${list.value} is in force`);
+  });
+  at("preset-delete").onclick = () => attempt(async () => {
+    await ask("DELETE", pathOf(list.value));
+    await refresh();
+  });
+  at("preset-save").onclick = () => {
+    at("save-error").textContent = "";
+    at("save-name").value = presets.find(({ name, is_own }) => is_own && name === list.value)?.name ?? "";
+    dialog.showModal();
+  };
+  at("save-cancel").onclick = () => dialog.close();
+  at("save-form").onsubmit = async (event) => {
+    event.preventDefault();
+    const name = at("save-name").value.trim();
+    try {
+      await ask("PUT", pathOf(name));
+      dialog.close();
+      await refresh(name);
+      say(`Saved as ${name}`);
+    } catch (error) {
+      at("save-error").textContent = error.message;
+    }
+  };
+
+  at("launch-copy").onclick = () => attempt(async () => {
+    const line = (await ask("GET", "api/launch-line")).trim();
+    at("launch-line").textContent = line;
+    at("launch-line").hidden = false;
+    // Browsers copy on the loopback and over TLS only: elsewhere the line is there to be selected.
+    if (!navigator.clipboard) return;
+    await navigator.clipboard.writeText(line);
+    say("Copied");
+  });
+  attempt(refresh);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The screen: the frame of now with what is known of it, or another view of it.
+import { contextOf, drawPicture, drawTargets } from "./drawing.js";
+
+const kLayers = {
+  ellipse: "Ellipse",
+  axes: "Axes",
+  centre: "Centre",
+  region: "Region",
+  candidates: "Candidates",
+  truth: "Truth",
+};
+
+export class Screen {
+  /** Which layers are on. */
+  layers = { ellipse: true, axes: true, centre: true, region: true, candidates: true, truth: false };
+  /** {pts, bitmap, line} of the frame that is shown; null before the first. */
+  frame = null;
+  /** Draws instead of the frame's own drawing, where it is set: (context, frame) => void. */
+  view = null;
+
+  constructor(canvas, layerList) {
+    this.canvas = canvas;
+    this.shown = 0;
+    this.isClear = false;  // all layers off for a moment
+    for (const [name, title] of Object.entries(kLayers)) {
+      layerList.append(this.#toggle(name, title));
+    }
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  show(frame) {
+    if (this.frame && this.frame.bitmap !== frame.bitmap) this.frame.bitmap.close?.();
+    this.frame = frame;
+    ++this.shown;
+    this.draw();
+  }
+
+  draw() {
+    if (!this.frame) return;
+    const { bitmap, line, pts } = this.frame;
+    const context = contextOf(this.canvas, bitmap.width, bitmap.height);
+    if (this.view) {
+      this.view(context, this.frame);
+    } else {
+      drawPicture(context, bitmap, bitmap.width, bitmap.height);
+      if (!this.isClear) drawTargets(context, line, this.layers);
+    }
+    this.canvas.dataset.pts = pts;
+    this.canvas.dataset.shown = this.shown;
+  }
+
+  /** All drawings off, or on again. */
+  toggleAll() {
+    this.isClear = !this.isClear;
+    this.draw();
+  }
+
+  /** The place of a pointer's event [px of the frame]. */
+  placeOf(event) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { bitmap } = this.frame;
+    return {
+      x: (event.clientX - left) / width * bitmap.width - 0.5,
+      y: (event.clientY - top) / height * bitmap.height - 0.5,
+    };
+  }
+
+  #toggle(name, title) {
+    const button = document.createElement("button");
+    button.className = "toggle";
+    button.textContent = title;
+    button.dataset.layer = name;
+    button.setAttribute("aria-pressed", this.layers[name]);
+    button.onclick = () => {
+      this.layers[name] = !this.layers[name];
+      button.setAttribute("aria-pressed", this.layers[name]);
+      this.draw();
+    };
+    return button;
+  }
+}

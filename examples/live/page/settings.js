@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// All properties of the element, grouped as the paper groups them. A change acts at once.
+import { ask } from "./connection.js";
+import { make, makeControl } from "./controls.js";
+
+const kPollMs = 3000;
+const kGroups = {
+  detection: ["Detection", "what counts as an ellipse"],
+  edges: ["Edges", "what counts as an edge"],
+  tracking: ["Tracking", "how the target is followed"],
+  scale: ["Scale", "how finely a frame is searched"],
+  ROI: ["Region", "where a frame is searched"],
+  load: ["Load", "which frames are analysed"],
+  output: ["Output", "what is told and drawn"],
+};
+const kOpenAtFirst = ["detection", "edges", "tracking"];
+
+const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+export class Settings {
+  #properties = [];
+  #controls = new Map();  // by name: {property, control, node, error, value}
+  #pending = {};
+  #isSending = false;
+  /** Called where any value has changed, by whomever. */
+  onChange = () => {};
+
+  constructor(container, filter, resetAll) {
+    this.container = container;
+    this.resetAll = resetAll;
+    filter.oninput = () => this.#filter(filter.value.trim().toLowerCase());
+    resetAll.onclick = () => this.set(Object.fromEntries(this.changed().map((p) => [p.name, p.default])));
+    setInterval(() => document.hidden || this.refresh(), kPollMs);
+  }
+
+  /** All values by name, as the program has them. */
+  values() {
+    return Object.fromEntries(this.#properties.map(({ name }) => [name, this.#controls.get(name).value]));
+  }
+
+  changed() {
+    return this.#properties.filter((p) => !this.#isDefault(p, this.#controls.get(p.name).value));
+  }
+
+  async refresh() {
+    if (this.#isSending) return;
+    let properties;
+    try {
+      properties = await ask("GET", "api/properties");
+    } catch {
+      return;
+    }
+    if (this.#isSending) return;
+    if (this.#properties.length === 0) this.#build(properties);
+    let hasChanged = false;
+    for (const property of properties) {
+      const entry = this.#controls.get(property.name);
+      if (!entry || isSame(entry.value, property.value)) continue;
+      this.#show(entry, property.value);
+      hasChanged = true;
+    }
+    this.#count();
+    if (hasChanged) this.onChange();
+  }
+
+  /** Sets some, {name: value}; what is asked for while a request is under way goes with the next. */
+  async set(values) {
+    Object.assign(this.#pending, values);
+    for (const [name, value] of Object.entries(values)) this.#show(this.#controls.get(name), value);
+    this.#count();
+    if (this.#isSending) return;
+    this.#isSending = true;
+    while (Object.keys(this.#pending).length > 0) {
+      const sent = this.#pending;
+      this.#pending = {};
+      await this.#send(sent);
+    }
+    this.#isSending = false;
+    await this.refresh();
+    this.onChange();
+  }
+
+  /** Brings a setting into view and to the focus. */
+  reveal(name) {
+    const entry = this.#controls.get(name);
+    if (!entry) return;
+    entry.node.closest("details").open = true;
+    entry.node.scrollIntoView({ block: "center" });
+    entry.node.querySelector("input, select")?.focus({ preventScroll: true });
+    entry.node.classList.remove("found");
+    requestAnimationFrame(() => entry.node.classList.add("found"));
+  }
+
+  async #send(values) {
+    let trouble = "";
+    try {
+      await ask("PUT", "api/properties", values);
+    } catch (error) {
+      trouble = error.message;
+    }
+    for (const name of Object.keys(values)) this.#controls.get(name).error.textContent = trouble;
+  }
+
+  #build(properties) {
+    this.#properties = properties;
+    const groups = new Map(Object.keys(kGroups).map((name) => [name, []]));
+    for (const property of properties) {
+      if (!groups.has(property.group)) groups.set(property.group, []);
+      groups.get(property.group).push(property);
+    }
+    for (const [group, members] of groups) {
+      if (members.length === 0) continue;
+      const [title, about] = kGroups[group] ?? [group, ""];
+      this.container.append(make("details", { className: "group", open: kOpenAtFirst.includes(group) },
+        make("summary", {}, title, make("small", {}, about)),
+        ...members.map((property) => this.#setting(property))));
+    }
+  }
+
+  #setting(property) {
+    const { name } = property;
+    const control = makeControl(property, (value) => this.set({ [name]: value }));
+    const reset = make("button", { className: "quiet reset", title: `Reset to ${property.default}` });
+    reset.setAttribute("aria-label", `Reset ${name}`);
+    reset.innerHTML = '<svg viewBox="0 0 20 20" aria-hidden="true"><use href="#i-reset"/></svg>';
+    reset.onclick = () => this.set({ [name]: property.default });
+    const help = make("p", { className: "help", id: `help-${name}` }, property.blurb);
+    const error = make("p", { className: "error", role: "alert" });
+    const node = make("div", { className: "setting" },
+      make("div", { className: "head" },
+        make("span", { className: "name" }, name), reset, ...control.head,
+        ...(property.unit ? [make("span", { className: "unit" }, property.unit)] : [])),
+      ...control.body, help, error);
+    node.dataset.setting = name;
+    for (const input of node.querySelectorAll("input")) input.setAttribute("aria-describedby", help.id);
+    const entry = { property, control, node, error };
+    this.#controls.set(name, entry);
+    this.#show(entry, property.value);
+    return node;
+  }
+
+  #show(entry, value) {
+    entry.value = value;
+    entry.control.set(value);
+    entry.node.classList.toggle("changed", !this.#isDefault(entry.property, value));
+  }
+
+  // Flags and regions have more than one spelling of their default.
+  #isDefault({ type, default: usual }, value) {
+    if (type === "rect") return usual.length === 0 ? !value[2] : isSame(value, usual);
+    if (type === "flags") return isSame(value, usual) || (value === "none" && usual === "Nothing");
+    return isSame(value, usual);
+  }
+
+  #count() {
+    const count = this.changed().length;
+    this.resetAll.disabled = count === 0;
+    this.resetAll.textContent = count === 0 ? "Reset all" : `Reset ${count}`;
+  }
+
+  #filter(text) {
+    for (const { property, node } of this.#controls.values()) {
+      node.hidden = !`${property.name} ${property.blurb}`.toLowerCase().includes(text);
+    }
+    for (const group of this.container.querySelectorAll("details.group")) {
+      group.hidden = !group.querySelector(".setting:not([hidden])");
+      if (text) group.open = true;
+    }
+  }
+}

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// The stage view: edges, chains, arcs and candidates of the frame on the screen, and why each
+// candidate is refused.
+import { analyze, lookOf, placeText } from "./analysis.js";
+import { newestOnly } from "./connection.js";
+import { make } from "./controls.js";
+import { distanceTo, drawEllipse, drawPicture } from "./drawing.js";
+
+const kStages = {
+  luma: "Frame",
+  edges: "Edges",
+  chains: "Chains",
+  arcs: "Arcs",
+  candidates: "Candidates",
+};
+// What the detector of the paper has in the place of chains and arcs.
+const kStagesOfContours = { chains: "Contours", arcs: "Parts" };
+const kMostRows = 30;
+const kPauseMs = 400;
+const kNearPx = 12;
+const at = (id) => document.getElementById(id);
+
+export class Stages {
+  #stage = "candidates";
+  #result = null;
+  #marked = null;  // the number of a candidate
+  #only = null;    // a reason
+  #open = new Set(["accepted"]);
+  #isOn = false;
+  #names = {};     // of the stages, as they are shown
+
+  constructor(screen, playback, settings, say) {
+    Object.assign(this, { screen, playback, settings, say });
+    for (const [stage, title] of Object.entries(kStages)) {
+      const radio = make("input", { type: "radio", name: "stage", value: stage, checked: stage === this.#stage });
+      radio.onchange = () => {
+        this.#stage = stage;
+        this.refresh();
+      };
+      this.#names[stage] = make("span", {}, title);
+      at("stage-choices").append(make("label", { className: "pill" }, radio, this.#names[stage]));
+    }
+    screen.canvas.addEventListener("click", (event) => this.#isOn && this.#pick(event));
+  }
+
+  start() {
+    this.#isOn = true;
+    this.screen.canvas.parentElement.classList.add("picks");
+    this.refresh();
+  }
+
+  stop() {
+    this.#isOn = false;
+    this.#result = null;
+    this.screen.canvas.parentElement.classList.remove("picks");
+    this.screen.view = null;
+    this.screen.draw();
+  }
+
+  /** Looks again: at another frame, or with other settings. While it plays, again and again. */
+  refresh = newestOnly(async () => {
+    if (!this.#isOn || !this.screen.frame) return;
+    try {
+      // The candidates are drawn here, over the luma.
+      const stage = this.#stage === "candidates" ? "luma" : this.#stage;
+      this.#result = { stage, ...await analyze({ stage }) };
+    } catch (error) {
+      at("stage-summary").textContent = error.message;
+      return;
+    }
+    if (!this.#isOn) return;
+    this.screen.view = (context, frame) => this.#draw(context, frame);
+    this.screen.draw();
+    this.#list();
+    if (this.playback.isPlaying) setTimeout(() => this.refresh(), kPauseMs);
+  });
+
+  #draw(context, { bitmap, pts }) {
+    const { image, candidates, stage, pts_ns: lookedAt } = this.#result;
+    const isSame = String(lookedAt) === pts && stage === "luma";
+    drawPicture(context, isSame || !image ? bitmap : image, bitmap.width, bitmap.height, stage !== "luma");
+    if (this.#stage === "candidates") {
+      context.fillStyle = "rgb(8 10 14 / .55)";
+      context.fillRect(-0.5, -0.5, bitmap.width, bitmap.height);
+    }
+    const isShown = (candidate, i) => i === this.#marked || candidate.reason === this.#only ||
+      (this.#only === null && this.#stage === "candidates");
+    // What is found lies over what is refused, and what is pointed at over all.
+    const rank = ({ is_target, found, number }) => (number === this.#marked ? 3 : is_target ? 2 : found ? 1 : 0);
+    const shown = candidates
+      .map((candidate, number) => ({ ...candidate, number }))
+      .filter((candidate) => candidate.ellipse && isShown(candidate, candidate.number))
+      .sort((a, b) => rank(a) - rank(b));
+    const width = context.lineWidth;
+    for (const candidate of shown) {
+      const isMarked = candidate.number === this.#marked;
+      context.globalAlpha = isMarked || candidate.found ? 1 : 0.6;
+      context.lineWidth = isMarked ? 1.8 * width : candidate.found ? width : 0.6 * width;
+      drawEllipse(context, candidate.ellipse, lookOf(candidate), { ellipse: true, centre: isMarked });
+    }
+    context.globalAlpha = 1;
+    context.lineWidth = width;
+  }
+
+  #list() {
+    const { groups, passes, processing_ns: time, detector } = this.#result;
+    for (const stage of Object.keys(kStagesOfContours)) {
+      this.#names[stage].textContent = (detector === "contours" ? kStagesOfContours : kStages)[stage];
+    }
+    const total = groups.reduce((sum, { count }) => sum + count, 0);
+    const pass = passes.at(-1);
+    const parts = [`<b>${total}</b> tried`];
+    if (pass) {
+      parts.push(`1 : ${pass.scale}`, `edges above ${pass.edge_high.toFixed(1)} grey levels per px`);
+    }
+    at("stage-summary").innerHTML = `${detector}: ${parts.join(", ")}, ${(time / 1e6).toFixed(2)} ms`;
+    const hadFocus = document.activeElement?.dataset?.focus;
+    at("reasons").replaceChildren(...groups.map((group) => this.#group(group, total)));
+    if (hadFocus) at("reasons").querySelector(`[data-focus="${CSS.escape(hadFocus)}"]`)?.focus();
+  }
+
+  #group(group, total) {
+    const bar = make("i");
+    bar.style.width = `${100 * group.count / total}%`;
+    const summary = make("summary", {},
+      make("span", {}, group.description),
+      make("span", { className: "count" }, String(group.count)),
+      make("span", { className: "share" }, bar));
+    summary.dataset.focus = group.reason;
+    const kind = group.reason === "accepted" ? " accepted" : group.isFound ? " kept" : "";
+    const node = make("details", { className: `reason${kind}`, open: this.#open.has(group.reason) }, summary);
+    node.dataset.reason = group.reason;
+    node.ontoggle = () => {
+      if (node.open) this.#open.add(group.reason);
+      else this.#open.delete(group.reason);
+      this.#only = node.open && group.reason !== "accepted" ? group.reason
+        : this.#only === group.reason ? null : this.#only;
+      this.screen.draw();
+    };
+    const rows = group.members.filter(({ ellipse }) => ellipse).slice(0, kMostRows);
+    node.append(make("ul", {}, ...rows.map((member) => this.#row(group, member))));
+    if (group.count > rows.length) {
+      node.append(make("p", { className: "more" }, `and ${group.count - rows.length} more`));
+    }
+    const setting = this.#settingOf(group);
+    if (setting) {
+      const button = make("button", { className: "quiet to-setting" }, `Go to ${setting}`);
+      button.onclick = () => this.onSetting(setting);
+      node.append(button);
+    }
+    return node;
+  }
+
+  /** Called with the name of a setting that a person wants to see. */
+  onSetting = () => {};
+
+  // Of the overlaps there are two: this analysis knows no target before it.
+  #settingOf({ setting }) {
+    if (!setting) return null;
+    return setting in this.settings.values() ? setting : `detect-${setting}`;
+  }
+
+  #row(group, member) {
+    const figure = group.quantity
+      ? `${group.quantity} ${short(member.measured)}${group.unit ? ` ${group.unit}` : ""}, ` +
+        `${member.measured < member.limit ? "at least" : "at most"} ${short(member.limit)}`
+      : member.found ? `score ${member.score.toFixed(0)}` : "";
+    const button = make("button", {},
+      make("span", {}, (member.is_target ? "The target, " : "") + figure),
+      make("span", { className: "where" }, placeText(member.ellipse)));
+    button.dataset.focus = `${group.reason} ${member.number}`;
+    button.dataset.candidate = member.number;
+    const mark = (number) => () => {
+      this.#marked = number;
+      this.screen.draw();
+    };
+    button.onpointerenter = button.onfocus = button.onclick = mark(member.number);
+    button.onpointerleave = button.onblur = mark(null);
+    return make("li", {}, button);
+  }
+
+  // The candidate whose perimeter is next to the pointer is shown in the list.
+  #pick(event) {
+    if (!this.#result) return;
+    const { x, y } = this.screen.placeOf(event);
+    let best = null;
+    this.#result.candidates.forEach((candidate, number) => {
+      if (!candidate.ellipse) return;
+      const distance = distanceTo(candidate.ellipse, x, y);
+      if (distance < (best?.distance ?? kNearPx)) best = { distance, candidate, number };
+    });
+    if (!best) return;
+    this.#open.add(best.candidate.reason);
+    this.#list();
+    const row = at("reasons").querySelector(`[data-candidate="${best.number}"]`);
+    row?.focus();
+    row?.scrollIntoView({ block: "center" });
+    this.say(best.candidate.text);
+  }
+}
+
+function short(value) {
+  return String(Number(value.toPrecision(3)));
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// The bar at the top, notices over the picture, and what a screen reader is told.
+import { targetOf } from "./drawing.js";
+
+const kNoticeMs = 3500;
+const kTexts = {
+  tracked: "tracked",
+  detected: "detected",
+  predicted: "predicted",
+  lost: "lost",
+  none: "no target",
+};
+const at = (id) => document.getElementById(id);
+
+export class Status {
+  #state = null;
+  #hadTarget = false;
+  #times = [];   // when lines came
+  #shown = [];   // when pictures were painted
+  #trouble = "";
+  #timer = 0;
+
+  /** A word to the person, for a few seconds. */
+  say = (text) => {
+    clearTimeout(this.#timer);
+    this.#notice(text, false);
+    this.#timer = setTimeout(() => this.#notice(this.#trouble, true), kNoticeMs);
+  };
+
+  /** What is wrong, until it is no more: "". */
+  setTrouble(text) {
+    if (text === this.#trouble) return;
+    this.#trouble = text;
+    clearTimeout(this.#timer);
+    this.#notice(text, true);
+  }
+
+  takeLine(line) {
+    rate(this.#times);
+    const target = targetOf(line);
+    this.#setState(target?.state ?? (this.#hadTarget ? "lost" : "none"));
+    if (target) this.#hadTarget = true;
+    if (line.processing_ns !== undefined) {
+      at("figure-time").textContent = `${(line.processing_ns / 1e6).toFixed(2)} ms`;
+    }
+    at("figure-rate").textContent = rateText(this.#times);
+  }
+
+  /** A picture was painted. */
+  takeFrame() {
+    rate(this.#shown);
+    at("figure-shown").textContent = rateText(this.#shown);
+  }
+
+  #setState(state) {
+    if (state === this.#state) return;
+    this.#state = state;
+    at("state").dataset.state = state;
+    at("state-text").textContent = kTexts[state];
+    at("announcer").textContent = `Target: ${kTexts[state]}`;
+  }
+
+  #notice(text, isTrouble) {
+    const notice = at("notice");
+    notice.textContent = text;
+    notice.classList.toggle("trouble", isTrouble && text !== "");
+  }
+}
+
+// The last second of events.
+function rate(times) {
+  const now = performance.now();
+  times.push(now);
+  while (times.length > 2 && times[0] < now - 1000) times.shift();
+}
+
+function rateText(times) {
+  if (times.length < 2) return "–";
+  return (1000 * (times.length - 1) / (times.at(-1) - times[0])).toFixed(0);
+}

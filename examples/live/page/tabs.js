@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Tabs by mouse and keys, as the ARIA practices have them.
+
+/**
+ * @param onChange  Gets the name of the tab that is open now, as in id="tab-NAME".
+ * @returns a function that opens a tab by its name.
+ */
+export function setUpTabs(onChange) {
+  const tabs = [...document.querySelectorAll("[role=tab]")];
+  const open = (tab) => {
+    for (const each of tabs) {
+      const isOpen = each === tab;
+      each.setAttribute("aria-selected", isOpen);
+      each.tabIndex = isOpen ? 0 : -1;
+      document.getElementById(each.getAttribute("aria-controls")).hidden = !isOpen;
+    }
+    onChange(tab.id.replace("tab-", ""));
+  };
+  tabs.forEach((tab, i) => {
+    tab.onclick = () => open(tab);
+    tab.onkeydown = ({ key }) => {
+      const to = { ArrowRight: i + 1, ArrowLeft: i - 1, Home: 0, End: tabs.length - 1 }[key];
+      if (to === undefined) return;
+      const next = tabs[(to + tabs.length) % tabs.length];
+      next.focus();
+      open(next);
+    };
+  });
+  return (name) => open(document.getElementById(`tab-${name}`));
+}

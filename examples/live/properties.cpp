@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/properties.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "examples/live/json_writer.hpp"
+#include "examples/live/property_input.hpp"
+#include "examples/live/property_json.hpp"
+#include "examples/live/ref.hpp"
+#include "examples/live/request_json.hpp"
+
+namespace live {
+namespace {
+
+// A GValue that clears itself.
+class Value {
+ public:
+  explicit Value(const GParamSpec* spec) { g_value_init(&value_, G_PARAM_SPEC_VALUE_TYPE(spec)); }
+  ~Value() { g_value_unset(&value_); }
+  Value(const Value&) = delete;
+  Value& operator=(const Value&) = delete;
+
+  [[nodiscard]] GValue* get() { return &value_; }
+
+ private:
+  GValue value_ = G_VALUE_INIT;
+};
+
+struct Change {
+  GParamSpec* spec;
+  std::unique_ptr<Value> value;
+};
+
+// Those that a person tunes: writable at any time, and the element's own.
+std::vector<GParamSpec*> tunable(GstElement* tracker) {
+  guint count = 0;
+  const Ref<gchar> list(reinterpret_cast<gchar*>(
+      g_object_class_list_properties(G_OBJECT_GET_CLASS(tracker), &count)));
+  auto** specs = reinterpret_cast<GParamSpec**>(list.get());
+  std::vector<GParamSpec*> result;
+  std::copy_if(specs, specs + count, std::back_inserter(result), [tracker](const GParamSpec* spec) {
+    return spec->owner_type == G_OBJECT_TYPE(tracker) && (spec->flags & G_PARAM_WRITABLE) != 0;
+  });
+  return result;
+}
+
+std::vector<Change> parse_changes(GstElement* tracker, const std::string& json) {
+  std::vector<Change> changes;
+  if (json.empty()) return changes;
+  const RequestJson object(json);
+  const std::vector<GParamSpec*> known = tunable(tracker);
+  JsonObjectIter iter;
+  json_object_iter_init(&iter, object.object());
+  const gchar* name = nullptr;
+  JsonNode* node = nullptr;
+  while (json_object_iter_next(&iter, &name, &node)) {
+    const auto spec = std::find_if(known.begin(), known.end(), [name](const GParamSpec* each) {
+      return g_strcmp0(each->name, name) == 0;
+    });
+    if (spec == known.end()) {
+      throw std::invalid_argument(std::string(name) + ": there is no such property to set");
+    }
+    Change change{*spec, std::make_unique<Value>(*spec)};
+    read_value(*spec, node, change.value->get());
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+/* What the tracker makes of them */
+
+void take_in(ellipse::TrackerSettings& settings, const char* name, const GValue* value) {
+  const std::string property = name;
+  if (property == "detector") {
+    settings.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
+  } else if (property == "tracking") {
+    settings.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
+  } else if (property == "refine") {
+    settings.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
+  }
+  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
+    if (property != info.name) continue;
+    info.set(settings, info.is_integer ? g_value_get_uint(value) : g_value_get_double(value));
+  }
+}
+
+ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<Change>& changes) {
+  ellipse::TrackerSettings settings;
+  for (GParamSpec* spec : tunable(tracker)) {
+    Value value(spec);
+    g_object_get_property(G_OBJECT(tracker), spec->name, value.get());
+    take_in(settings, spec->name, value.get());
+  }
+  for (const Change& change : changes) take_in(settings, change.spec->name, change.value->get());
+  settings.validate();
+  return settings;
+}
+
+// The order in which two settings that fit come from one to the other without a pair that is turned
+// around in between: first what widens a pair, then what narrows it.
+bool widens(GstElement* tracker, const Change& change) {
+  const std::string name = change.spec->name;
+  const bool is_upper = name.starts_with("max-") || name == "edge-high";
+  const bool is_lower = name.starts_with("min-") || name == "edge-low";
+  if (!G_IS_PARAM_SPEC_DOUBLE(change.spec) || (!is_upper && !is_lower)) return false;
+  Value now(change.spec);
+  g_object_get_property(G_OBJECT(tracker), change.spec->name, now.get());
+  const double before = g_value_get_double(now.get());
+  const double after = g_value_get_double(change.value->get());
+  if (name == "edge-high" && (before == 0.0 || after == 0.0)) return after == 0.0;  // 0: no limit
+  return is_upper ? after > before : after < before;
+}
+
+bool is_empty_rect(const GValue* value) {
+  constexpr guint kWidth = 2;
+  return gst_value_array_get_size(value) <= kWidth ||
+         g_value_get_int(gst_value_array_get_value(value, kWidth)) == 0;
+}
+
+}  // namespace
+
+std::string Properties::to_json() const {
+  JsonWriter json;
+  json.begin_array();
+  for (GParamSpec* spec : tunable(tracker_)) write_property(json, tracker_, spec);
+  return json.end_array().text() + "\n";
+}
+
+void Properties::set(const std::string& json) {
+  if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
+  std::vector<Change> changes = parse_changes(tracker_, json);
+  (void)settings_after(tracker_, changes);
+  std::stable_partition(changes.begin(), changes.end(), [this](const Change& change) {
+    return widens(tracker_, change);
+  });
+  for (const Change& change : changes) {
+    g_object_set_property(G_OBJECT(tracker_), change.spec->name, change.value->get());
+  }
+}
+
+ellipse::TrackerSettings Properties::settings_with(const std::string& json) const {
+  return settings_after(tracker_, parse_changes(tracker_, json));
+}
+
+std::string Properties::launch_settings() const {
+  // Largest first: gst-launch-1.0 sets one after the other.
+  std::string uppers;
+  std::string others;
+  for (GParamSpec* spec : tunable(tracker_)) {
+    Value value(spec);
+    g_object_get_property(G_OBJECT(tracker_), spec->name, value.get());
+    if (g_param_value_defaults(spec, value.get())) continue;
+    if (is_rect(spec) && is_empty_rect(value.get())) continue;
+    const std::string text = word_of(spec, value.get());
+    if (text.empty()) continue;
+    const std::string setting = std::string(" ") + spec->name + "=" + text;
+    (std::string_view(spec->name).starts_with("max-") ? uppers : others) += setting;
+  }
+  return uppers + others;
+}
+
+}  // namespace live

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/property_groups.hpp"
+
+#include <array>
+
+namespace live {
+namespace {
+
+struct Group {
+  std::string_view start;  // of a property's name
+  std::string_view name;
+};
+
+// The first that fits counts.
+constexpr std::array kGroups = {
+    Group{"detector", "detection"},
+    Group{"detect-", "detection"},
+    Group{"min-axis", "detection"},
+    Group{"max-axis", "detection"},
+    Group{"min-contour-size", "detection"},
+    Group{"candidates", "detection"},
+    Group{"tracking", "tracking"},
+    Group{"track-", "tracking"},
+    Group{"refine", "tracking"},
+    Group{"ring-ratio", "tracking"},
+    Group{"max-scale", "scale"},
+    Group{"min-target-size", "scale"},
+    Group{"max-target-size", "scale"},
+    Group{"roi", "ROI"},
+    Group{"edge-", "edges"},
+    Group{"interval", "load"},
+    Group{"max-processing-time", "load"},
+    Group{"qos", "load"},
+    Group{"messages", "output"},
+    Group{"attach-", "output"},
+    Group{"overlay", "output"},
+    Group{"line-width", "output"},
+};
+
+constexpr std::array<std::string_view, 3> kUnits = {"grey levels per px", "px", "ns"};
+
+}  // namespace
+
+std::string_view group_of(std::string_view property) {
+  for (const Group& group : kGroups) {
+    if (property.starts_with(group.start)) return group.name;
+  }
+  return "other";
+}
+
+std::string_view unit_in(std::string_view blurb) {
+  for (const std::string_view unit : kUnits) {
+    for (std::size_t at = blurb.find(unit); at != std::string_view::npos;
+         at = blurb.find(unit, at + 1)) {
+      const bool starts = at >= 3 && blurb.substr(at - 3, 3) == "in ";
+      const std::size_t end = at + unit.size();
+      const bool ends = end == blurb.size() || blurb.substr(end, 1).find_first_of(";:, ") == 0;
+      if (starts && ends) return unit;
+    }
+  }
+  return "";
+}
+
+}  // namespace live

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/property_json.hpp"
+
+#include "examples/live/property_groups.hpp"
+#include "examples/live/ref.hpp"
+
+namespace live {
+namespace {
+
+std::string type_of(const GParamSpec* spec) {
+  if (is_rect(spec)) return "rect";
+  if (G_IS_PARAM_SPEC_ENUM(spec)) return "enum";
+  if (G_IS_PARAM_SPEC_FLAGS(spec)) return "flags";
+  switch (G_PARAM_SPEC_VALUE_TYPE(spec)) {
+    case G_TYPE_BOOLEAN:
+      return "bool";
+    case G_TYPE_INT:
+      return "int";
+    case G_TYPE_UINT:
+      return "uint";
+    case G_TYPE_UINT64:
+      return "uint64";
+    case G_TYPE_DOUBLE:
+      return "double";
+    case G_TYPE_STRING:
+      return "string";
+    default:
+      return "other";
+  }
+}
+
+std::string flag_nicks(const GValue* value) {
+  const auto* type = static_cast<const GFlagsClass*>(g_type_class_peek(G_VALUE_TYPE(value)));
+  const guint set = g_value_get_flags(value);
+  std::string nicks;
+  for (guint i = 0; i < type->n_values; ++i) {
+    const GFlagsValue& flag = type->values[i];
+    const bool is_set = flag.value == 0 ? set == 0 : (set & flag.value) == flag.value;
+    if (is_set) nicks += (nicks.empty() ? "" : "+") + std::string(flag.value_nick);
+  }
+  return nicks;
+}
+
+std::string enum_nick(const GValue* value) {
+  auto* type = static_cast<GEnumClass*>(g_type_class_peek(G_VALUE_TYPE(value)));
+  const GEnumValue* found = g_enum_get_value(type, g_value_get_enum(value));
+  return found != nullptr ? found->value_nick : "";
+}
+
+void write_value(JsonWriter& json, const GParamSpec* spec, const GValue* value) {
+  if (is_rect(spec)) {
+    json.begin_array();
+    for (guint i = 0; i < gst_value_array_get_size(value); ++i) {
+      json.value(g_value_get_int(gst_value_array_get_value(value, i)));
+    }
+    json.end_array();
+  } else if (G_VALUE_HOLDS_BOOLEAN(value)) {
+    json.value(g_value_get_boolean(value) != FALSE);
+  } else if (G_VALUE_HOLDS_INT(value)) {
+    json.value(g_value_get_int(value));
+  } else if (G_VALUE_HOLDS_UINT(value)) {
+    json.value(g_value_get_uint(value));
+  } else if (G_VALUE_HOLDS_UINT64(value)) {
+    json.value(g_value_get_uint64(value));
+  } else if (G_VALUE_HOLDS_DOUBLE(value)) {
+    json.value(g_value_get_double(value));
+  } else if (G_VALUE_HOLDS_STRING(value)) {
+    const gchar* text = g_value_get_string(value);
+    json.value(text != nullptr ? text : "");
+  } else if (G_VALUE_HOLDS_FLAGS(value)) {
+    json.value(flag_nicks(value));
+  } else if (G_VALUE_HOLDS_ENUM(value)) {
+    json.value(enum_nick(value));
+  } else {
+    json.null();
+  }
+}
+
+template <class Spec>
+void write_range(JsonWriter& json, const Spec* spec) {
+  json.member("min", spec->minimum).member("max", spec->maximum);
+}
+
+void write_limits(JsonWriter& json, GParamSpec* spec) {
+  if (G_IS_PARAM_SPEC_DOUBLE(spec)) write_range(json, G_PARAM_SPEC_DOUBLE(spec));
+  if (G_IS_PARAM_SPEC_UINT(spec)) write_range(json, G_PARAM_SPEC_UINT(spec));
+  if (G_IS_PARAM_SPEC_INT(spec)) write_range(json, G_PARAM_SPEC_INT(spec));
+  if (G_IS_PARAM_SPEC_UINT64(spec)) write_range(json, G_PARAM_SPEC_UINT64(spec));
+}
+
+template <class Values>
+void write_nicks(JsonWriter& json, const Values* values, guint count) {
+  json.key("values").begin_array();
+  for (guint i = 0; i < count; ++i) {
+    json.begin_object()
+        .member("nick", values[i].value_nick)
+        .member("name", values[i].value_name)
+        .end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace
+
+bool is_rect(const GParamSpec* spec) {
+  return G_PARAM_SPEC_VALUE_TYPE(spec) == GST_TYPE_ARRAY;
+}
+
+void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec) {
+  const char* blurb = g_param_spec_get_blurb(spec);
+  json.begin_object()
+      .member("name", spec->name)
+      .member("nick", g_param_spec_get_nick(spec))
+      .member("blurb", blurb)
+      .member("type", type_of(spec))
+      .member("group", group_of(spec->name))
+      .member("unit", unit_in(blurb))
+      .member("writable", true)
+      .member("mutable_playing", (spec->flags & GST_PARAM_MUTABLE_PLAYING) != 0);
+  write_limits(json, spec);
+  if (G_IS_PARAM_SPEC_ENUM(spec)) {
+    const GEnumClass* type = G_PARAM_SPEC_ENUM(spec)->enum_class;
+    write_nicks(json, type->values, type->n_values);
+  }
+  if (G_IS_PARAM_SPEC_FLAGS(spec)) {
+    const GFlagsClass* type = G_PARAM_SPEC_FLAGS(spec)->flags_class;
+    write_nicks(json, type->values, type->n_values);
+  }
+  json.key("default");
+  write_value(json, spec, g_param_spec_get_default_value(spec));
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, G_PARAM_SPEC_VALUE_TYPE(spec));
+  g_object_get_property(G_OBJECT(object), spec->name, &value);
+  json.key("value");
+  write_value(json, spec, &value);
+  g_value_unset(&value);
+  json.end_object();
+}
+
+std::string word_of(const GParamSpec* spec, const GValue* value) {
+  if (is_rect(spec)) {
+    JsonWriter numbers;
+    write_value(numbers, spec, value);
+    return "<" + numbers.text().substr(1, numbers.text().size() - 2) + ">";
+  }
+  if (G_VALUE_HOLDS_FLAGS(value)) return flag_nicks(value);
+  if (G_VALUE_HOLDS_ENUM(value)) return enum_nick(value);
+  const Ref<gchar> text(gst_value_serialize(value));
+  return text ? text.get() : "";
+}
+
+}  // namespace live

@@ -1,0 +1,21 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gst/gst.h>
+
+#include <string>
+
+#include "examples/live/json_writer.hpp"
+
+namespace live {
+
+/// Whether a property is a region: an array of four whole numbers.
+[[nodiscard]] bool is_rect(const GParamSpec* spec);
+
+/// Writes an object that tells all that a control needs: name, nick, blurb, type, range, default,
+/// value, unit, group.
+void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec);
+
+/// A property's value as one word of a gst-launch line, unquoted.
+[[nodiscard]] std::string word_of(const GParamSpec* spec, const GValue* value);
+
+}  // namespace live

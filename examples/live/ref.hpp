@@ -1,0 +1,34 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gst/gst.h>
+
+#include <memory>
+
+namespace live {
+
+/// Gives back what GLib, GStreamer or libsoup handed out.
+struct Release {
+  void operator()(GstSample* sample) const { gst_sample_unref(sample); }
+  void operator()(GstCaps* caps) const { gst_caps_unref(caps); }
+  void operator()(GstStructure* structure) const { gst_structure_free(structure); }
+  void operator()(GBytes* bytes) const { g_bytes_unref(bytes); }
+  void operator()(GError* error) const { g_error_free(error); }
+  void operator()(gchar* text) const { g_free(text); }
+  void operator()(guchar* bytes) const { g_free(bytes); }
+  template <class Object>
+  void operator()(Object* object) const {
+    g_object_unref(object);
+  }
+};
+
+/// One reference that is given back at the end.
+template <class T>
+using Ref = std::unique_ptr<T, Release>;
+
+/// One more reference to a GObject.
+template <class T>
+[[nodiscard]] Ref<T> share(T* object) {
+  return Ref<T>(static_cast<T*>(g_object_ref(object)));
+}
+
+}  // namespace live

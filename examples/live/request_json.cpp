@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/request_json.hpp"
+
+#include <stdexcept>
+
+namespace live {
+
+RequestJson::RequestJson(const std::string& body) : parser_(json_parser_new()) {
+  GError* problem = nullptr;
+  const auto size = static_cast<gssize>(body.size());
+  json_parser_load_from_data(parser_.get(), body.c_str(), size, &problem);
+  if (problem != nullptr) {
+    const Ref<GError> error(problem);
+    throw std::invalid_argument(std::string("no JSON: ") + error->message);
+  }
+  JsonNode* root = json_parser_get_root(parser_.get());
+  if (root == nullptr || !JSON_NODE_HOLDS_OBJECT(root)) {
+    throw std::invalid_argument("a JSON object is wanted");
+  }
+  object_ = json_node_get_object(root);
+}
+
+JsonNode* RequestJson::node(const char* name) const {
+  return json_object_get_member(object_, name);
+}
+
+bool RequestJson::has(const char* name) const {
+  return node(name) != nullptr;
+}
+
+std::string RequestJson::text(const char* name) const {
+  JsonNode* member = node(name);
+  if (member == nullptr || !JSON_NODE_HOLDS_VALUE(member) ||
+      json_node_get_value_type(member) != G_TYPE_STRING) {
+    throw std::invalid_argument(std::string(name) + ": text is wanted");
+  }
+  return json_node_get_string(member);
+}
+
+double RequestJson::number(const char* name) const {
+  JsonNode* member = node(name);
+  const bool is_value = member != nullptr && JSON_NODE_HOLDS_VALUE(member);
+  const GType type = is_value ? json_node_get_value_type(member) : G_TYPE_INVALID;
+  if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) {
+    throw std::invalid_argument(std::string(name) + ": a number is wanted");
+  }
+  return json_node_get_double(member);
+}
+
+GstClockTime RequestJson::time(const char* name) const {
+  constexpr double kLatest = 9e18;
+  const double time = number(name);
+  if (!(time >= 0.0 && time <= kLatest)) {
+    throw std::invalid_argument(std::string(name) + ": a time in ns is wanted");
+  }
+  return static_cast<GstClockTime>(time);
+}
+
+}  // namespace live

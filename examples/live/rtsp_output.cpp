@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/rtsp_output.hpp"
+
+#include <stdexcept>
+
+#include "examples/live/frame_inlet.hpp"
+#include "examples/live/h264.hpp"
+
+namespace live {
+namespace {
+
+constexpr int kMostWaiting = 2;  // frames
+constexpr guint kMostSessions = 16;
+constexpr guint kGlanceSeconds = 2;
+constexpr char kInlet[] = "frames";
+constexpr char kUser[] = "ellipse";
+constexpr char kRole[] = "viewer";
+
+Ref<GstElement> inlet_of(GstRTSPMedia* media) {
+  const Ref<GstElement> bin(gst_rtsp_media_get_element(media));
+  return Ref<GstElement>(gst_bin_get_by_name(GST_BIN(bin.get()), kInlet));
+}
+
+}  // namespace
+
+RtspOutput::RtspOutput(const Settings& settings) : server_(gst_rtsp_server_new()) {
+  gst_rtsp_server_set_address(server_.get(), settings.address.c_str());
+  gst_rtsp_server_set_service(server_.get(), std::to_string(settings.port).c_str());
+  GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
+  gst_rtsp_media_factory_set_launch(
+      factory,
+      ("( " + frame_inlet(kInlet, kMostWaiting) +
+       " ! videoconvert ! ellipseoverlay overlay=ellipse+axes+centre+label ! " + h264_encoder() +
+       " ! rtph264pay name=pay0 pt=96 config-interval=1 )")
+          .c_str());
+  gst_rtsp_media_factory_set_shared(factory, TRUE);
+  g_signal_connect(factory, "media-configure", G_CALLBACK(on_configure), this);
+  if (!settings.token.empty()) ask_for(settings.token, factory);
+  const Ref<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server_.get()));
+  gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // takes the factory
+  const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server_.get()));
+  gst_rtsp_session_pool_set_max_sessions(pool.get(), kMostSessions);
+  source_ = gst_rtsp_server_attach(server_.get(), nullptr);
+  if (source_ == 0) {
+    throw std::runtime_error("cannot serve RTSP at " + settings.address + ":" +
+                             std::to_string(settings.port));
+  }
+  glance_ = g_timeout_add_seconds(kGlanceSeconds, on_glance, this);
+}
+
+RtspOutput::~RtspOutput() {
+  g_source_remove(glance_);
+  g_source_remove(source_);
+  const auto end = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
+  gst_rtsp_server_client_filter(server_.get(), end, nullptr);
+}
+
+void RtspOutput::ask_for(const std::string& token, GstRTSPMediaFactory* factory) {
+  gst_rtsp_media_factory_add_role(factory,
+                                  kRole,
+                                  GST_RTSP_PERM_MEDIA_FACTORY_ACCESS,
+                                  G_TYPE_BOOLEAN,
+                                  TRUE,
+                                  GST_RTSP_PERM_MEDIA_FACTORY_CONSTRUCT,
+                                  G_TYPE_BOOLEAN,
+                                  TRUE,
+                                  nullptr);
+  const Ref<GstRTSPAuth> auth(gst_rtsp_auth_new());
+  GstRTSPToken* role =
+      gst_rtsp_token_new(GST_RTSP_TOKEN_MEDIA_FACTORY_ROLE, G_TYPE_STRING, kRole, nullptr);
+  const Ref<gchar> basic(gst_rtsp_auth_make_basic(kUser, token.c_str()));
+  gst_rtsp_auth_add_basic(auth.get(), basic.get(), role);
+  gst_rtsp_token_unref(role);
+  gst_rtsp_server_set_auth(server_.get(), auth.get());
+}
+
+void RtspOutput::put(const FramePtr& frame) {
+  const std::lock_guard lock(mutex_);
+  newest_ = frame;
+  for (const auto& inlet : inlets_) push_frame(GST_APP_SRC(inlet.get()), *frame);
+}
+
+int RtspOutput::port() const {
+  return gst_rtsp_server_get_bound_port(server_.get());
+}
+
+void RtspOutput::on_configure(GstRTSPMediaFactory* /*factory*/,
+                              GstRTSPMedia* media,
+                              gpointer data) {
+  auto* self = static_cast<RtspOutput*>(data);
+  g_signal_connect(media, "unprepared", G_CALLBACK(on_unprepared), self);
+  Ref<GstElement> inlet = inlet_of(media);
+  const std::lock_guard lock(self->mutex_);
+  // So that a client that comes while a file is paused gets to know what the video is.
+  if (self->newest_) push_frame(GST_APP_SRC(inlet.get()), *self->newest_);
+  self->inlets_.push_back(std::move(inlet));
+}
+
+void RtspOutput::on_unprepared(GstRTSPMedia* media, gpointer data) {
+  auto* self = static_cast<RtspOutput*>(data);
+  const Ref<GstElement> gone = inlet_of(media);
+  const std::lock_guard lock(self->mutex_);
+  std::erase_if(self->inlets_, [&](const auto& inlet) { return inlet.get() == gone.get(); });
+}
+
+// Clients that went without a word.
+gboolean RtspOutput::on_glance(gpointer data) {
+  auto* self = static_cast<RtspOutput*>(data);
+  const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(self->server_.get()));
+  gst_rtsp_session_pool_cleanup(pool.get());
+  return G_SOURCE_CONTINUE;
+}
+
+}  // namespace live

@@ -1,0 +1,49 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gst/rtsp-server/rtsp-server.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "examples/live/frame.hpp"
+
+namespace live {
+
+/// rtsp://ADDRESS:PORT/live: H.264 with the ellipses drawn in. Encodes once for all clients, and
+/// only while there is one.
+class RtspOutput {
+ public:
+  struct Settings {
+    std::string address = "127.0.0.1";
+    int port = 8554;    ///< 0 = one that is free.
+    std::string token;  ///< Password of the user "ellipse"; empty = none is asked for.
+  };
+
+  /// Throws std::runtime_error where it cannot listen there, or no encoder is installed.
+  explicit RtspOutput(const Settings& settings);
+  ~RtspOutput();
+  RtspOutput(const RtspOutput&) = delete;
+  RtspOutput& operator=(const RtspOutput&) = delete;
+
+  /// Any thread; never waits for a client.
+  void put(const FramePtr& frame);
+
+  [[nodiscard]] int port() const;
+
+ private:
+  static void on_configure(GstRTSPMediaFactory* factory, GstRTSPMedia* media, gpointer data);
+  static void on_unprepared(GstRTSPMedia* media, gpointer data);
+  static gboolean on_glance(gpointer data);
+
+  void ask_for(const std::string& token, GstRTSPMediaFactory* factory);
+
+  Ref<GstRTSPServer> server_;
+  guint source_ = 0;
+  guint glance_ = 0;
+  std::mutex mutex_;
+  std::vector<Ref<GstElement>> inlets_;  // of the media that are being made now
+  FramePtr newest_;
+};
+
+}  // namespace live

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/session.hpp"
+
+#include <iostream>
+#include <utility>
+
+namespace live {
+
+Session::Session(const Options& options, std::function<void()> on_failure)
+    : loops_(options.loops),
+      store_([this] { on_change(); }),
+      video_(store_, options.quality),
+      pipeline_({.on_frame = [this](FramePtr frame) { on_frame(std::move(frame)); },
+                 .on_trouble =
+                     [this](const std::string& trouble) {
+                       const std::string source = "source \"" + pipeline_.source().text + "\": ";
+                       std::cerr << "ellipse-live: " << source
+                                 << (trouble.empty() ? "is back" : trouble) << std::endl;
+                     },
+                 .on_failure = std::move(on_failure)}),
+      properties_(pipeline_.tracker()) {
+  if (options.rtsp_port >= 0) {
+    rtsp_.emplace(RtspOutput::Settings{options.bind, options.rtsp_port, options.token});
+  }
+  if (!options.record.empty()) {
+    recorder_.emplace(options.record, [](const std::string& trouble) {
+      std::cerr << "ellipse-live: the recording has stopped: " << trouble << std::endl;
+    });
+  }
+}
+
+void Session::on_frame(FramePtr frame) {
+  if (rtsp_) rtsp_->put(frame);
+  if (recorder_) recorder_->put(frame);
+  store_.put(std::move(frame));
+}
+
+void Session::open(const std::string& source) {
+  SourceSpec spec = parse_source(source);
+  store_.release();
+  pipeline_.open(std::move(spec), loops_);
+}
+
+void Session::play() {
+  store_.release();
+  pipeline_.play();
+}
+
+void Session::pause() {
+  if (pipeline_.source().is_live) {
+    store_.hold();
+  } else {
+    pipeline_.pause();
+  }
+}
+
+void Session::step() {
+  if (pipeline_.source().is_live) {
+    store_.step();
+  } else {
+    pipeline_.step();
+  }
+}
+
+bool Session::seek(GstClockTime position) {
+  return pipeline_.seek(position);
+}
+
+bool Session::is_playing() const {
+  return pipeline_.state() == PlayState::kPlaying && !store_.is_held();
+}
+
+void Session::on_change() {
+  lines_.send(store_.take_lines());
+  video_.update();
+}
+
+}  // namespace live

@@ -1,0 +1,58 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "examples/live/frame_store.hpp"
+#include "examples/live/line_feed.hpp"
+#include "examples/live/live_pipeline.hpp"
+#include "examples/live/options.hpp"
+#include "examples/live/properties.hpp"
+#include "examples/live/recorder.hpp"
+#include "examples/live/rtsp_output.hpp"
+#include "examples/live/video_feed.hpp"
+
+namespace live {
+
+/// A pipeline and all who look at it. Frames go from the pipeline to the store, to RTSP and to the
+/// recording in its own thread; everything else happens in the main loop.
+class Session {
+ public:
+  /// @param on_failure  The source cannot be used; called in the main loop.
+  /// Throws std::runtime_error where what was asked for cannot be set up.
+  Session(const Options& options, std::function<void()> on_failure);
+
+  /// Plays another source. Throws std::invalid_argument where it is none.
+  void open(const std::string& source);
+
+  /* A file is paused itself. A live source goes on, and the view of it is held. */
+  void play();
+  void pause();
+  void step();
+  /// [ns]. @return false where the source cannot be sought.
+  bool seek(GstClockTime position);
+  [[nodiscard]] bool is_playing() const;
+
+  [[nodiscard]] FrameStore& store() { return store_; }
+  [[nodiscard]] LivePipeline& pipeline() { return pipeline_; }
+  [[nodiscard]] VideoFeed& video() { return video_; }
+  [[nodiscard]] LineFeed& lines() { return lines_; }
+  [[nodiscard]] Properties& properties() { return properties_; }
+  [[nodiscard]] const std::optional<RtspOutput>& rtsp() const { return rtsp_; }
+
+ private:
+  void on_frame(FramePtr frame);
+  void on_change();
+
+  bool loops_;
+  FrameStore store_;
+  VideoFeed video_;
+  LineFeed lines_;
+  std::optional<RtspOutput> rtsp_;
+  std::optional<Recorder> recorder_;
+  LivePipeline pipeline_;  // last of those who get frames: it stops before they are gone
+  Properties properties_;
+};
+
+}  // namespace live

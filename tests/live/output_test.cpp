@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "examples/evaluate/dataset.hpp"
+#include "tests/gst/support.hpp"
+#include "tests/live/live_program.hpp"
+
+namespace {
+
+using support::Answer;
+using support::Client;
+using support::Line;
+using support::LiveProgram;
+using support::TemporaryFolder;
+using support::wait_until;
+
+int count_frames(const std::string& description) {
+  int frames = 0;
+  const auto count = [](GstPad*, GstPadProbeInfo*, gpointer data) {
+    ++*static_cast<int*>(data);
+    return GST_PAD_PROBE_OK;
+  };
+  const std::string failure = support::run_pipeline(description, [&](GstElement* pipeline) {
+    const support::Owned<GstElement> sink(gst_bin_get_by_name(GST_BIN(pipeline), "end"));
+    GstPad* pad = gst_element_get_static_pad(sink.get(), "sink");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, count, &frames, nullptr);
+    gst_object_unref(pad);
+  });
+  EXPECT_EQ(failure, "") << description;
+  return frames;
+}
+
+// How many pixels of a picture have the overlay's colour; the scenes themselves are grey.
+int green_pixels(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  int count = 0;
+  for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {
+    const auto channel = [&](std::size_t c) { return static_cast<unsigned char>(bytes[i + c]); };
+    count += channel(1) > 150 && channel(0) < 110 && channel(2) < 110 ? 1 : 0;
+  }
+  return count;
+}
+
+class Transport : public testing::TestWithParam<const char*> {};
+
+TEST_P(Transport, RtspHasTheOverlayDrawnIn) {
+  const TemporaryFolder folder;
+  LiveProgram program({"--rtsp", "0"});
+  const std::string address = LiveProgram::address_in(program.line_with("rtsp://"));
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 5; }));
+  const std::string file = folder.file("frame.rgb");
+  EXPECT_EQ(count_frames("rtspsrc location=" + address + " latency=50 protocols=" + GetParam() +
+                         " ! rtph264depay ! avdec_h264 ! identity eos-after=10 ! videoconvert ! "
+                         "video/x-raw,format=RGB,width=640,height=360 ! multifilesink name=end "
+                         "location=" +
+                         file),
+            9);
+  EXPECT_GT(green_pixels(file), 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(LiveOutput,
+                         Transport,
+                         testing::Values("tcp", "udp"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(LiveOutput, RtspAsksForTheTokenToo) {
+  LiveProgram program({"--rtsp", "0", "--token", "sesame"});
+  const std::string address = LiveProgram::address_in(program.line_with("rtsp://"));
+  ASSERT_TRUE(address.starts_with("rtsp://ellipse:sesame@"));
+  const std::string bare = "rtsp://" + address.substr(address.find('@') + 1);
+  const std::string rest = " protocols=tcp ! rtph264depay ! identity eos-after=3 ! fakesink";
+  EXPECT_EQ(support::run_pipeline("rtspsrc location=" + address + rest), "");
+  EXPECT_NE(support::run_pipeline("rtspsrc location=" + bare + rest), "");
+}
+
+TEST(LiveOutput, ARecordingIsAWholeFileWithItsLines) {
+  const TemporaryFolder folder;
+  LiveProgram program({"--record", folder.file("flight.mkv")});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 40; }));
+  EXPECT_EQ(program.stop(), 0);
+  const int frames = count_frames("filesrc location=" + folder.file("flight.mkv") +
+                                  " ! matroskademux ! avdec_h264 ! fakesink name=end");
+  EXPECT_GE(frames, 35);
+  int lines = 0;
+  std::ifstream in(folder.file("flight.ndjson"));
+  for (std::string text; std::getline(in, text); ++lines) {
+    EXPECT_TRUE(Line(text).is_valid()) << text;
+  }
+  EXPECT_GE(lines, frames);
+}
+
+TEST(LiveOutput, ARecordingGoesOnInAnotherFileWhereTheSizeChanges) {
+  const TemporaryFolder folder;
+  LiveProgram program({"--record", folder.file("flight.mkv"), "--allow-source-change"});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 10; }));
+  ASSERT_EQ(
+      client
+          .put("api/source",
+               R"({"spec":"[ellipsetestsrc is-live=true ! video/x-raw,width=320,height=240]"})")
+          .status,
+      200U);
+  const double frames = client.stat("frames");
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 40; }));
+  EXPECT_EQ(program.stop(), 0);
+  EXPECT_GT(count_frames("filesrc location=" + folder.file("flight-2.mkv") +
+                         " ! matroskademux ! avdec_h264 ! video/x-raw,width=320 ! fakesink "
+                         "name=end"),
+            10);
+}
+
+TEST(LiveOutput, ARecordingThatCannotBeWrittenIsSaidAtOnce) {
+  LiveProgram program({"--record", "/nowhere/flight.mkv"}, false);
+  EXPECT_NE(program.line_with("/nowhere/flight.mkv"), "");
+  EXPECT_EQ(program.wait(), 1);
+}
+
+TEST(LiveOutput, SnapshotsMakeADataSet) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--labels", folder.file("labels")});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.poll("api/target").object() != nullptr; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  // The truth of the test source is number 0, the target number 1.
+  ASSERT_EQ(client.post("api/snapshot", R"({"choice":1})").status, 200U);
+  ASSERT_EQ(client.post("api/snapshot", R"({"choice":"none"})").status, 200U);
+  ASSERT_EQ(client
+                .post("api/snapshot",
+                      R"({"choice":{"cx":10,"cy":20,"semi_major":9,"semi_minor":8,"angle_rad":1}})")
+                .status,
+            200U);
+  for (const char* wrong :
+       {R"({"choice":9})",
+        R"({"choice":"all"})",
+        R"({"choice":null})",
+        R"({"choice":[1]})",
+        R"({"choice":{"cx":10}})",
+        R"({})",
+        R"({"choice":{"cx":1,"cy":2,"semi_major":3,"semi_minor":4,"angle_rad":0}})"}) {
+    EXPECT_EQ(client.post("api/snapshot", wrong).status, 400U) << wrong;
+  }
+  EXPECT_EQ(client.post("api/snapshot", R"({"choice":"none","pts_ns":1})").status, 409U);
+  const evaluate::Dataset dataset = evaluate::read_dataset(folder.file("labels"));
+  EXPECT_TRUE(dataset.problems.empty());
+  ASSERT_EQ(dataset.sequences.size(), 1U);
+  const auto& frames = dataset.sequences[0].frames;
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_GT(frames[0].truth.target.value().semi_major, 20.0);
+  EXPECT_FALSE(frames[1].truth.target.has_value());
+  EXPECT_EQ(frames[2].truth.target.value().semi_minor, 8.0);
+  EXPECT_EQ(dataset.sequences[0].pictures->picture(frames[0]).cols, 640);
+}
+
+TEST(LiveOutput, WithoutAFolderThereAreNoSnapshots) {
+  const LiveProgram program({});
+  EXPECT_EQ(Client(program.url()).post("api/snapshot", R"({"choice":"none"})").status, 409U);
+}
+
+}  // namespace

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+//
+// The page in a real browser, over the program as it is.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, beforeEach, describe, it } from "node:test";
+import { openPage, shownBy, startBrowser, startProgram } from "./program.mjs";
+import { largestDistance } from "./ring.mjs";
+
+process.env.XDG_DATA_HOME = mkdtempSync(join(tmpdir(), "ellipse-live-"));
+
+let browser;
+before(async () => { browser = await startBrowser(); });
+after(async () => { await browser.close(); });
+
+/** Each test has its own page; the program is shared. */
+function withProgram(args, tests) {
+  const context = {};
+  before(async () => { context.program = await startProgram(...args()); });
+  beforeEach(async () => { await context.program.ask("POST", "/api/play"); });
+  after(async () => { await context.program.stop(); });
+  tests({
+    get program() { return context.program; },
+    labels: join(process.env.XDG_DATA_HOME, "labels/gt.csv"),
+    open: async (size) => openPage(browser, context.program.url, size),
+  });
+}
+
+const readRows = (file) => readFileSync(file, "utf8").trim().split("\n");
+const setting = (page, name) => page.locator(`[data-setting="${name}"]`);
+const stateIs = (page, state) => page.waitForSelector(`#state[data-state=${state}]`);
+
+describe("a live source", () => withProgram(() => ["--source", "test:approach"], (live) => {
+  // Whatever the last test has left.
+  beforeEach(async () => {
+    const properties = await live.program.ask("GET", "/api/properties");
+    const numbers = properties.filter(({ type }) => type !== "rect" && type !== "flags");
+    await live.program.ask("PUT", "/api/properties", Object.fromEntries(numbers.map((p) => [p.name, p.default])));
+  });
+
+  it("is shown frame after frame, with its figures", async () => {
+    const page = await live.open();
+    const first = await shownBy(page);
+    await page.waitForFunction((n) => document.querySelector("#screen").dataset.shown > n + 10, first);
+    await stateIs(page, "tracked");
+    assert.match(await page.textContent("#figure-time"), /^\d+\.\d\d ms$/);
+    assert.equal(await page.textContent("#source-name"), "test:approach");
+    assert.deepEqual(page.troubles, []);
+    await page.close();
+  });
+
+  it("is drawn on where the ring is: within 2 px of the screen", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    for (let i = 0; i < 3; ++i) {
+      await page.click("#play");
+      await page.waitForSelector("#play[aria-label=Play]");
+      await page.waitForTimeout(300);  // what was under way is painted
+      const distance = await largestDistance(page);
+      assert.ok(distance.rays > 80, `the ring was met on ${distance.rays} rays`);
+      assert.ok(distance.largest_px <= 2, `${distance.largest_px} px apart`);
+      await page.click("#play");
+      await page.waitForSelector("#play[aria-label=Pause]");
+      await page.waitForTimeout(700);
+    }
+    await page.close();
+  });
+
+  it("obeys a slider at once: the property, and what is found", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await setting(page, "tracking").getByText("none", { exact: true }).click();
+    const slider = setting(page, "max-axis").locator("input[type=range]");
+    await slider.fill("200");
+    await stateIs(page, "lost");
+    const properties = await live.program.ask("GET", "/api/properties");
+    const { value } = properties.find(({ name }) => name === "max-axis");
+    assert.ok(value > 5 && value < 10, `max-axis is ${value}`);
+    await slider.focus();
+    await slider.press("ArrowRight");
+    await page.waitForFunction((before) => {
+      return document.querySelector("[data-setting=max-axis] input[type=number]").value > before;
+    }, value);
+    await setting(page, "max-axis").getByRole("button", { name: "Reset max-axis" }).click();
+    await setting(page, "tracking").getByRole("button", { name: "Reset tracking" }).click();
+    await stateIs(page, "tracked");
+    await page.waitForSelector("#reset-all:disabled");
+    await page.close();
+  });
+
+  it("says why a value is refused, and shows the one in force", async () => {
+    const page = await live.open();
+    const field = setting(page, "min-axis").locator("input[type=number]");
+    await field.fill("900");
+    await field.press("Enter");
+    await page.waitForFunction(() => /axis/.test(document.querySelector("[data-setting=min-axis] .error").textContent));
+    await field.blur();
+    await page.waitForFunction(() => document.querySelector("[data-setting=min-axis] input[type=number]").value === "5");
+    await page.close();
+  });
+
+  it("shows what another client sets", async () => {
+    const page = await live.open();
+    await live.program.ask("PUT", "/api/properties", { "edge-high": 12.5 });
+    await page.waitForSelector("[data-setting=edge-high].changed");
+    assert.equal(await setting(page, "edge-high").locator("input[type=number]").inputValue(), "12.5");
+    await live.program.ask("PUT", "/api/properties", { "edge-high": 0 });
+    await page.close();
+  });
+
+  it("has a control with help for each property", async () => {
+    const page = await live.open();
+    const properties = await live.program.ask("GET", "/api/properties");
+    for (const { name, blurb } of properties) {
+      assert.equal(await setting(page, name).locator(".help").textContent(), blurb, name);
+      assert.ok(await setting(page, name).locator("input").count() > 0, name);
+    }
+    await page.close();
+  });
+
+  it("names the reason of each rejection, and leads to the setting", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await setting(page, "max-axis-ratio").locator("input[type=number]").fill("1.0001");
+    await setting(page, "max-axis-ratio").locator("input[type=number]").press("Enter");
+    await page.click("#tab-stages");
+    const reason = page.locator("[data-reason=too-flat]");
+    await reason.waitFor();
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await reason.locator("summary").click();
+    assert.match(await reason.locator("li button").first().textContent(), /axis ratio [\d.]+, at most 1/);
+    await reason.getByText("Go to max-axis-ratio").click();
+    await page.waitForFunction(() => document.activeElement.closest("[data-setting=max-axis-ratio]"));
+    await page.click("#reset-all");
+    await page.click("#play");
+    await page.close();
+  });
+
+  it("shows each stage on the screen", async () => {
+    const page = await live.open();
+    await page.click("#tab-stages");
+    await page.waitForSelector("#stage-summary b");
+    const pictures = new Set();
+    for (const stage of ["luma", "edges", "chains", "arcs", "candidates"]) {
+      await page.locator(`input[name=stage][value=${stage}]`).check({ force: true });
+      await page.waitForTimeout(900);
+      pictures.add(await page.evaluate(() => document.querySelector("#screen").toDataURL("image/png").length));
+    }
+    assert.equal(pictures.size, 5);
+    assert.deepEqual(page.troubles, []);
+    await page.close();
+  });
+
+  it("finds what is clicked on the screen in the list", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await page.click("#tab-stages");
+    await page.waitForSelector("#stage-summary b");
+    const { candidates, width } = await live.program.ask("POST", "/api/analyze", {});
+    const { ellipse: e } = candidates.find(({ is_target: isTarget }) => isTarget);
+    const box = await page.locator("#screen").boundingBox();
+    const scale = box.width / width;
+    const [x, y] = [e.cx + e.semi_major * Math.cos(e.angle_rad), e.cy + e.semi_major * Math.sin(e.angle_rad)];
+    await page.mouse.click(box.x + (x + 0.5) * scale, box.y + (y + 0.5) * scale);
+    await page.waitForFunction(() => /^The target/.test(document.activeElement.textContent));
+    await page.close();
+  });
+
+  it("works by keys alone", async () => {
+    const page = await live.open();
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.className), "skip");
+    await page.keyboard.press("Enter");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "screen");
+    await page.keyboard.press("Space");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await page.keyboard.press("Space");
+    await page.waitForSelector("#play[aria-label=Pause]");
+    await page.focus("#tab-tune");
+    for (const tab of ["stages", "compare", "label", "tune"]) {
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await page.getAttribute(`#tab-${tab}`, "aria-selected"), "true");
+      assert.ok(await page.isVisible(`#panel-${tab}`));
+      if (tab === "label") await page.waitForSelector("#play[aria-label=Play]");
+    }
+    await live.program.ask("POST", "/api/play");
+    await page.close();
+  });
+
+  it("has a name for a screen reader on all that is worked with", async () => {
+    const page = await live.open();
+    await page.evaluate(() => document.querySelectorAll("details").forEach((each) => { each.open = true; }));
+    const session = await page.context().newCDPSession(page);
+    const { nodes } = await session.send("Accessibility.getFullAXTree");
+    const kWorked = ["button", "slider", "spinbutton", "checkbox", "radio", "tab", "textbox", "searchbox", "combobox", "image"];
+    const worked = nodes.filter(({ ignored, role }) => !ignored && kWorked.includes(role?.value));
+    const nameless = worked.filter(({ name }) => !name?.value);
+    assert.ok(worked.length > 60);
+    assert.deepEqual(nameless.map(({ role, backendDOMNodeId }) => `${role.value} ${backendDOMNodeId}`), []);
+    await page.close();
+  });
+
+  it("tells a screen reader when the state changes", async () => {
+    const page = await live.open();
+    await page.waitForFunction(() => document.querySelector("#announcer").textContent === "Target: tracked");
+    await page.close();
+  });
+
+  it("fits a phone", async () => {
+    const page = await live.open({ width: 360, height: 740 });
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.equal(overflow, 0);
+    for (const tab of ["stages", "compare", "label", "tune"]) {
+      await page.click(`#tab-${tab}`);
+      await page.waitForTimeout(300);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, tab);
+    }
+    const small = await page.$$eval("button, select", (nodes) => nodes
+      .filter((node) => node.offsetParent && node.offsetHeight < 28).map((node) => node.textContent));
+    assert.deepEqual(small, []);
+    await live.program.ask("POST", "/api/play");
+    await page.close();
+  });
+
+  it("compares two settings on one frame", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#tab-compare");
+    await page.click("#compare-pin");
+    await page.waitForSelector("#screen-b:not([hidden])");
+    await page.click("#tab-tune");
+    const field = setting(page, "max-axis").locator("input[type=number]");
+    await field.fill("6");
+    await field.press("Enter");
+    await page.click("#tab-compare");
+    const cells = page.locator("#compare-result tr", { hasText: "Target" }).locator("td");
+    await page.waitForFunction(() => /max-axis/.test(document.querySelector("#compare-result").textContent));
+    await page.waitForFunction(() => [...document.querySelectorAll("#compare-result tr")]
+      .some((row) => /Targetfoundnone/.test(row.textContent)));
+    assert.deepEqual(await cells.allTextContents(), ["found", "none"]);
+    await page.click("#compare-back");
+    await page.waitForFunction(() => /no difference yet/.test(document.querySelector("#compare-result").textContent));
+    await live.program.ask("POST", "/api/play");
+    await page.close();
+  });
+}));
+
+describe("presets", () => {
+  it("outlive the program", async () => {
+    const first = await startProgram("--source", "test:approach");
+    let page = await openPage(browser, first.url);
+    await setting(page, "min-axis").locator("input[type=number]").fill("17");
+    await setting(page, "min-axis").locator("input[type=number]").press("Enter");
+    await page.waitForSelector("[data-setting=min-axis].changed");
+    await page.click("#preset-save");
+    await page.fill("#save-name", "Dusk, grass");
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => document.querySelector("#preset").value === "Dusk, grass");
+    await page.close();
+    await first.stop();
+
+    const second = await startProgram("--source", "test:approach");
+    page = await openPage(browser, second.url);
+    await page.selectOption("#preset", "Dusk, grass");
+    await page.click("#preset-load");
+    await page.waitForSelector("[data-setting=min-axis].changed");
+    assert.equal(await setting(page, "min-axis").locator("input[type=number]").inputValue(), "17");
+    await page.click("#launch-copy");
+    await page.waitForFunction(() => /ellipsetrack .*min-axis=17/.test(document.querySelector("#launch-line").textContent));
+    await page.click("#preset-delete");
+    await page.waitForFunction(() => document.querySelectorAll("#preset option").length === 1);
+    await page.close();
+    await second.stop();
+  });
+});
+
+describe("a file", () => withProgram(() => {
+  return ["--source", process.env.ELLIPSE_TEST_VIDEO, "--loop", "--labels", join(process.env.XDG_DATA_HOME, "labels")];
+}, (live) => {
+  it("is paused, stepped and sought", async () => {
+    const page = await live.open();
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await page.waitForTimeout(300);
+    const pts = () => page.evaluate(() => Number(document.querySelector("#screen").dataset.pts));
+    const start = await pts();
+    await page.click("#step");
+    await page.waitForFunction((n) => Number(document.querySelector("#screen").dataset.pts) !== n, start);
+    await page.locator("#scrub").fill("500");
+    await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 1e9) < 1e8);
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Pause]");
+    await page.close();
+  });
+
+  it("becomes a data set, frame by frame", async () => {
+    const page = await live.open();
+    await page.click("#tab-label");
+    await page.waitForSelector("#label-save:enabled");
+    await page.click("#label-save");
+    await page.waitForFunction(() => /^1 saved/.test(document.querySelector("#label-result").textContent));
+    await page.waitForTimeout(500);
+    await page.getByLabel("None: no target in this frame").check();
+    await page.click("#label-save");
+    await page.waitForFunction(() => /^2 saved/.test(document.querySelector("#label-result").textContent));
+    const rows = readRows(live.labels);
+    assert.equal(rows.length, 3);
+    assert.match(rows[1], /^images\/labelled\/000001\.png,\d+/);
+    assert.match(rows[2], /^images\/labelled\/000002\.png,,,,,,,\d+/);
+    await page.close();
+  });
+  it("takes an ellipse drawn by hand into the data set", async () => {
+    const page = await live.open();
+    await page.click("#tab-label");
+    await page.getByLabel("Drawn: click points all along its edge").check();
+    const { x, y, width } = await page.locator("#screen").boundingBox();
+    const scale = width / 640;
+    for (let i = 0; i < 6; ++i) {
+      assert.equal(await page.isEnabled("#label-save"), i >= 5);
+      const angle = i;
+      await page.mouse.click(x + (200.5 + 60 * Math.cos(angle)) * scale, y + (120.5 + 30 * Math.sin(angle)) * scale);
+    }
+    const before = readRows(live.labels).length;
+    await page.click("#label-save");
+    await page.waitForFunction(() => /^1 saved/.test(document.querySelector("#label-result").textContent));
+    const [, cx, cy, major, minor] = readRows(live.labels)[before].split(",").map(Number);
+    for (const [value, wanted] of [[cx, 200], [cy, 120], [major, 60], [minor, 30]]) {
+      assert.ok(Math.abs(value - wanted) < 1.5, `${value} instead of ${wanted}`);
+    }
+    await page.close();
+  });
+}));
+
+it("changes the source where that is allowed", async () => {
+  const program = await startProgram("--source", "test:approach", "--allow-source-change");
+  const page = await openPage(browser, program.url);
+  await page.click("#source-change");
+  await page.fill("#source-spec", "test:moon");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /no such scene/.test(document.querySelector("#source-error").textContent));
+  await page.fill("#source-spec", "test:orbit");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#source-name").textContent === "test:orbit");
+  await stateIs(page, "tracked");
+  await page.close();
+  await program.stop();
+});
+
+it("says that the program is gone", async () => {
+  const program = await startProgram("--source", "test:approach");
+  const page = await openPage(browser, program.url);
+  await program.stop();
+  await page.waitForFunction(() => /No connection/.test(document.querySelector("#notice").textContent));
+  await page.close();
+});

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// node pictures.mjs FOLDER: the pictures of docs/live.md. ELLIPSE_LIVE and CHROMIUM say where these are.
+import { join } from "node:path";
+import { openPage, startBrowser, startProgram } from "./program.mjs";
+
+const kWide = { width: 1280, height: 760 };
+const kPhone = { width: 375, height: 720 };
+const folder = process.argv[2];
+const program = await startProgram("--source", "test:occluded");
+const browser = await startBrowser();
+
+/** Takes a picture of the page, after what there is to do. */
+async function picture(name, size, prepare) {
+  await program.ask("PUT", "/api/properties", { detector: "arcs" });
+  await program.ask("POST", "/api/play");
+  const page = await openPage(browser, program.url, size);
+  await page.waitForSelector("#state[data-state=tracked]");
+  await prepare(page);
+  await page.waitForTimeout(1500);
+  await page.screenshot({ path: join(folder, name), type: "jpeg", quality: 78 });
+  await page.close();
+}
+
+const choose = (page, name, value) => page.check(`[data-setting=${name}] input[value=${value}]`, { force: true });
+
+await picture("live.jpg", kWide, (page) => page.waitForTimeout(12000));
+await picture("live-stages.jpg", kWide, async (page) => {
+  await choose(page, "detector", "contours");
+  await page.click("#tab-stages");
+  await page.check("input[name=stage][value=chains]", { force: true });
+  await page.waitForSelector("[data-reason=contour-overlap]");
+  await page.click("#play");
+  await page.waitForTimeout(1500);
+  await page.click("[data-reason=accepted] summary");
+  await page.click("[data-reason=contour-overlap] summary");
+});
+await picture("live-compare.jpg", kWide, async (page) => {
+  await page.click("#tab-compare");
+  await page.click("#compare-pin");
+  await page.waitForSelector("#screen-b:not([hidden])");
+  await page.click("#tab-tune");
+  await choose(page, "detector", "contours");
+  await page.click("#tab-compare");
+  await page.waitForFunction(() => /detector/.test(document.querySelector("#compare-result").textContent));
+});
+await picture("live-phone.jpg", kPhone, async (page) => {
+  await page.mouse.wheel(0, 420);
+});
+await browser.close();
+await program.stop();

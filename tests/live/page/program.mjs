@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// ellipse-live as a process, and a browser that looks at it.
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { chromium } from "playwright-core";
+
+/** Starts the program at a free port. @returns {url, stop, ask}: ask talks to its API. */
+export async function startProgram(...args) {
+  const child = spawn(process.env.ELLIPSE_LIVE, ["--port", "0", ...args]);
+  let output = "";
+  child.stderr.on("data", (data) => { output += data; });
+  const url = await new Promise((resolve, reject) => {
+    child.stdout.on("data", (data) => {
+      output += data;
+      const found = /(http:\/\/\S+)/.exec(output);
+      if (found) resolve(found[1]);
+    });
+    child.once("exit", () => reject(new Error(`ellipse-live has ended: ${output}`)));
+  });
+  const ask = async (method, path, body) => {
+    const answer = await fetch(new URL(path, url), { method, body: body && JSON.stringify(body) });
+    const text = await answer.text();
+    if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${text}`);
+    try {
+      return JSON.parse(text);
+    } catch {
+      return text;
+    }
+  };
+  const stop = async () => {
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    child.kill("SIGINT");
+    await once(child, "exit");
+  };
+  return { url, ask, stop };
+}
+
+/** A browser without a screen. */
+export function startBrowser() {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM,
+    args: ["--no-sandbox", "--disable-dev-shm-usage"],
+  });
+}
+
+/** The page once it shows frames. What goes wrong in it is collected in `page.troubles`. */
+export async function openPage(browser, url, size = { width: 1440, height: 900 }) {
+  const page = await browser.newPage({ viewport: size });
+  page.troubles = [];
+  page.on("pageerror", (error) => page.troubles.push(String(error)));
+  page.on("console", (message) => {
+    if (message.type() === "error") page.troubles.push(message.text());
+  });
+  page.on("request", (request) => {
+    const { protocol, host } = new URL(request.url());
+    if (protocol.startsWith("http") && host !== new URL(url).host) page.troubles.push(request.url());
+  });
+  await page.goto(url);
+  await page.waitForFunction(() => Number(document.querySelector("#screen").dataset.shown) > 2);
+  await page.waitForSelector("[data-setting=max-axis]");
+  return page;
+}
+
+/** How many frames the page has painted. */
+export function shownBy(page) {
+  return page.evaluate(() => Number(document.querySelector("#screen").dataset.shown));
+}

@@ -1,0 +1,26 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# run.sh FOLDER: tests the page in chromium. FOLDER takes what npm and the tests need.
+# Says so and leaves it at that where there is no browser, or no way to get playwright-core.
+skip() {
+  echo "1..0 # SKIP $1"
+  exit 0
+}
+here=$(cd "$(dirname "$0")" && pwd)
+mkdir -p "$1" && cd "$1" || exit 1
+for tool in node npm gst-launch-1.0; do
+  command -v $tool > /dev/null || skip "there is no $tool"
+done
+CHROMIUM=$(command -v chromium) || skip "there is no chromium"
+if ! cmp -s "$here/package-lock.json" node_modules/.lock; then
+  cp "$here/package.json" "$here/package-lock.json" .
+  npm ci --no-audit --no-fund > npm.log 2>&1 || skip "npm ci failed, see $1/npm.log"
+  cp package-lock.json node_modules/.lock
+fi
+# node looks for packages beside and above the file that imports them.
+cp "$here"/*.mjs .
+ELLIPSE_TEST_VIDEO=$PWD/approach.mkv
+gst-launch-1.0 -q ellipsetestsrc scene=approach num-buffers=60 ! videoconvert ! jpegenc \
+  ! matroskamux ! filesink location="$ELLIPSE_TEST_VIDEO" || exit 1
+export CHROMIUM ELLIPSE_TEST_VIDEO
+exec node --test --test-reporter=tap page.test.mjs

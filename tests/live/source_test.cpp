@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "examples/live/source_spec.hpp"
+#include "tests/gst/support.hpp"
+#include "tests/live/live_program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using support::Answer;
+using support::Client;
+using support::Line;
+using support::LiveProgram;
+using support::SocketClient;
+using support::TemporaryFolder;
+using support::wait_until;
+
+std::string make_video(const TemporaryFolder& folder, int frames) {
+  const std::string file = folder.file("video.mkv");
+  EXPECT_EQ(support::run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                                  " ! video/x-raw,format=I420,width=320,height=180 ! jpegenc ! "
+                                  "matroskamux ! filesink location=" +
+                                  file),
+            "");
+  return file;
+}
+
+std::string make_pictures(const TemporaryFolder& folder, int frames) {
+  const std::string pictures = folder.file("pictures");
+  fs::create_directory(pictures);
+  EXPECT_EQ(support::run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                                  " ! video/x-raw,format=I420,width=320,height=180 ! jpegenc ! "
+                                  "multifilesink location=" +
+                                  pictures + "/flight-%d.jpg"),
+            "");
+  std::ofstream(pictures + "/notes.txt") << "no picture";
+  return pictures;
+}
+
+std::string trouble_with(const std::string& source) {
+  try {
+    (void)live::parse_source(source);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string text_in(const Client& client, const char* member) {
+  return json_object_get_string_member(client.poll("api/source").object(), member);
+}
+
+gint64 number_in(const Client& client, const char* member) {
+  return json_object_get_int_member(client.poll("api/source").object(), member);
+}
+
+TEST(LiveSource, WhatIsWrongIsSaid) {
+  const TemporaryFolder folder;
+  EXPECT_NE(trouble_with("test:moon").find("there are approach, oblique"), std::string::npos);
+  EXPECT_NE(trouble_with(folder.file("none.mkv")).find("no such file"), std::string::npos);
+  EXPECT_NE(trouble_with("/dev/video77").find("no such camera"), std::string::npos);
+  EXPECT_NE(trouble_with("gopher://there/is").find("gopher"), std::string::npos);
+  EXPECT_NE(trouble_with(fs::path(folder.file("")).parent_path()).find("no .png and no .jpg"),
+            std::string::npos);
+  EXPECT_NE(trouble_with("[videotestsrc ! nonsense]").find("nonsense"), std::string::npos);
+  EXPECT_NE(trouble_with("[videotestsrc !").find("no such file"), std::string::npos);
+  EXPECT_NE(trouble_with("").find("empty"), std::string::npos);
+}
+
+TEST(LiveSource, EachKindIsUnderstood) {
+  const TemporaryFolder folder;
+  const auto kind = [](const std::string& source) { return live::parse_source(source).kind; };
+  EXPECT_EQ(kind("test:dusk"), live::SourceKind::kTest);
+  EXPECT_EQ(kind(make_video(folder, 1)), live::SourceKind::kFile);
+  EXPECT_EQ(kind(make_pictures(folder, 1)), live::SourceKind::kFolder);
+  EXPECT_EQ(kind("[videotestsrc ! videoconvert]"), live::SourceKind::kFragment);
+  EXPECT_EQ(kind("rtsp://127.0.0.1/live"), live::SourceKind::kUri);
+  EXPECT_TRUE(live::parse_source("rtsp://127.0.0.1/live").is_live);
+  EXPECT_FALSE(live::parse_source("file:///video.mkv").is_live);
+}
+
+TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("letter.mkv");
+  std::ofstream(file) << "Dear robot,\n";
+  LiveProgram program({"--source", file}, false);
+  EXPECT_NE(program.line_with("letter.mkv"), "");
+  EXPECT_EQ(program.wait(), 1);
+  LiveProgram other({"--source", folder.file("none")}, false);
+  EXPECT_NE(other.line_with("no such file"), "");
+  EXPECT_EQ(other.wait(), 1);
+}
+
+class SeekableSource : public testing::TestWithParam<const char*> {};
+
+TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
+  const TemporaryFolder folder;
+  const std::string source =
+      GetParam() == std::string("file") ? make_video(folder, 90) : make_pictures(folder, 90);
+  const LiveProgram program({"--source", source});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/step").status, 409U);
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":1000000000})").status, 200U);
+  const auto shows = [&](int frame) {
+    return wait_until(
+        [&] { return std::abs(number_in(client, "pts_ns") - frame * 33'333'333LL) < 1'000'000; });
+  };
+  ASSERT_TRUE(shows(30)) << number_in(client, "pts_ns");
+  for (int frame = 31; frame < 34; ++frame) {
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    ASSERT_TRUE(shows(frame)) << number_in(client, "pts_ns");
+  }
+  EXPECT_EQ(client.post("api/seek", R"({"position_ns":-1})").status, 400U);
+  EXPECT_EQ(client.post("api/seek", "{}").status, 400U);
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_EQ(text_in(client, "state"), "playing");
+}
+
+INSTANTIATE_TEST_SUITE_P(LiveSource,
+                         SeekableSource,
+                         testing::Values("file", "folder"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(LiveSource, AViewerOfAPausedFileSeesItsFrame) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 60)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  SocketClient video(program.url(), "ws/video");
+  const std::string message = video.next();
+  EXPECT_EQ(SocketClient::pts_of(message), static_cast<guint64>(number_in(client, "pts_ns")));
+}
+
+TEST(LiveSource, AFileIsPlayedAgainWhereAsked) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 10), "--loop"});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 35; }));
+}
+
+TEST(LiveSource, OfALiveSourceTheViewIsHeldAndStepped) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  SocketClient lines(program.url(), "ws/meta");
+  ASSERT_NE(lines.next(), "");
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const double frames = client.stat("frames");
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));  // it tracks on
+  while (lines.waiting() > 0) (void)lines.next();
+  const gint64 held = number_in(client, "pts_ns");
+  ASSERT_EQ(client.post("api/step").status, 200U);
+  const Line line(lines.next());
+  EXPECT_GT(line.number("pts_ns"), held);
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 30; }));
+  EXPECT_EQ(lines.waiting(), 0U);
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_NE(lines.next(), "");
+}
+
+TEST(LiveSource, IsChangedOverHttpOnlyWhereAllowed) {
+  const LiveProgram closed({});
+  EXPECT_EQ(Client(closed.url()).put("api/source", R"({"spec":"test:dusk"})").status, 403U);
+  const LiveProgram open({"--allow-source-change"});
+  const Client client(open.url());
+  ASSERT_EQ(client.put("api/properties", R"({"max-axis":444})").status, 200U);
+  EXPECT_EQ(client.put("api/source", R"({"spec":"test:moon"})").status, 400U);
+  EXPECT_EQ(client.put("api/source", R"({"spec":"[videotestsrc is-live=true]"})").status, 200U);
+  EXPECT_EQ(text_in(client, "kind"), "fragment");
+  const double frames = client.stat("frames");
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > frames + 5; }));
+  EXPECT_NE(client.get("api/launch-line").body.find("max-axis=444"), std::string::npos);
+}
+
+// Also: what is served by RTSP can be read.
+TEST(LiveSource, ComesBackAfterItDropped) {
+  auto camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", "0"});
+  const std::string address = LiveProgram::address_in(camera->line_with("rtsp://"));
+  const std::string port =
+      address.substr(address.rfind(':') + 1, address.rfind('/') - address.rfind(':') - 1);
+  const LiveProgram program({"--source", address});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 5; }));
+  camera.reset();
+  ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "reconnecting"; }));
+  EXPECT_NE(text_in(client, "error"), "");
+  const double frames = client.stat("frames");
+  camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", port});
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > frames + 5; }, 40));
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "error").empty(); }));
+}
+
+}  // namespace
