@@ -90,13 +90,19 @@ void write_phases(std::ostream& script, const std::vector<Moment>& moments) {
   }
 }
 
+std::string data_name(std::size_t method) {
+  std::string name("m");
+  name += std::to_string(method);
+  return name;
+}
+
 }  // namespace
 
 void plot_touchdowns(const std::vector<Landing>& landings, const std::filesystem::path& file) {
   std::ostringstream script;
   const std::vector<std::string> methods = methods_of(landings);
   for (std::size_t i = 0; i < methods.size(); ++i) {
-    write_data(script, "m" + std::to_string(i), [&] {
+    write_data(script, data_name(i), [&] {
       script << "NaN NaN\n";
       for (const Landing& landing : landings) {
         if (landing.flight.method != methods[i] || !landing.outcome.has_touched_down) continue;
@@ -135,7 +141,7 @@ void plot_errors(const std::vector<Landing>& landings, const std::filesystem::pa
       if (landing.outcome.has_touched_down) off.push_back(landing.outcome.off.norm());
     }
     std::sort(off.begin(), off.end());
-    write_data(script, "m" + std::to_string(i), [&] {
+    write_data(script, data_name(i), [&] {
       script << "0 0\n";
       for (std::size_t k = 0; k < off.size(); ++k) {
         script << off[k] << ' ' << static_cast<double>(k + 1) / all << '\n';

@@ -67,13 +67,14 @@ std::string LabelStore::add(const Frame& frame, const std::optional<ellipse::Ell
   if (target) {
     for (const double value :
          {target->cx, target->cy, target->semi_major, target->semi_minor, target->angle_rad}) {
-      row += "," + number(value);
+      row.append(1, ',').append(number(value));
     }
-    row += "," + number(ellipse::visible_fraction(*target, frame.width, frame.height));
+    row.append(1, ',').append(
+        number(ellipse::visible_fraction(*target, frame.width, frame.height)));
   } else {
     row += ",,,,,,";
   }
-  row += "," + std::to_string(frame.pts) + "\n";
+  row.append(1, ',').append(std::to_string(frame.pts)).append(1, '\n');
   std::ofstream out(table, std::ios::app);
   if (!(out << row).flush()) throw std::runtime_error(table.string() + ": cannot be written");
   ++next_;

@@ -20,7 +20,8 @@ std::string for_shell(const std::string& description) {
                                    c == '.' || c == '/' || c == ':' || c == ',' || c == '+';
                           });
     const Ref<gchar> quoted(g_shell_quote(word.c_str()));
-    line += (line.empty() ? "" : " ") + (is_plain ? word : std::string(quoted.get()));
+    if (!line.empty()) line += ' ';
+    line += is_plain ? word : std::string(quoted.get());
   }
   return line;
 }
@@ -28,11 +29,12 @@ std::string for_shell(const std::string& description) {
 }  // namespace
 
 std::string launch_line(const SourceSpec& source, const Properties& properties) {
-  return "gst-launch-1.0 " +
-         for_shell(source.description + " ! videoconvert ! ellipsetrack" +
-                   properties.launch_settings() +
-                   " ! ellipseoverlay ! videoconvert ! autovideosink") +
-         "\n";
+  std::string line("gst-launch-1.0 ");
+  line +=
+      for_shell(source.description + " ! videoconvert ! ellipsetrack" +
+                properties.launch_settings() + " ! ellipseoverlay ! videoconvert ! autovideosink");
+  line += '\n';
+  return line;
 }
 
 }  // namespace live

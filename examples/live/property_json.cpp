@@ -36,7 +36,9 @@ std::string flag_nicks(const GValue* value) {
   for (guint i = 0; i < type->n_values; ++i) {
     const GFlagsValue& flag = type->values[i];
     const bool is_set = flag.value == 0 ? set == 0 : (set & flag.value) == flag.value;
-    if (is_set) nicks += (nicks.empty() ? "" : "+") + std::string(flag.value_nick);
+    if (!is_set) continue;
+    if (!nicks.empty()) nicks += '+';
+    nicks += flag.value_nick;
   }
   return nicks;
 }
@@ -141,7 +143,10 @@ std::string word_of(const GParamSpec* spec, const GValue* value) {
   if (is_rect(spec)) {
     JsonWriter numbers;
     write_value(numbers, spec, value);
-    return "<" + numbers.text().substr(1, numbers.text().size() - 2) + ">";
+    std::string word = numbers.text();  // [x,y,width,height]
+    word.front() = '<';
+    word.back() = '>';
+    return word;
   }
   if (G_VALUE_HOLDS_FLAGS(value)) return flag_nicks(value);
   if (G_VALUE_HOLDS_ENUM(value)) return enum_nick(value);
