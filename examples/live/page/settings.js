@@ -12,6 +12,7 @@ const kGroups = {
   ROI: ["Region", "where a frame is searched"],
   load: ["Load", "which frames are analysed"],
   output: ["Output", "what is told and drawn"],
+  other: ["Other", ""],
 };
 const kOpenAtFirst = ["detection", "edges", "tracking"];
 
