@@ -15,12 +15,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void add_glare(const Scene& scene, double time_s, const LightImage& image) {
-  const Glare& glare = scene.light.glare;
-  if (!(glare.level > 0.0)) return;
-  const Vector3d camera = pose_at(scene.flight, time_s).position;
-  const Matrix3d plane_from_image =
-      image_from_pad(scene, time_s, image.width, image.height).inverse();
+void add_glare(const Glare& glare, const View& view, const LightImage& image) {
+  if (!(glare.level > 0.0) || !view.camera) return;
+  const Vector3d& camera = *view.camera;
+  const Matrix3d plane_from_image = view.image_from_pad.inverse();
   const Vector2d middle = camera.head<2>() + camera.z() * glare.tilt;
   const double spread = camera.z() * glare.spread;
   float* light = image.light.data();

@@ -14,8 +14,8 @@ struct LightImage {
   int height = 0;
 };
 
-/// The sun's mirror image.
-void add_glare(const Scene& scene, double time_s, const LightImage& image);
+/// The sun's mirror image, where the view tells the camera's place.
+void add_glare(const Glare& glare, const View& view, const LightImage& image);
 
 /// More light on one side than on the other. @param gradient  As Light::gradient.
 void add_gradient(const Eigen::Vector2d& gradient, const LightImage& image);

@@ -65,24 +65,31 @@ Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableIma
   for (int i = 0; i < instants; ++i) {
     const double part = (i + 0.5) / instants - 0.5;
     const double instant_s = time_s + part * scene_.sensor.exposure_s;
-    add_instant(image_from_pad(scene_, instant_s, width_, height_), weight);
+    add_instant({.image_from_pad = image_from_pad(scene_, instant_s, width_, height_)}, weight);
   }
   const LightImage light{light_, width_, height_};
-  add_glare(scene_, time_s, light);
+  const View view{.image_from_pad = image_from_pad(scene_, time_s, width_, height_),
+                  .camera = pose_at(scene_.flight, time_s).position};
+  add_glare(scene_.light.glare, view, light);
   add_gradient(scene_.light.gradient, light);
   add_bars(scene_, time_s, light);
-  return expose(image_from_pad(scene_, time_s, width_, height_), frame, picture);
+  return expose(view.image_from_pad, frame, picture);
+}
+
+Truth SceneRenderer::render(const View& view, std::uint64_t frame, const MutableImage& picture) {
+  start_frame(picture);
+  add_instant(view, 1.0F);
+  const LightImage light{light_, width_, height_};
+  add_glare(scene_.light.glare, view, light);
+  add_gradient(scene_.light.gradient, light);
+  add_bars(scene_, 0.0, light);
+  return expose(view.image_from_pad, frame, picture);
 }
 
 Truth SceneRenderer::render(const Matrix3d& image_from_pad,
                             std::uint64_t frame,
                             const MutableImage& picture) {
-  start_frame(picture);
-  add_instant(image_from_pad, 1.0F);
-  const LightImage light{light_, width_, height_};
-  add_gradient(scene_.light.gradient, light);
-  add_bars(scene_, 0.0, light);
-  return expose(image_from_pad, frame, picture);
+  return render(View{.image_from_pad = image_from_pad}, frame, picture);
 }
 
 void SceneRenderer::start_frame(const MutableImage& picture) {
@@ -117,8 +124,9 @@ int SceneRenderer::instants_at(double time_s) const {
   return static_cast<int>(std::clamp(std::ceil(farthest_px / spacing_px), 1.0, 1e6));
 }
 
-void SceneRenderer::add_instant(const Matrix3d& image_from_pad, float weight) {
-  plane_from_image_ = image_from_pad.inverse();
+void SceneRenderer::add_instant(const View& view, float weight) {
+  plane_from_image_ = view.image_from_pad.inverse();
+  ground_from_image_ = view.ground_from_pad.matrix() * plane_from_image_;
   plane_area_ = std::abs(plane_from_image_.determinant());
   pad_.look(plane_from_image_);
   shadows_.clear();
@@ -197,9 +205,9 @@ void SceneRenderer::fill_ground(Block& block) const {
   const auto coarseness = [&](double depth) {
     return GroundTexture::coarseness(wider * std::sqrt(plane_area_ / (depth * depth * depth)));
   };
-  const Vector3d step = plane_from_image_.col(0);
+  const Vector3d step = ground_from_image_.col(0);
   for (int y = 0; y < block.height; ++y) {
-    Vector3d q = plane_from_image_ * Vector3d(block.left, block.top + y, 1.0);
+    Vector3d q = ground_from_image_ * Vector3d(block.left, block.top + y, 1.0);
     const double last_depth = q.z() + kBlock * step.z();
     const bool is_seen = q.z() > 0.0 && last_depth > 0.0;
     const float first = is_seen ? coarseness(q.z()) : 0.0F;

@@ -23,7 +23,10 @@ class SceneRenderer {
   /// Allocates only when frames grow. O(pixels), times the length of the motion's blur.
   Truth render(double time_s, std::uint64_t frame, const MutableImage& picture);
 
-  /// One instant through any view, without the glare, which depends on where the camera is.
+  /// One instant through any view, with the bars where they are at time 0.
+  Truth render(const View& view, std::uint64_t frame, const MutableImage& picture);
+
+  /// The same, where the pad lies still on the ground, and without the glare.
   Truth render(const Eigen::Matrix3d& image_from_pad,
                std::uint64_t frame,
                const MutableImage& picture);
@@ -32,7 +35,7 @@ class SceneRenderer {
   struct Block;  // some pixels, and the piece of the plane that they see
 
   void start_frame(const MutableImage& picture);
-  void add_instant(const Eigen::Matrix3d& image_from_pad, float weight);
+  void add_instant(const View& view, float weight);
   [[nodiscard]] Block block_at(int left, int top) const;
   void fill(Block& block);
   void fill_ground(Block& block) const;
@@ -50,6 +53,7 @@ class SceneRenderer {
   std::vector<Band> shadows_;  // in the present view
   Eigen::Matrix3d plane_from_image_;
   double plane_area_ = 0.0;  // determinant of plane_from_image_
+  Eigen::Matrix3d ground_from_image_;
   int width_ = 0;
   int height_ = 0;
   std::vector<float> light_;

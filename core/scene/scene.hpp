@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -64,6 +65,14 @@ struct Truth {
   std::optional<Ellipse> outer_edge;  ///< The exact picture of the painted circle [px].
   std::optional<Ellipse> inner_edge;  ///< Of the edge next inside it [px].
   double visible_fraction = 0.0;      ///< Share of the outer edge inside the frame.
+};
+
+/// How a camera of its own sees a pad: one that flies by no Flight, over a pad that may move.
+struct View {
+  Eigen::Matrix3d image_from_pad;           ///< The pad's plane to pixels.
+  std::optional<Eigen::Vector3d> camera{};  ///< On the pad [radii]; without it there is no glare.
+  /// The pad on the ground [radii]; the ground is seen to pass beneath a pad that moves.
+  Eigen::Isometry2d ground_from_pad = Eigen::Isometry2d::Identity();
 };
 
 [[nodiscard]] Truth truth_of(const Pad& pad,
