@@ -111,8 +111,7 @@ std::string text_of(GBytes* bytes) {
 
 }  // namespace
 
-std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
-  const std::string script = script_of(panels, format);
+std::string run_gnuplot(const std::string& script) {
   GError* error = nullptr;
   const auto flags =
       static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDIN_PIPE | G_SUBPROCESS_FLAGS_STDOUT_PIPE |
@@ -133,6 +132,10 @@ std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
     throw std::runtime_error("gnuplot: " + said);
   }
   return drawn;
+}
+
+std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
+  return run_gnuplot(script_of(panels, format));
 }
 
 void plot_to(const std::filesystem::path& file,

@@ -24,8 +24,11 @@ struct Panel {
 
 enum class PlotFormat { kSvg, kPng };
 
-/// Panels side by side, two in a row, drawn by gnuplot.
-/// Throws std::runtime_error where gnuplot is not installed or fails, with what it says.
+/// What gnuplot draws to its standard output.
+/// Throws std::runtime_error where it is not installed or fails, with what it says.
+[[nodiscard]] std::string run_gnuplot(const std::string& script);
+
+/// Panels side by side, two in a row, drawn by run_gnuplot().
 [[nodiscard]] std::string plot(const std::vector<Panel>& panels, PlotFormat format);
 
 /// Into a file. Throws std::runtime_error that names it, where it cannot be written.

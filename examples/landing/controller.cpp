@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "examples/landing/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace landing {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kSeenInARow = 4;           // pictures until it is believed
+constexpr double kLost_s = 1.0;          // unseen while nothing hurries
+constexpr double kInSight_s = 2.0;       // since it was seen: better known than radio tells
+constexpr double kSpiralGrowth = 0.5;    // of the search's circles [m/s]
+constexpr double kSpiralSpeed = 1.5;     // along them [m/s]
+constexpr double kWidestSpiral = 3.0;    // [m]
+constexpr double kTouchDownSpeed = 0.8;  // [m/s]
+constexpr double kMostDrift = 1.2;       // velocity beside the platform's that is safe low [m/s]
+constexpr double kMoves = 0.5;           // a platform that is faster has a heading [m/s]
+
+}  // namespace
+
+struct Controller::Situation {
+  double now_s = 0.0;
+  Motion own;
+  TargetFilter::State platform;
+  Vector2d off{0.0, 0.0};  // from the vehicle to the platform [m]
+  double distance = 0.0;   // its length
+  double drift = 0.0;      // speed beside the platform [m/s]
+  double height = 0.0;     // above it [m]
+  double unseen_s = 0.0;
+};
+
+Controller::Controller(const ControllerSettings& settings, const TargetFilter& platform)
+    : settings_(settings), platform_(platform) {}
+
+Command Controller::update(double now_s,
+                           const Motion& own,
+                           const std::optional<Observation>& seen) {
+  if (seen) take_in(*seen);
+  const Situation now = judge(now_s, own);
+  decide(now);
+    fprintf(stderr,
+            "  C %.2f off %.2f %.2f pv %.2f %.2f pa %.2f %.2f own v %.2f %.2f cmd %.2f %.2f unseen "
+            "%.2f row %d refused %d\n",
+            now_s,
+            now.off.x(),
+            now.off.y(),
+            now.platform.velocity.x(),
+            now.platform.velocity.y(),
+            now.platform.acceleration.x(),
+            now.platform.acceleration.y(),
+            own.velocity.x(),
+            own.velocity.y(),
+            command(now).velocity.x(),
+            command(now).velocity.y(),
+            now.unseen_s,
+            seen_in_a_row_,
+  return command(now);
+}
+
+void Controller::take_in(const Observation& seen) {
+  look(seen);
+  if (!seen.radio) return;
+  platform_.hear(seen.time_s,
+                 seen.own.position.head<2>() + seen.radio->position,
+                 seen.radio->velocity,
+                 settings_.radio_error,
+                 settings_.radio_velocity_error,
+                 seen.time_s - last_seen_s_ < kInSight_s);
+}
+
+void Controller::look(const Observation& seen) {
+  if (!seen.pad) {
+    seen_in_a_row_ = 0;
+    refused_in_a_row_ = 0;
+    return;
+  }
+  // What the picture cannot tell: an error of the attitude turns what was seen.
+  const double error = std::hypot(0.01 + 0.01 * seen.pad->norm(), seen.error);
+  if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
+    seen_in_a_row_ = 0;
+    refused_in_a_row_ = refused_in_a_row_ % kMostRefused + 1;
+    return;
+  }
+  refused_in_a_row_ = 0;
+  ++seen_in_a_row_;
+  last_seen_s_ = seen.time_s;
+}
+
+Controller::Situation Controller::judge(double now_s, const Motion& own) const {
+  Situation now;
+  now.now_s = now_s;
+  now.own = own;
+  now.platform = platform_.at(now_s);
+  now.off = (now.platform.position - own.position).head<2>();
+  now.distance = now.off.norm();
+  now.drift = (now.platform.velocity - own.velocity).head<2>().norm();
+  now.height = own.position.z() - now.platform.position.z();
+  now.unseen_s = now_s - last_seen_s_;
+  return now;
+}
+
+void Controller::begin(Phase phase, double now_s) {
+  phase_ = phase;
+  phase_since_s_ = now_s;
+  steady_since_s_ = now_s;
+}
+
+void Controller::decide(const Situation& now) {
+  const bool is_low = phase_ == Phase::kDescend || phase_ == Phase::kTouchDown;
+  if (is_low && is_unsafe(now)) {
+    ++climbs_;
+    return begin(Phase::kClimb, now.now_s);
+  }
+  const bool is_lost = now.unseen_s > kLost_s;
+  const bool may_be_lost = !is_low && phase_ != Phase::kSearch && phase_ != Phase::kClimb;
+  if (is_lost && may_be_lost) return begin(Phase::kSearch, now.now_s);
+
+  switch (phase_) {
+    case Phase::kSearch:
+      if (seen_in_a_row_ >= kSeenInARow) begin(Phase::kApproach, now.now_s);
+      break;
+    case Phase::kApproach:
+      if (now.distance < 0.8 + 0.1 * now.height) begin(Phase::kAlign, now.now_s);
+      break;
+    case Phase::kAlign:
+      if (has_been_steady(now, 0.6, 0.8, 0.3)) begin(Phase::kFollow, now.now_s);
+      break;
+    case Phase::kFollow:
+      if (has_been_steady(now, 0.5, 0.7, 0.7)) begin(Phase::kDescend, now.now_s);
+      break;
+    case Phase::kDescend:
+      if (now.height < settings_.touch_down_height &&
+          now.distance < 0.6 * settings_.most_off_touching) {
+        begin(Phase::kTouchDown, now.now_s);
+      }
+      break;
+    case Phase::kTouchDown:
+      break;
+    case Phase::kClimb:
+      if (now.height > settings_.safe_height) {
+        begin(is_lost ? Phase::kSearch : Phase::kApproach, now.now_s);
+      }
+      break;
+  }
+}
+
+bool Controller::is_unsafe(const Situation& now) const {
+  if (now.height < settings_.last_height) return false;
+  const double allowed_s =
+      now.height < settings_.blind_height ? settings_.most_unseen_low_s : settings_.most_unseen_s;
+  if (now.unseen_s > allowed_s) return true;
+  if (phase_ == Phase::kTouchDown) {
+    return now.distance > settings_.most_off_touching || now.drift > kMostDrift;
+  }
+  return now.distance > 0.6 + 0.4 * now.height || (now.height < 1.5 && now.drift > kMostDrift);
+}
+
+bool Controller::has_been_steady(const Situation& now, double off, double drift, double for_s) {
+  const bool is_steady = now.distance < off && now.drift < drift;
+  if (!is_steady) steady_since_s_ = now.now_s;
+  return now.now_s - steady_since_s_ >= for_s;
+}
+
+Command Controller::command(const Situation& now) const {
+  Vector2d goal = now.off;
+  if (phase_ == Phase::kSearch) {
+    const double since_s = now.now_s - phase_since_s_;
+    const double radius = std::min(kSpiralGrowth * since_s, kWidestSpiral);
+    const double turn = kSpiralSpeed / std::max(radius, 1.0) * since_s;
+    goal += radius * Vector2d(std::cos(turn), std::sin(turn));
+  }
+  // The platform's own velocity as it will be when the command has its effect, and towards it no
+  // faster than can be braked.
+  const double distance = goal.norm();
+  Vector2d correction{0.0, 0.0};
+  if (distance > 0.0) {
+    const double speed = std::min({settings_.gain * distance,
+                                   std::sqrt(2.0 * settings_.braking * distance),
+                                   settings_.most_correction});
+    correction = speed / distance * goal;
+  }
+  const Vector2d ahead =
+      now.platform.velocity.head<2>() + settings_.lead_s * now.platform.acceleration.head<2>();
+  Command command;
+  command.velocity << ahead + correction, climb_rate(now);
+  command.yaw_rate = yaw_rate(now);
+  return command;
+}
+
+double Controller::climb_rate(const Situation& now) const {
+  const auto towards = [&](double height) {
+    return std::clamp(0.8 * (height - now.height), -1.5, 1.5);
+  };
+  switch (phase_) {
+    case Phase::kSearch: {
+      const double since_s = now.now_s - phase_since_s_;
+      return towards(
+          std::min(settings_.search_height + 0.5 * since_s, settings_.most_search_height));
+    }
+    case Phase::kApproach:
+    case Phase::kAlign:
+    case Phase::kFollow:
+      return towards(settings_.approach_height);
+    case Phase::kDescend: {
+      const double cone = 0.2 + 0.12 * now.height;
+      const double share = std::clamp(1.2 - now.distance / cone, -0.2, 1.0);
+      const double rate = std::min(1.4, 0.3 + 0.3 * now.height);
+      const bool must_wait = now.height < 0.9 * settings_.touch_down_height;
+      return must_wait ? towards(settings_.touch_down_height) : -share * rate;
+    }
+    case Phase::kTouchDown:
+      return -kTouchDownSpeed;
+    case Phase::kClimb:
+      break;
+  }
+  return 1.5;
+}
+
+// Along the platform's way, where it has one.
+double Controller::yaw_rate(const Situation& now) const {
+  const Vector2d way = now.platform.velocity.head<2>();
+  const bool turns = phase_ != Phase::kSearch && phase_ != Phase::kApproach;
+  if (!turns || way.norm() < kMoves) return 0.0;
+  const Vector3d forward = now.own.world_from_body * Vector3d::UnitX();
+  const double off = std::remainder(
+      std::atan2(way.y(), way.x()) - std::atan2(forward.y(), forward.x()), 2.0 * std::numbers::pi);
+  return std::clamp(0.8 * off, -0.8, 0.8);
+}
+
+}  // namespace landing

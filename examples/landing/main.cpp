@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// ellipse-landing: lands a simulated multirotor on a moving platform by what ellipsetrack sees.
+#include <gst/gst.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <exception>
+#include <iostream>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "examples/landing/report.hpp"
+#include "examples/landing/video.hpp"
+
+namespace {
+
+using landing::Course;
+using landing::Flight;
+using landing::Landing;
+
+struct Options {
+  int runs = 12;
+  std::vector<double> speeds = {4.2};
+  std::uint64_t seed = 1;
+  double gust = 3.0;
+  int width = 640;
+  std::vector<std::string> methods = {"arcs+edges"};
+  int jobs = 0;
+  std::string video;
+  std::string report;
+};
+
+// Every third on another course, every fourth in another light: a seed says which.
+std::vector<Landing> planned(const Options& options) {
+  const auto conditions = landing::condition_names();
+  std::vector<Landing> landings;
+  for (const std::string& method : options.methods) {
+    for (const double speed : options.speeds) {
+      for (int run = 0; run < options.runs; ++run) {
+        Flight flight;
+        flight.seed = options.seed + static_cast<std::uint64_t>(run);
+        flight.speed = speed;
+        flight.course = static_cast<Course>(flight.seed % 3);
+        flight.condition = conditions[flight.seed % conditions.size()];
+        flight.method = method;
+        flight.vehicle.gust = options.gust;
+        flight.rig.camera = flight.rig.camera.resized(options.width, options.width * 9 / 16);
+        landings.push_back({flight, {}});
+      }
+    }
+  }
+  return landings;
+}
+
+// Each by itself, as many at once as there are processors: the order changes nothing.
+void fly_all(std::vector<Landing>& landings, int jobs) {
+  std::atomic<std::size_t> next = 0;
+  std::size_t done = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    while (true) {
+      const std::size_t mine = next++;
+      if (mine >= landings.size()) return;
+      try {
+        landings[mine].outcome = fly(landings[mine].flight);
+      } catch (...) {
+        const std::scoped_lock lock(mutex);
+        failure = std::current_exception();
+        next = landings.size();
+        return;
+      }
+      const std::scoped_lock lock(mutex);
+      std::cerr << "\r" << ++done << " of " << landings.size() << " landings" << std::flush;
+    }
+  };
+  {
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<std::jthread> workers;
+    for (unsigned i = 0; i < (jobs > 0 ? static_cast<unsigned>(jobs) : processors); ++i) {
+      workers.emplace_back(work);
+    }
+  }
+  std::cerr << '\n';
+  if (failure) std::rethrow_exception(failure);
+}
+
+void run(const Options& options, const std::string& command) {
+  std::vector<Landing> landings = planned(options);
+  fly_all(landings, options.jobs);
+  print(std::cout, outcome_table(landings));
+  print(std::cout, unseen_table(landings));
+  if (!options.report.empty()) write_report(landings, command, options.report);
+  if (!options.video.empty()) landing::film(landings.front().flight, options.video);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  Options options;
+  CLI::App app{"Lands a simulated multirotor on a moving platform by what ellipsetrack sees."};
+  app.name("ellipse-landing");
+  app.add_option("--runs", options.runs, "Landings of each method at each speed")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--speed", options.speeds, "Of the platform, in m/s; several with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 8.0))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of the first landing; each has its own")
+      ->capture_default_str();
+  app.add_option("--gust", options.gust, "Root mean square of the wind, in m/s")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  app.add_option("--width", options.width, "Of the camera's pictures, in px")
+      ->check(CLI::Range(160, 1920))
+      ->capture_default_str();
+  app.add_option("--methods", options.methods, "detector+tracking; several with commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--jobs", options.jobs, "Landings at once; 0 = as many as processors")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--video", options.video, "Write the first landing as a Matroska file");
+  app.add_option("--report", options.report, "Folder for tables and plots");
+  CLI11_PARSE(app, argc, argv);
+  std::string command = "ellipse-landing";
+  for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
+  try {
+    run(options, command);
+  } catch (const std::exception& error) {
+    std::cerr << "ellipse-landing: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

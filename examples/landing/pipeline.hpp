@@ -1,0 +1,39 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <gst/gst.h>
+
+#include <memory>
+#include <string>
+
+namespace landing {
+
+struct ElementDeleter {
+  void operator()(GstElement* element) const { gst_object_unref(element); }
+};
+using Element = std::unique_ptr<GstElement, ElementDeleter>;
+
+/// A pipeline written as for gst-launch-1.0. It stops with this object.
+class Pipeline {
+ public:
+  /// Throws std::runtime_error where it cannot be made.
+  explicit Pipeline(const std::string& line);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// The element that the line gives this name.
+  [[nodiscard]] Element element(const char* name) const;
+
+  void play();
+
+  /// Waits for the end of the stream. Throws std::runtime_error where it ends otherwise.
+  void await_end();
+
+  /// Throws the std::runtime_error of what has stopped it.
+  [[noreturn]] void fail();
+
+ private:
+  GstElement* pipeline_ = nullptr;
+};
+
+}  // namespace landing

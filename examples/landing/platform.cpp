@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "examples/landing/platform.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace landing {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kCircleRadius = 15.0;  // [m]
+constexpr double kEightReach = 20.0;    // from its middle to its ends [m]
+
+}  // namespace
+
+const char* name_of(Course course) {
+  constexpr std::array kNames = {"straight", "circle", "eight"};
+  return kNames.at(static_cast<std::size_t>(course));
+}
+
+Platform::Platform(Course course, double speed, double phase)
+    : course_(course), speed_(speed), place_(2.0 * std::numbers::pi * phase) {
+  step(0.0);
+}
+
+// Of the place on the ground, by the course's parameter. The eight is Gerono's lemniscate.
+Vector2d Platform::slope(double place) const {
+  switch (course_) {
+    case Course::kCircle:
+      return kCircleRadius * Vector2d(-std::sin(place), std::cos(place));
+    case Course::kFigureOfEight:
+      return kEightReach * Vector2d(std::cos(place), std::cos(2.0 * place));
+    case Course::kStraight:
+      break;
+  }
+  return {1.0, 0.0};
+}
+
+void Platform::step(double step_s) {
+  const double half = place_ + 0.5 * step_s * speed_ / slope(place_).norm();
+  const Vector2d along = slope(half);
+  const double share = step_s * speed_ / along.norm();
+  position_ += share * along;
+  place_ += share;
+  const Vector2d ahead = slope(place_);
+  velocity_ = speed_ * ahead.normalized();
+  heading_rad_ = std::atan2(ahead.y(), ahead.x());
+}
+
+}  // namespace landing

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "examples/landing/target_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace landing {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kFade_s = 4.0;        // of an acceleration that is not seen any more
+constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
+constexpr double kUprightJerk = 1e-5;  // the platform drives on level ground
+constexpr double kGate = 25.0;         // squared innovation by its variance
+constexpr double kHeightError = 0.5;   // of the platform below the vehicle [m]
+constexpr double kMostSpeed = 6.0;     // of any platform [m/s]
+
+}  // namespace
+
+TargetFilter::TargetFilter(double time_s,
+                           const Vector3d& position,
+                           const Eigen::Vector2d& velocity,
+                           double position_error,
+                           double velocity_error)
+    : time_s_(time_s),
+      axes_{level_axis(position.x(), velocity.x(), position_error, velocity_error),
+            level_axis(position.y(), velocity.y(), position_error, velocity_error),
+            Axis{{position.z(), 0.0, 0.0},
+                 Vector3d(kHeightError, 0.02, 0.01).cwiseAbs2().asDiagonal(),
+                 kUprightJerk}} {}
+
+TargetFilter::Axis TargetFilter::level_axis(double position,
+                                            double velocity,
+                                            double position_error,
+                                            double velocity_error) {
+  return {{position, velocity, 0.0},
+          Vector3d(position_error, velocity_error, 0.5).cwiseAbs2().asDiagonal(),
+          kLevelJerk};
+}
+
+// Its squared innovation by the variance that is expected of it.
+double TargetFilter::surprise(const Axis& axis, double position, double variance) {
+  const double innovation = position - axis.mean[0];
+  return innovation * innovation / (axis.covariance(0, 0) + variance);
+}
+
+// By a measured position (0) or velocity (1).
+void TargetFilter::correct(Axis& axis, Eigen::Index part, double value, double variance) {
+  const Vector3d gain = axis.covariance.col(part) / (axis.covariance(part, part) + variance);
+  axis.mean += gain * (value - axis.mean[part]);
+  axis.mean[1] = std::clamp(axis.mean[1], -kMostSpeed, kMostSpeed);
+  axis.covariance -= (gain * axis.covariance.row(part)).eval();
+}
+
+// White jerk on an acceleration that fades away.
+TargetFilter::Axis TargetFilter::moved(const Axis& axis, double by_s) {
+  const double t = by_s;
+  const double kept = std::exp(-t / kFade_s);
+  const double to_velocity = kFade_s * (1.0 - kept);
+  Matrix3d step = Matrix3d::Identity();
+  step(0, 1) = t;
+  step(0, 2) = kFade_s * (t - to_velocity);
+  step(1, 2) = to_velocity;
+  step(2, 2) = kept;
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  Matrix3d noise;
+  noise << t2 * t3 / 20.0, t2 * t2 / 8.0, t3 / 6.0,  //
+      t2 * t2 / 8.0, t3 / 3.0, t2 / 2.0,             //
+      t3 / 6.0, t2 / 2.0, t;
+  return {
+      step * axis.mean, step * axis.covariance * step.transpose() + axis.jerk * noise, axis.jerk};
+}
+
+void TargetFilter::move_to(double time_s) {
+  for (Axis& axis : axes_) axis = moved(axis, time_s - time_s_);
+  time_s_ = time_s;
+}
+
+bool TargetFilter::see(double time_s, const Vector3d& position, double error) {
+  move_to(time_s);
+  const double variance = error * error;
+  double off = 0.0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    off = std::max(off, surprise(axes_[static_cast<std::size_t>(i)], position[i], variance));
+  }
+  if (off > kGate) return false;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    correct(axes_[static_cast<std::size_t>(i)], 0, position[i], variance);
+  }
+  return true;
+}
+
+void TargetFilter::hear(double time_s,
+                        const Eigen::Vector2d& position,
+                        const Eigen::Vector2d& velocity,
+                        double position_error,
+                        double velocity_error,
+                        bool is_in_sight) {
+  move_to(time_s);
+  const double variance = position_error * position_error;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (surprise(axis, position[i], variance) > kGate) {
+      axis = level_axis(position[i], velocity[i], position_error, velocity_error);
+    } else if (!is_in_sight) {
+      correct(axis, 0, position[i], variance);
+      correct(axis, 1, velocity[i], velocity_error * velocity_error);
+    }
+  }
+}
+
+TargetFilter::State TargetFilter::at(double time_s) const {
+  State state;
+  for (int i = 0; i < 3; ++i) {
+    const Axis axis = moved(axes_[static_cast<std::size_t>(i)], time_s - time_s_);
+    state.position[i] = axis.mean[0];
+    state.velocity[i] = axis.mean[1];
+    state.acceleration[i] = axis.mean[2];
+  }
+  return state;
+}
+
+}  // namespace landing
