@@ -1,0 +1,120 @@
+#!/usr/bin/env node
+// SPDX-License-Identifier: MIT
+//
+// Sends MAVLink LANDING_TARGET over UDP for the JSON lines of ellipsejson on standard input:
+//   gst-launch-1.0 -q ... ! ellipsetrack hfov=1.01 target-diameter=1.5 ! ellipsejson ! fdsink |
+//     node landing_target.js --to 127.0.0.1:14550
+import dgram from 'node:dgram'
+import readline from 'node:readline'
+import { parseArgs } from 'node:util'
+import { MavLinkProtocolV2, common, minimal } from 'node-mavlink'
+import { landingTarget } from './message.js'
+
+const usage = `usage: landing_target.js [OPTION]...
+  --to HOST:PORT     where the autopilot, or a router before it, listens (127.0.0.1:14550)
+  --system N         MAVLink system id, the vehicle's (1)
+  --component N      MAVLink component id (191, an onboard computer)
+  --hfov RAD         horizontal field of view: sizes, and angles where ellipsetrack has no camera
+  --pitch RAD        of the camera, from straight down towards the front (0)
+  --turn RAD         of the picture's top, from the front to the right (0)
+  --angles-only      no position even where it is known: PX4 takes none in the vehicle's frame
+  --predicted        also where the target was not seen and its motion continued
+`
+
+function optionsFrom(args) {
+  const { values } = parseArgs({
+    args,
+    options: {
+      to: { type: 'string', default: '127.0.0.1:14550' },
+      system: { type: 'string', default: '1' },
+      component: { type: 'string', default: '191' },
+      hfov: { type: 'string', default: '0' },
+      pitch: { type: 'string', default: '0' },
+      turn: { type: 'string', default: '0' },
+      'angles-only': { type: 'boolean', default: false },
+      predicted: { type: 'boolean', default: false },
+      help: { type: 'boolean', default: false },
+    },
+  })
+  const number = (name, least, most) => {
+    const value = Number(values[name])
+    if (!(value >= least && value <= most)) throw new Error(`--${name} ${values[name]}: not in ${least} to ${most}`)
+    return value
+  }
+  const [, host, port] = /^(.+):(\d+)$/.exec(values.to) ?? []
+  if (!host) throw new Error(`--to ${values.to}: expected HOST:PORT`)
+  return {
+    help: values.help,
+    host,
+    port: Number(port),
+    system: number('system', 1, 255),
+    component: number('component', 1, 255),
+    hfov: number('hfov', 0, 3),
+    mount: { pitch: number('pitch', -Math.PI, Math.PI), turn: number('turn', -Math.PI, Math.PI) },
+    anglesOnly: values['angles-only'],
+    predicted: values.predicted,
+  }
+}
+
+/** The link: numbers messages and sends each in a datagram of its own. */
+class Link {
+  #socket = dgram.createSocket('udp4')
+  #sequence = 0
+  #protocol
+  #to
+
+  constructor({ host, port, system, component }) {
+    this.#protocol = new MavLinkProtocolV2(system, component)
+    this.#to = [port, host]
+  }
+
+  send(message) {
+    const packet = this.#protocol.serialize(message, this.#sequence)
+    this.#sequence = (this.#sequence + 1) % 256
+    return new Promise((resolve, reject) => {
+      this.#socket.send(packet, ...this.#to, (error) => (error ? reject(error) : resolve()))
+    })
+  }
+
+  close() {
+    this.#socket.close()
+  }
+}
+
+function heartbeat() {
+  const message = new minimal.Heartbeat()
+  message.type = minimal.MavType.ONBOARD_CONTROLLER
+  message.autopilot = minimal.MavAutopilot.INVALID
+  message.systemStatus = minimal.MavState.ACTIVE
+  message.mavlinkVersion = 3
+  return message
+}
+
+async function main() {
+  const options = optionsFrom(process.argv.slice(2))
+  if (options.help) return void process.stdout.write(usage)
+  const link = new Link(options)
+  await link.send(heartbeat())
+  const beat = setInterval(() => void link.send(heartbeat()).catch(() => {}), 1000)
+  try {
+    let number = 0
+    for await (const text of readline.createInterface({ input: process.stdin })) {
+      ++number
+      let message
+      try {
+        message = landingTarget(JSON.parse(text), options)
+      } catch (error) {
+        throw new Error(`line ${number}: ${error.message}`)
+      }
+      if (message) await link.send(message)
+    }
+  } finally {
+    clearInterval(beat)
+    link.close()
+  }
+}
+
+main().catch((error) => {
+  process.stderr.write(`landing_target.js: ${error.message}\n`)
+  process.exitCode = 1
+})

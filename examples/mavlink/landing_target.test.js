@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+//
+// What arrives on the loopback, decoded by the same library's parser, beside the scene's truth.
+import assert from 'node:assert/strict'
+import { spawn } from 'node:child_process'
+import dgram from 'node:dgram'
+import { once } from 'node:events'
+import { PassThrough } from 'node:stream'
+import { before, test } from 'node:test'
+import { fileURLToPath } from 'node:url'
+import { MavLinkPacketParser, MavLinkPacketSplitter, common, minimal } from 'node-mavlink'
+import { bodyFromCamera } from './message.js'
+
+const program = fileURLToPath(new URL('landing_target.js', import.meta.url))
+const registry = { ...minimal.REGISTRY, ...common.REGISTRY }
+const hfov = 1.012 // of ellipsetestsrc
+const diameter = 1.5
+const frames = 60
+
+async function textOf(stream) {
+  let text = ''
+  for await (const part of stream.setEncoding('utf8')) text += part
+  return text
+}
+
+/** The lines of a rendered landing. */
+async function linesOf(properties) {
+  const line = `-q ellipsetestsrc num-buffers=${frames} ! ellipsetrack ${properties} ! ellipsejson ! fdsink`
+  const gst = spawn('gst-launch-1.0', line.split(' '), { stdio: ['ignore', 'pipe', 'inherit'] })
+  const [text, [status]] = await Promise.all([textOf(gst.stdout), once(gst, 'close')])
+  assert.equal(status, 0)
+  return text.trimEnd().split('\n')
+}
+
+/** What the program sends for these lines, decoded. */
+async function sentFor(lines, ...options) {
+  const socket = dgram.createSocket('udp4')
+  socket.bind(0, '127.0.0.1')
+  await once(socket, 'listening')
+  const stream = new PassThrough()
+  const packets = []
+  stream
+    .pipe(new MavLinkPacketSplitter())
+    .pipe(new MavLinkPacketParser())
+    .on('data', (packet) => packets.push(packet))
+  socket.on('message', (datagram) => stream.write(datagram))
+  const sender = spawn(
+    process.execPath,
+    [program, '--to', `127.0.0.1:${socket.address().port}`, ...options],
+    { stdio: ['pipe', 'inherit', 'pipe'] },
+  )
+  sender.stdin.on('error', () => {}) // it may give up before it has read everything
+  sender.stdin.end(lines.map((line) => line + '\n').join(''))
+  const [complaint, [status]] = await Promise.all([textOf(sender.stderr), once(sender, 'close')])
+  for (let quiet = 0, seen = -1; quiet < 5; quiet = seen === packets.length ? quiet + 1 : 0) {
+    seen = packets.length
+    await new Promise((resolve) => setTimeout(resolve, 20))
+  }
+  socket.close()
+  const messages = packets.map((packet) => ({
+    header: packet.header,
+    data: packet.protocol.data(packet.payload, registry[packet.header.msgid]),
+  }))
+  return { complaint, status, messages, targets: messages.filter((m) => m.data instanceof common.LandingTarget) }
+}
+
+const truthOf = (line) => line.targets.find((one) => one.role === 'truth')
+const targetOf = (line) => line.targets.find((one) => one.role === 'target')
+const near = (actual, expected, most, what) =>
+  assert.ok(Math.abs(actual - expected) <= most, `${what}: ${actual}, not ${expected}`)
+
+let withPose
+let withoutCamera
+before(async () => {
+  withPose = await linesOf(`hfov=${hfov} target-diameter=${diameter}`)
+  withoutCamera = await linesOf('')
+})
+
+/** Turns a vector by a quaternion w, x, y, z. */
+function turned([w, x, y, z], v) {
+  const t = { x: 2 * (y * v.z - z * v.y), y: 2 * (z * v.x - x * v.z), z: 2 * (x * v.y - y * v.x) }
+  return {
+    x: v.x + w * t.x + y * t.z - z * t.y,
+    y: v.y + w * t.y + z * t.x - x * t.z,
+    z: v.z + w * t.z + x * t.y - y * t.x,
+  }
+}
+
+/** How far a circle in space, seen by the camera, is from an ellipse at most [px]. */
+function distanceFrom(ellipse, line, message) {
+  const f = line.width / 2 / Math.tan(hfov / 2)
+  const [c, s] = [Math.cos(ellipse.angle_rad), Math.sin(ellipse.angle_rad)]
+  let farthest = 0
+  for (let i = 0; i < 90; ++i) {
+    const turn = (i * Math.PI) / 45
+    const rim = turned(message.q, { x: (diameter / 2) * Math.cos(turn), y: (diameter / 2) * Math.sin(turn), z: 0 })
+    const body = { x: message.x + rim.x, y: message.y + rim.y, z: message.z + rim.z }
+    const u = (f * body.y) / body.z + (line.width - 1) / 2 - ellipse.cx // the camera looks down
+    const v = (-f * body.x) / body.z + (line.height - 1) / 2 - ellipse.cy
+    const place = Math.hypot((c * u + s * v) / ellipse.semi_major, (c * v - s * u) / ellipse.semi_minor)
+    farthest = Math.max(farthest, Math.abs(place - 1) * ellipse.semi_minor)
+  }
+  return farthest
+}
+
+test('a position for each frame, as the scene has it', async () => {
+  const { status, messages, targets } = await sentFor(withPose)
+  assert.equal(status, 0)
+  assert.ok(messages[0].data instanceof minimal.Heartbeat)
+  assert.equal(targets.length, frames)
+  targets.forEach(({ header, data }, i) => {
+    const line = JSON.parse(withPose[i])
+    assert.equal(header.sysid, 1)
+    assert.equal(header.compid, 191)
+    assert.equal(data.timeUsec, BigInt(Math.trunc(line.pts_ns / 1000)))
+    assert.equal(data.targetNum, 0)
+    assert.equal(data.frame, common.MavFrame.BODY_FRD)
+    assert.equal(data.type, common.LandingTargetType.VISION_OTHER)
+    assert.equal(data.positionValid, 1)
+    near(Math.hypot(...data.q), 1, 1e-6, 'size of q')
+    near(data.distance, Math.hypot(data.x, data.y, data.z), 1e-4, 'distance')
+    near(Math.tan(data.angleX), data.y / data.z, 1e-5, 'angle_x')
+    near(Math.tan(data.angleY), -data.x / data.z, 1e-5, 'angle_y')
+    // The circle that the message tells of has the picture that the scene has painted.
+    const off = distanceFrom(truthOf(line), line, data)
+    assert.ok(off < 0.5, `frame ${i}: its picture is ${off} px off`)
+  })
+})
+
+test('at least ten messages a second', async () => {
+  const { targets } = await sentFor(withPose)
+  targets.slice(1).forEach(({ data }, i) => assert.ok(data.timeUsec - targets[i].data.timeUsec <= 100000n))
+})
+
+test('angles and sizes where there is no pose', async () => {
+  const { targets } = await sentFor(withoutCamera, '--hfov', String(hfov))
+  assert.equal(targets.length, frames)
+  targets.forEach(({ data }, i) => {
+    const line = JSON.parse(withoutCamera[i])
+    const truth = truthOf(line)
+    const f = line.width / 2 / Math.tan(hfov / 2)
+    assert.equal(data.positionValid, 0)
+    assert.equal(data.distance, 0)
+    near(data.angleX, Math.atan((truth.cx - (line.width - 1) / 2) / f), 0.5 / f, 'angle_x')
+    near(data.angleY, Math.atan((truth.cy - (line.height - 1) / 2) / f), 0.5 / f, 'angle_y')
+    for (const size of [data.sizeX, data.sizeY]) {
+      assert.ok(size > (2 * truth.semi_minor - 1) / f / 1.1 && size < (2 * truth.semi_major + 1) / f)
+    }
+  })
+})
+
+test('angles alone where they are asked for', async () => {
+  const { targets } = await sentFor(withPose, '--angles-only')
+  assert.equal(targets.length, frames)
+  targets.forEach(({ data }, i) => {
+    const { bearing } = targetOf(JSON.parse(withPose[i]))
+    assert.equal(data.positionValid, 0)
+    near(data.angleX, Math.atan2(bearing.x, bearing.z), 1e-6, 'angle_x')
+    near(data.angleY, Math.atan2(bearing.y, bearing.z), 1e-6, 'angle_y')
+  })
+})
+
+test('nothing while the target is lost', async () => {
+  const lost = withPose.map((text, i) => {
+    const line = JSON.parse(text)
+    if (i >= 20 && i < 40) line.targets = line.targets.filter((one) => one.role === 'truth')
+    if (i === 40) targetOf(line).state = 'predicted'
+    return JSON.stringify(line)
+  })
+  const { targets } = await sentFor(lost)
+  assert.equal(targets.length, frames - 21)
+  const { targets: more } = await sentFor(lost, '--predicted')
+  assert.equal(more.length, frames - 20)
+})
+
+test('the way the camera is mounted', () => {
+  const close = (actual, expected) =>
+    ['x', 'y', 'z'].forEach((axis) => near(actual[axis], expected[axis], 1e-12, axis))
+  const ahead = { x: 0, y: 0, z: 1 }
+  const right = { x: 1, y: 0, z: 0 }
+  close(bodyFromCamera(ahead, { pitch: 0, turn: 0 }), { x: 0, y: 0, z: 1 })
+  close(bodyFromCamera(right, { pitch: 0, turn: 0 }), { x: 0, y: 1, z: 0 })
+  close(bodyFromCamera(ahead, { pitch: Math.PI / 2, turn: 0 }), { x: 1, y: 0, z: 0 })
+  close(bodyFromCamera(right, { pitch: 0, turn: Math.PI / 2 }), { x: -1, y: 0, z: 0 })
+})
+
+test('a line that is none, or tells no direction, is named', async () => {
+  const broken = await sentFor([withPose[0], '{"frame":1,'])
+  assert.equal(broken.status, 1)
+  assert.match(broken.complaint, /^landing_target\.js: line 2: /)
+  const blind = await sentFor(withoutCamera)
+  assert.equal(blind.status, 1)
+  assert.match(blind.complaint, /line 1: no bearing: give ellipsetrack a camera, or --hfov/)
+  const port = await sentFor([], '--to', 'nowhere')
+  assert.match(port.complaint, /--to nowhere: expected HOST:PORT/)
+})

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// What a line of ellipsejson says, as a MAVLink LANDING_TARGET.
+import { common } from 'node-mavlink'
+
+/**
+ * How the camera sits on the vehicle. Without angles it looks straight down, the top of its picture
+ * to the front.
+ *
+ * @typedef {object} Mount
+ * @property {number} pitch  From straight down towards the front [rad].
+ * @property {number} turn   Of the picture's top from the front to the right [rad].
+ */
+
+/**
+ * From the camera's frame (x right, y down, z forward) to the vehicle's: front, right, down.
+ *
+ * @param {{x: number, y: number, z: number}} v
+ * @param {Mount} mount
+ */
+export function bodyFromCamera(v, { pitch, turn }) {
+  const top = -v.y * Math.cos(turn) - v.x * Math.sin(turn)
+  return {
+    x: top * Math.cos(pitch) + v.z * Math.sin(pitch),
+    y: -v.y * Math.sin(turn) + v.x * Math.cos(turn),
+    z: v.z * Math.cos(pitch) - top * Math.sin(pitch),
+  }
+}
+
+/** The shortest turn of a level pad's normal, straight up, to this one: w, x, y, z. */
+function orientation(normal) {
+  const q = [1 - normal.z, normal.y, -normal.x, 0]
+  const size = Math.hypot(...q)
+  return size > 0 ? q.map((part) => part / size) : [0, 1, 0, 0]
+}
+
+const focal = (line, hfov) => line.width / 2 / Math.tan(hfov / 2)
+
+function bearing(line, target, hfov) {
+  if (target.bearing) return target.bearing
+  if (!hfov) throw new Error('no bearing: give ellipsetrack a camera, or --hfov')
+  const f = focal(line, hfov)
+  return { x: (target.cx - (line.width - 1) / 2) / f, y: (target.cy - (line.height - 1) / 2) / f, z: 1 }
+}
+
+/** The angle under which the ellipse's box is seen, along x and y. */
+function sizes(line, target, hfov) {
+  if (!hfov) return [0, 0]
+  const f = focal(line, hfov)
+  const [c, s] = [Math.cos(target.angle_rad), Math.sin(target.angle_rad)]
+  const half = [
+    Math.hypot(target.semi_major * c, target.semi_minor * s),
+    Math.hypot(target.semi_major * s, target.semi_minor * c),
+  ]
+  const off = [target.cx - (line.width - 1) / 2, target.cy - (line.height - 1) / 2]
+  return off.map((o, i) => Math.atan((o + half[i]) / f) - Math.atan((o - half[i]) / f))
+}
+
+/**
+ * The message of a frame; null where no target was seen in it.
+ *
+ * @param {object} line  A parsed line of ellipsejson.
+ * @param {{mount: Mount, hfov: number, anglesOnly: boolean, predicted: boolean}} options
+ *   hfov: the horizontal field of view [rad] of a lens without distortion, for sizes, and for
+ *   angles where ellipsetrack knows no camera; 0 = not known. predicted: also where the target was
+ *   not seen, and its motion continued.
+ * @throws {Error} where the line tells no direction.
+ */
+export function landingTarget(line, { mount, hfov, anglesOnly, predicted }) {
+  const target = line.targets.find((one) => one.role === 'target')
+  if (!target || (target.state === 'predicted' && !predicted)) return null
+
+  const message = new common.LandingTarget()
+  message.timeUsec = BigInt(Math.trunc(line.pts_ns / 1000))
+  message.targetNum = 0
+  message.frame = common.MavFrame.BODY_FRD
+  message.type = common.LandingTargetType.VISION_OTHER
+  // Of a camera that looks straight down: x to the right, y to the back.
+  const way = bodyFromCamera(bearing(line, target, hfov), mount)
+  message.angleX = Math.atan2(way.y, way.z)
+  message.angleY = Math.atan2(-way.x, way.z)
+  ;[message.sizeX, message.sizeY] = sizes(line, target, hfov)
+  message.q = [0, 0, 0, 0]
+  if (!target.position || anglesOnly) {
+    message.positionValid = 0
+    return message
+  }
+  const place = bodyFromCamera(target.position, mount)
+  Object.assign(message, place)
+  message.distance = Math.hypot(place.x, place.y, place.z)
+  message.q = orientation(bodyFromCamera(target.normal, mount))
+  message.positionValid = 1
+  return message
+}

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Runs the tests of examples/mavlink with the packages of its lock file, in a folder of its own.
+#   mavlink.sh SOURCE FOLDER
+set -euo pipefail
+if ! command -v npm > /dev/null; then
+  echo "mavlink.sh: skipped, there is no npm"
+  exit 77
+fi
+mkdir -p "$2"
+cp "$1"/*.js "$1"/*.json "$2"
+cd "$2"
+npm ci --no-audit --no-fund --loglevel=error
+node --test
