@@ -208,6 +208,42 @@ TEST(Renderer, GlareSaturatesAndFadesAway) {
   EXPECT_EQ(picture.at(2, 2), 200);
 }
 
+// How the ground beneath a pad that has moved on it compares with the same ground seen there.
+TEST(Renderer, TheGroundPassesBeneathAPadThatMoves) {
+  Scene scene = scene_by_name("approach");
+  scene.pad.pattern = Pattern::kNone;
+  scene.sensor.read_noise = 0.0;
+  const CameraPose pose{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, 0.0};
+  View over_pad{.image_from_pad = image_from_pad(pose, 1.0, 160, 120)};
+  Picture still(160, 120);
+  Picture moved(160, 120);
+  Picture elsewhere(160, 120);
+  SceneRenderer renderer(scene);
+  renderer.render(over_pad, 0, still.writable());
+  over_pad.ground_from_pad = Eigen::Translation2d(1.5, -0.5) * Eigen::Rotation2Dd(0.0);
+  renderer.render(over_pad, 0, moved.writable());
+  const CameraPose there{{1.5, -0.5, 8.0}, {1.5, -0.5, 0.0}, 0.0};
+  renderer.render(image_from_pad(there, 1.0, 160, 120), 0, elsewhere.writable());
+  EXPECT_NE(moved.pixels, still.pixels);
+  for (std::size_t i = 0; i < moved.pixels.size(); ++i) {
+    ASSERT_NEAR(moved.pixels[i], elsewhere.pixels[i], 1) << i;
+  }
+}
+
+TEST(Renderer, GlareNeedsThePlaceOfTheCamera) {
+  Scene scene = clean_disc();
+  scene.light.glare = {{0.0, 0.0}, 0.05, 300.0};
+  const CameraPose pose{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, 0.0};
+  View view{.image_from_pad = image_from_pad(pose, 1.0, 160, 120)};
+  Picture picture(160, 120);
+  SceneRenderer renderer(scene);
+  renderer.render(view, 0, picture.writable());
+  EXPECT_EQ(std::count(picture.pixels.begin(), picture.pixels.end(), 255), 0);
+  view.camera = pose.position;
+  renderer.render(view, 0, picture.writable());
+  EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), 255), 30);
+}
+
 TEST(Renderer, GradientBrightensOneSide) {
   Scene scene = clean_disc();
   scene.light.gradient = {0.4, 0.0};

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+//
+// The landing's parts, and whole landings through real pipelines.
+#include "examples/landing/landing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/homography.hpp"
+#include "examples/landing/report.hpp"
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using landing::Command;
+using landing::Controller;
+using landing::ControllerSettings;
+using landing::Course;
+using landing::Flight;
+using landing::Motion;
+using landing::Observation;
+using landing::Outcome;
+using landing::Phase;
+using landing::Platform;
+using landing::Rig;
+using landing::TargetFilter;
+using landing::Vehicle;
+using landing::VehicleModel;
+
+constexpr double kStep_s = 0.005;
+
+VehicleModel in_still_air() {
+  VehicleModel model;
+  model.gust = 0.0;
+  model.velocity_error = 0.0;
+  model.attitude_error_rad = 0.0;
+  return model;
+}
+
+TEST(Vehicle, TakesOnItsCommandedVelocityAndTiltsForIt) {
+  Vehicle vehicle(in_still_air(), {0.0, 0.0, 5.0}, 0.0, 1);
+  const Command command{{3.0, 0.0, 0.0}, 0.0};
+  for (int i = 0; i < 60; ++i) vehicle.step(command, kStep_s);
+  const Vector3d up = vehicle.truth().world_from_body * Vector3d::UnitZ();
+  EXPECT_GT(up.x(), 0.2);  // it leans forward to speed up
+  for (int i = 0; i < 600; ++i) vehicle.step(command, kStep_s);
+  EXPECT_NEAR((vehicle.truth().velocity - command.velocity).norm(), 0.0, 0.02);
+  EXPECT_NEAR(vehicle.truth().position.z(), 5.0, 0.3);
+}
+
+TEST(Vehicle, HoldsItsPlaceInGustsWithinTheirReach) {
+  VehicleModel model = in_still_air();
+  model.gust = 3.0;
+  Vehicle vehicle(model, {0.0, 0.0, 5.0}, 0.0, 7);
+  double squared = 0.0;
+  constexpr int kSteps = 12000;
+  for (int i = 0; i < kSteps; ++i) {
+    vehicle.step({}, kStep_s);
+    squared += vehicle.truth().velocity.head<2>().squaredNorm();
+  }
+  const double speed = std::sqrt(squared / kSteps);
+  EXPECT_GT(speed, 0.02);  // they are felt
+  EXPECT_LT(speed, 0.3);   // and mostly held
+}
+
+TEST(Vehicle, IsTheSameForTheSameSeed) {
+  Vehicle one(VehicleModel{}, {0.0, 0.0, 5.0}, 0.0, 3);
+  Vehicle same(VehicleModel{}, {0.0, 0.0, 5.0}, 0.0, 3);
+  Vehicle other(VehicleModel{}, {0.0, 0.0, 5.0}, 0.0, 4);
+  for (int i = 0; i < 200; ++i) {
+    for (Vehicle* vehicle : {&one, &same, &other}) vehicle->step({}, kStep_s);
+  }
+  EXPECT_EQ(one.truth().position, same.truth().position);
+  EXPECT_NE(one.truth().position, other.truth().position);
+}
+
+TEST(Platform, DrivesAtItsSpeedAlongItsHeading) {
+  for (const Course course : {Course::kStraight, Course::kCircle, Course::kFigureOfEight}) {
+    Platform platform(course, 4.2, 0.3);
+    double way = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      const Vector2d before = platform.position();
+      platform.step(kStep_s);
+      const Vector2d step = platform.position() - before;
+      way += step.norm();
+      const Vector2d ahead(std::cos(platform.heading_rad()), std::sin(platform.heading_rad()));
+      ASSERT_GT(step.normalized().dot(ahead), 0.999) << name_of(course);
+    }
+    EXPECT_NEAR(way, 4.2 * 4000 * kStep_s, 0.05) << name_of(course);
+  }
+  const Platform still(Course::kCircle, 0.0, 0.0);
+  EXPECT_EQ(still.velocity().norm(), 0.0);
+}
+
+TEST(CameraView, PutsThePadWhereTheVehicleSeesIt) {
+  const Rig rig;
+  Motion vehicle;
+  vehicle.position = {-1.0, 0.5, 6.0};  // the pad is ahead of it, and to its right
+  const Platform platform(Course::kStraight, 0.0, 0.0);
+  const auto seen = ellipse::project_circle(view_of(rig, vehicle, platform).image_from_pad, 1.0);
+  ASSERT_TRUE(seen);
+  EXPECT_LT(seen->cy, rig.camera.cy);
+  EXPECT_GT(seen->cx, rig.camera.cx);
+  const double height = vehicle.position.z() + rig.place.z();
+  EXPECT_NEAR(seen->cx, rig.camera.cx + rig.camera.fx * 0.5 / height, 1e-6);
+  EXPECT_NEAR(seen->semi_major, rig.camera.fx * rig.pad_radius / height, 1e-6);
+}
+
+TEST(CameraView, FindsTheWayBackToThePad) {
+  Rig rig;
+  rig.pitch_rad = 0.3;
+  Motion vehicle;
+  vehicle.position = {2.0, -1.0, 6.0};
+  vehicle.world_from_body =
+      Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitX());
+  const Platform platform(Course::kStraight, 0.0, 0.0);
+  const Eigen::Matrix3d view = view_of(rig, vehicle, platform).image_from_pad;
+  // The third column is the pad's centre, in radii, behind the camera's matrix.
+  const Vector3d in_camera = rig.pad_radius * (rig.camera.matrix().inverse() * view.col(2));
+  const Vector3d pad = vehicle.position + pad_from_body(rig, vehicle, in_camera);
+  EXPECT_NEAR(pad.norm(), 0.0, 1e-9);
+  EXPECT_NEAR((gravity_of(rig, vehicle) -
+               (vehicle.world_from_body.toRotationMatrix() * rig.body_from_camera()).transpose() *
+                   -Vector3d::UnitZ())
+                  .norm(),
+              0.0,
+              1e-12);
+}
+
+TEST(TargetFilter, LearnsAVelocityAndRefusesWhatCannotBe) {
+  TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
+  for (int i = 0; i <= 60; ++i) {
+    const double time_s = i / 30.0;
+    EXPECT_TRUE(filter.see(time_s, {3.0 * time_s, 0.0, 0.0}, 0.02)) << i;
+  }
+  EXPECT_NEAR(filter.at(2.5).velocity.x(), 3.0, 0.1);
+  EXPECT_NEAR(filter.at(2.5).position.x(), 7.5, 0.1);
+  EXPECT_FALSE(filter.see(2.1, {3.0 * 2.1, 4.0, 0.0}, 0.02));
+  EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
+}
+
+TEST(TargetFilter, BelievesTheRadioWhereWhatWasSeenIsFarFromIt) {
+  TargetFilter filter(0.0, {20.0, 0.0, 0.0}, Vector2d::Zero(), 1.0, 0.5);
+  filter.hear(1.0, {0.0, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
+  EXPECT_NEAR(filter.at(1.0).position.x(), 0.0, 1e-9);
+  EXPECT_NEAR(filter.at(1.0).velocity.x(), 1.0, 1e-9);
+  // Where it agrees roughly, what was seen is better.
+  filter.hear(2.0, {2.5, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
+  EXPECT_NEAR(filter.at(2.0).position.x(), 1.0, 1e-9);
+}
+
+// A vehicle that follows its commands at once, over a pad that stands still.
+class Hover {
+ public:
+  explicit Hover(const Vector3d& position) {
+    own_.position = position;
+    controller_.emplace(ControllerSettings{},
+                        TargetFilter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1));
+  }
+
+  void fly_for(double duration_s, bool is_seen) {
+    const int frames = static_cast<int>(std::lround(30.0 * duration_s));
+    for (int i = 0; i < frames; ++i, ++frame_) {
+      Observation seen;
+      seen.time_s = frame_ / 30.0;
+      seen.own = own_;
+      if (is_seen) seen.pad = -own_.position;
+      last_ = controller_->update(seen.time_s, own_, seen);
+      own_.velocity = last_.velocity;
+      own_.position += last_.velocity / 30.0;
+    }
+  }
+
+  [[nodiscard]] Phase phase() const { return controller_->phase(); }
+  [[nodiscard]] int climbs() const { return controller_->climbs(); }
+  [[nodiscard]] const Vector3d& position() const { return own_.position; }
+  [[nodiscard]] const Command& last() const { return last_; }
+
+ private:
+  Motion own_;
+  std::optional<Controller> controller_;
+  Command last_;
+  int frame_ = 0;
+};
+
+TEST(Controller, GoesThroughItsPhasesAndDown) {
+  Hover hover({4.0, -3.0, 8.0});
+  EXPECT_EQ(hover.phase(), Phase::kSearch);
+  hover.fly_for(0.5, true);
+  EXPECT_EQ(hover.phase(), Phase::kApproach);
+  EXPECT_LT(hover.last().velocity.x(), 0.0);  // towards it
+  EXPECT_GT(hover.last().velocity.y(), 0.0);
+  for (int i = 0; i < 60 && hover.position().z() > 0.0; ++i) hover.fly_for(0.5, true);
+  EXPECT_EQ(hover.phase(), Phase::kTouchDown);
+  EXPECT_LT(hover.position().head<2>().norm(), 0.05);
+  EXPECT_EQ(hover.climbs(), 0);
+}
+
+TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {
+  Hover hover({0.2, 0.0, 8.0});
+  for (int i = 0; i < 100 && hover.position().z() > 3.0; ++i) hover.fly_for(0.1, true);
+  ASSERT_EQ(hover.phase(), Phase::kDescend);
+  hover.fly_for(0.4, false);
+  EXPECT_EQ(hover.phase(), Phase::kDescend);  // a glance away is no harm
+  hover.fly_for(0.4, false);
+  EXPECT_EQ(hover.phase(), Phase::kClimb);
+  EXPECT_GT(hover.last().velocity.z(), 1.0);
+  EXPECT_EQ(hover.climbs(), 1);
+  hover.fly_for(5.0, false);
+  EXPECT_EQ(hover.phase(), Phase::kSearch);
+  EXPECT_GT(hover.position().z(), 6.0);
+}
+
+Flight short_flight() {
+  Flight flight;
+  flight.seed = 3;
+  flight.speed = 1.5;
+  flight.rig.camera = flight.rig.camera.resized(320, 180);
+  return flight;
+}
+
+TEST(Landing, EndsOnTheMovingPadAndAgainTheSame) {
+  const Outcome outcome = landing::fly(short_flight());
+  ASSERT_TRUE(outcome.has_touched_down);
+  EXPECT_LE(outcome.off.norm(), landing::kMostOff);
+  EXPECT_LE(outcome.drift, 1.0);
+  EXPECT_LE(outcome.sink, 1.2);
+  EXPECT_GT(outcome.frames[static_cast<std::size_t>(Phase::kDescend)], 30);
+
+  const Outcome again = landing::fly(short_flight());
+  EXPECT_EQ(again.off, outcome.off);  // to the last bit
+  EXPECT_EQ(again.time_s, outcome.time_s);
+  EXPECT_EQ(again.moments.size(), outcome.moments.size());
+}
+
+TEST(Landing, BreaksOffWhereThePadIsHiddenAndTriesAgain) {
+  Flight flight = short_flight();
+  flight.hidden_below = 2.5;
+  flight.hidden_s = 3.0;
+  const Outcome outcome = landing::fly(flight);
+  EXPECT_GE(outcome.climbs, 1);
+  ASSERT_TRUE(outcome.has_touched_down);
+  EXPECT_LE(outcome.off.norm(), landing::kMostOff);
+  // It was up again before it came down.
+  double highest = 0.0;
+  bool was_low = false;
+  for (const landing::Moment& moment : outcome.moments) {
+    was_low = was_low || moment.vehicle.position.z() < 2.5;
+    if (was_low) highest = std::max(highest, moment.vehicle.position.z());
+  }
+  EXPECT_GT(highest, 3.5);
+}
+
+TEST(Landing, SaysWhichMethodThereIsNot) {
+  Flight flight = short_flight();
+  flight.method = "arcs";
+  EXPECT_THROW((void)landing::fly(flight), std::invalid_argument);
+  flight.method = "arcs+magic";
+  EXPECT_THROW((void)landing::fly(flight), std::runtime_error);
+}
+
+TEST(Report, CountsLandingsByMethodAndSpeed) {
+  Flight flight;
+  Outcome right;
+  right.has_touched_down = true;
+  right.off = {0.1, 0.0};
+  Outcome wide = right;
+  wide.off = {0.4, 0.0};
+  const auto table = landing::outcome_table({{flight, right}, {flight, wide}, {flight, {}}});
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.rows[0][0], "arcs+edges, 4.2 m/s");
+  EXPECT_EQ(table.rows[0][1], "3");
+  EXPECT_EQ(table.rows[0][2], "1");
+  EXPECT_EQ(table.rows[0][3], "33.3");
+  EXPECT_EQ(table.rows[0].back(), "1");
+}
+
+}  // namespace
