@@ -16,6 +16,7 @@ constexpr double kLost_s = 1.0;          // unseen while nothing hurries
 constexpr double kInSight_s = 2.0;       // since it was seen: better known than radio tells
 constexpr double kSpiralGrowth = 0.5;    // of the search's circles [m/s]
 constexpr double kSpiralSpeed = 1.5;     // along them [m/s]
+constexpr double kSweepRate = 0.5;       // of its height [rad/s]
 constexpr double kWidestSpiral = 3.0;    // [m]
 constexpr double kTouchDownSpeed = 0.8;  // [m/s]
 constexpr double kMostDrift = 1.2;       // velocity beside the platform's that is safe low [m/s]
@@ -43,22 +44,6 @@ Command Controller::update(double now_s,
   if (seen) take_in(*seen);
   const Situation now = judge(now_s, own);
   decide(now);
-    fprintf(stderr,
-            "  C %.2f off %.2f %.2f pv %.2f %.2f pa %.2f %.2f own v %.2f %.2f cmd %.2f %.2f unseen "
-            "%.2f row %d refused %d\n",
-            now_s,
-            now.off.x(),
-            now.off.y(),
-            now.platform.velocity.x(),
-            now.platform.velocity.y(),
-            now.platform.acceleration.x(),
-            now.platform.acceleration.y(),
-            own.velocity.x(),
-            own.velocity.y(),
-            command(now).velocity.x(),
-            command(now).velocity.y(),
-            now.unseen_s,
-            seen_in_a_row_,
   return command(now);
 }
 
@@ -198,9 +183,9 @@ double Controller::climb_rate(const Situation& now) const {
   };
   switch (phase_) {
     case Phase::kSearch: {
-      const double since_s = now.now_s - phase_since_s_;
-      return towards(
-          std::min(settings_.search_height + 0.5 * since_s, settings_.most_search_height));
+      // From far more is in view, from near it is larger.
+      const double turn = kSweepRate * (now.now_s - phase_since_s_);
+      return towards(settings_.search_height + settings_.search_sweep * std::sin(turn));
     }
     case Phase::kApproach:
     case Phase::kAlign:

@@ -11,7 +11,7 @@ namespace landing {
 
 /// What the vehicle is about.
 enum class Phase {
-  kSearch,     ///< Climbs, and circles ever wider where the platform should be.
+  kSearch,     ///< Circles, higher and lower, where the platform should be.
   kApproach,   ///< Flies to above it.
   kAlign,      ///< Takes on its velocity and its heading.
   kFollow,     ///< Stays above it until that is steady.
@@ -24,13 +24,13 @@ inline constexpr std::array kPhaseNames = {
 
 /// What it flies by. A value.
 struct ControllerSettings {
-  double gain = 1.2;             ///< Velocity per distance [1/s].
-  double most_correction = 5.0;  ///< Velocity beside the platform's own [m/s].
-  double braking = 2.0;          ///< Deceleration that it counts on [m/s^2].
-  double lead_s = 0.35;          ///< Of the command: the vehicle's own lag.
-  double approach_height = 5.0;  ///< [m]
-  double search_height = 10.0;   ///< [m]
-  double most_search_height = 14.0;
+  double gain = 1.2;                  ///< Velocity per distance [1/s].
+  double most_correction = 5.0;       ///< Velocity beside the platform's own [m/s].
+  double braking = 2.0;               ///< Deceleration that it counts on [m/s^2].
+  double lead_s = 0.35;               ///< Of the command: the vehicle's own lag.
+  double approach_height = 5.0;       ///< [m]
+  double search_height = 8.5;         ///< In the middle [m], and
+  double search_sweep = 2.5;          ///< so far up and down [m].
   double touch_down_height = 0.55;    ///< Below it there is no waiting [m].
   double safe_height = 4.0;           ///< Where a climb ends [m].
   double radio_error = 1.8;           ///< Standard deviation of what the platform tells [m],

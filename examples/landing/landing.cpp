@@ -134,22 +134,6 @@ class Run {
       seen.pad = pad_from_body(flight_.rig, seen.own, *look.position);
       seen.error = look.error;
     }
-    Eigen::Vector3d rel;
-    rel << platform_.position(), 0.0;
-      Eigen::Vector3d e =
-      fprintf(stderr,
-              "%.2f %s rel %.2f %.2f %.2f err %.2f %.2f %.2f sd %.3f vis %.2f climbs %d v %.2f\n",
-              now_s,
-              kPhaseNames[(size_t)controller_.phase()],
-              rel.x(),
-              rel.y(),
-              rel.z(),
-              e.x(),
-              e.y(),
-              e.z(),
-              seen.error,
-              truth.visible_fraction,
-              controller_.climbs(),
     under_way_.push_back(seen);
 
     Moment moment{now_s,
