@@ -24,7 +24,7 @@ std::string line_of(const ellipse::Camera& camera, int rate) {
       "ellipseoverlay overlay=ellipse+centre ! mix.sink_0 "
       "appsrc name=map format=time block=true max-buffers=4 "
       "caps=video/x-raw,format=RGB,width=%d,height=%d,framerate=%d/1 ! videoconvert ! mix.sink_1 "
-      "compositor name=mix sink_1::xpos=%d ! videoconvert ! jpegenc quality=90 ! matroskamux ! "
+      "compositor name=mix sink_1::xpos=%d ! videoconvert ! jpegenc quality=75 ! matroskamux ! "
       "filesink name=file",
       camera.width,
       camera.height,
