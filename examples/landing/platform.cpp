@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kCircleRadius = 15.0;  // [m]
-constexpr double kEightReach = 20.0;    // from its middle to its ends [m]
+constexpr double kEightReach = 40.0;    // from its middle to its ends: bends of 11 m [m]
 
 }  // namespace
 
