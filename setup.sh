@@ -51,6 +51,11 @@ if [ "${1:-}" != "--without-tests" ] && ! command -v npm > /dev/null; then
   packages+=(nodejs npm)  # examples/mavlink
 fi
 
+# Not where Node came from elsewhere: its packages and Debian's exclude each other.
+if [ "${1:-}" != "--without-tests" ] && ! command -v npm > /dev/null; then
+  packages+=(nodejs npm)  # examples/mavlink
+fi
+
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   echo "setup.sh: this is no Debian system. Install what corresponds to:" >&2
   printf '  %s\n' "${packages[@]}" >&2
