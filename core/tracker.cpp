@@ -325,10 +325,13 @@ void Tracker::configure(const TrackerSettings& settings) {
     detector_->set_trace(trace_);
   }
   const bool is_other_camera = !has_same_camera(settings, settings_);
+  // A target may outgrow the limits; limits that are drawn anew leave it out.
+  const bool is_excluded = had_target_ && settings_.limits.admit_axes_of(last_ellipse_) &&
+                           !settings.limits.admit_axes_of(last_ellipse_);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;
   settings_ = settings;
   edge_tracker_.configure(settings.refine, settings.ring_ratio);
-  if (starts_over || is_other_camera) reset();
+  if (starts_over || is_other_camera || is_excluded) reset();
   while (scale_ > settings_.max_scale) scale_ /= 2;
 }
 

@@ -5,8 +5,8 @@
 namespace live {
 
 /// The group of a property of ellipsetrack, as the paper groups its parameters: "detection",
-/// "tracking", "scale", "ROI", "edges"; and "output" and "load", which it does not have. "other"
-/// for one that is not known here.
+/// "tracking", "scale", "ROI", "edges"; and "camera", "output" and "load", which it does not have.
+/// "other" for one that is not known here.
 [[nodiscard]] std::string_view group_of(std::string_view property);
 
 /// The unit that a property's description names: "px", "ns", "grey levels per px", or nothing.

@@ -10,6 +10,7 @@ const kGroups = {
   tracking: ["Tracking", "how the target is followed"],
   scale: ["Scale", "how finely a frame is searched"],
   ROI: ["Region", "where a frame is searched"],
+  camera: ["Camera", "where the target is in space"],
   load: ["Load", "which frames are analysed"],
   output: ["Output", "what is told and drawn"],
   other: ["Other", ""],
