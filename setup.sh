@@ -16,7 +16,7 @@ packages=(
   # examples
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
   python3-gi gir1.2-gstreamer-1.0
-  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP
+  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP; and the cook-book's
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
@@ -37,23 +37,13 @@ if [ "${1:-}" != "--without-tests" ]; then
     valgrind gcovr clang
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
-    libgstrtspserver-1.0-dev  # the camera of docs/cookbook.md
     python3-yaml  # reads what 06_ros_yaml.py writes
     opencv-doc  # pictures: 96 MB to download, 281 MB on disk
     chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
   )
-  # npm gets playwright-core for it. A nodejs from elsewhere brings its own.
+  # For examples/mavlink and the page's tests. Where Node came from elsewhere it has its own npm, and
+  # excludes Debian's.
   command -v npm > /dev/null || packages+=(nodejs npm)
-fi
-
-# Not where Node came from elsewhere: its packages and Debian's exclude each other.
-if [ "${1:-}" != "--without-tests" ] && ! command -v npm > /dev/null; then
-  packages+=(nodejs npm)  # examples/mavlink
-fi
-
-# Not where Node came from elsewhere: its packages and Debian's exclude each other.
-if [ "${1:-}" != "--without-tests" ] && ! command -v npm > /dev/null; then
-  packages+=(nodejs npm)  # examples/mavlink
 fi
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
