@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT */
+/* The metadata outside of buffers: as structures and as JSON. */
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "gst/ellipse/gstellipsemeta.h"
+#include "gst/ellipse/gstellipsesearchmeta.h"
+
+static void set_numbers(GstStructure* structure,
+                        const gchar* name,
+                        const gdouble* numbers,
+                        guint count) {
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, GST_TYPE_ARRAY);
+  for (guint i = 0; i < count; ++i) {
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, G_TYPE_DOUBLE);
+    g_value_set_double(&number, numbers[i]);
+    gst_value_array_append_and_take_value(&list, &number);
+  }
+  gst_structure_take_value(structure, name, &list);
+}
+
+static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
+  // clang-format off
+  gst_structure_set(structure,
+                    "bearing_x", G_TYPE_DOUBLE, meta->bearing_x,
+                    "bearing_y", G_TYPE_DOUBLE, meta->bearing_y,
+                    "bearing_z", G_TYPE_DOUBLE, meta->bearing_z,
+                    "angle_x", G_TYPE_DOUBLE, meta->angle_x,
+                    "angle_y", G_TYPE_DOUBLE, meta->angle_y,
+                    "centre_x", G_TYPE_DOUBLE, meta->centre_x,
+                    "centre_y", G_TYPE_DOUBLE, meta->centre_y,
+                    "normal_x", G_TYPE_DOUBLE, meta->normal_x,
+                    "normal_y", G_TYPE_DOUBLE, meta->normal_y,
+                    "normal_z", G_TYPE_DOUBLE, meta->normal_z,
+                    "other_normal_x", G_TYPE_DOUBLE, meta->other_normal_x,
+                    "other_normal_y", G_TYPE_DOUBLE, meta->other_normal_y,
+                    "other_normal_z", G_TYPE_DOUBLE, meta->other_normal_z,
+                    "certainty", G_TYPE_DOUBLE, meta->certainty,
+                    nullptr);
+  // clang-format on
+}
+
+static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
+  // clang-format off
+  gst_structure_set(structure,
+                    "position_x", G_TYPE_DOUBLE, meta->position_x,
+                    "position_y", G_TYPE_DOUBLE, meta->position_y,
+                    "position_z", G_TYPE_DOUBLE, meta->position_z,
+                    "other_position_x", G_TYPE_DOUBLE, meta->other_position_x,
+                    "other_position_y", G_TYPE_DOUBLE, meta->other_position_y,
+                    "other_position_z", G_TYPE_DOUBLE, meta->other_position_z,
+                    nullptr);
+  // clang-format on
+  set_numbers(structure,
+              "position_covariance",
+              meta->position_covariance,
+              G_N_ELEMENTS(meta->position_covariance));
+}
+
+/**
+ * gst_ellipse_meta_to_structure:
+ * @meta: an ellipse
+ *
+ * All fields by their names in a structure named "ellipse"; role and state as their nicks, the
+ * numbers of the covariance and the outline as arrays, and of pose, position and outline what is
+ * known. What is to outlive the buffer is kept this way.
+ *
+ * Returns: (transfer full): a new structure, of the caller's
+ *
+ * Since: 0.1
+ */
+GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  // clang-format off
+  GstStructure* structure = gst_structure_new("ellipse",
+                           "role", G_TYPE_STRING, gst_ellipse_meta_get_role_name(meta),
+                           "state", G_TYPE_STRING, gst_ellipse_meta_get_state_name(meta),
+                           "id", G_TYPE_UINT64, meta->id,
+                           "cx", G_TYPE_DOUBLE, meta->cx,
+                           "cy", G_TYPE_DOUBLE, meta->cy,
+                           "semi_major", G_TYPE_DOUBLE, meta->semi_major,
+                           "semi_minor", G_TYPE_DOUBLE, meta->semi_minor,
+                           "angle_rad", G_TYPE_DOUBLE, meta->angle_rad,
+                           "contour_overlap", G_TYPE_DOUBLE, meta->contour_overlap,
+                           "ellipse_overlap", G_TYPE_DOUBLE, meta->ellipse_overlap,
+                           "visible_fraction", G_TYPE_DOUBLE, meta->visible_fraction,
+                           "scale", G_TYPE_UINT, meta->scale,
+                           "roi_x", G_TYPE_INT, meta->roi_x,
+                           "roi_y", G_TYPE_INT, meta->roi_y,
+                           "roi_width", G_TYPE_UINT, meta->roi_width,
+                           "roi_height", G_TYPE_UINT, meta->roi_height,
+                           "frame_width", G_TYPE_UINT, meta->frame_width,
+                           "frame_height", G_TYPE_UINT, meta->frame_height,
+                           "pts", GST_TYPE_CLOCK_TIME, meta->pts,
+                           "processing_time", GST_TYPE_CLOCK_TIME, meta->processing_time,
+                           nullptr);
+  // clang-format on
+  if (meta->has_pose) add_pose(structure, meta);
+  if (meta->has_position) add_position(structure, meta);
+  const guint points = std::min<guint>(meta->n_outline, G_N_ELEMENTS(meta->outline) / 2);
+  if (points > 0) {
+    gdouble numbers[G_N_ELEMENTS(meta->outline)];
+    std::copy_n(meta->outline, 2 * points, numbers);
+    set_numbers(structure, "outline", numbers, 2 * points);
+  }
+  return structure;
+}
+
+// With a point whatever the locale; JSON knows no NaN.
+static void append_number(GString* json, const gchar* name, const gchar* format, gdouble value) {
+  gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+  g_string_append_printf(
+      json,
+      ",\"%s\":%s",
+      name,
+      std::isfinite(value) ? g_ascii_formatd(text, sizeof text, format, value) : "null");
+}
+
+struct Member {
+  const gchar* name;
+  gdouble value;
+};
+
+// An object in the object, such as ,"bearing":{"x":0,"y":0,"z":1}.
+static void append_object(GString* json,
+                          const gchar* name,
+                          const gchar* format,
+                          std::initializer_list<Member> members) {
+  g_string_append_printf(json, ",\"%s\":{", name);
+  const gsize begin = json->len;
+  for (const Member& member : members) append_number(json, member.name, format, member.value);
+  g_string_erase(json, static_cast<gssize>(begin), 1);  // the comma before the first
+  g_string_append_c(json, '}');
+}
+
+static void append_vector(GString* json, const gchar* name, gdouble x, gdouble y, gdouble z) {
+  append_object(json, name, "%.6f", {{"x", x}, {"y", y}, {"z", z}});
+}
+
+static void append_pose(GString* json, const GstEllipseMeta* meta) {
+  append_vector(json, "bearing", meta->bearing_x, meta->bearing_y, meta->bearing_z);
+  append_number(json, "angle_x", "%.6f", meta->angle_x);
+  append_number(json, "angle_y", "%.6f", meta->angle_y);
+  append_object(json, "centre", "%.4f", {{"x", meta->centre_x}, {"y", meta->centre_y}});
+  append_vector(json, "normal", meta->normal_x, meta->normal_y, meta->normal_z);
+  append_vector(
+      json, "other_normal", meta->other_normal_x, meta->other_normal_y, meta->other_normal_z);
+  append_number(json, "certainty", "%.4f", meta->certainty);
+}
+
+static void append_position(GString* json, const GstEllipseMeta* meta) {
+  append_vector(json, "position", meta->position_x, meta->position_y, meta->position_z);
+  append_vector(json,
+                "other_position",
+                meta->other_position_x,
+                meta->other_position_y,
+                meta->other_position_z);
+  gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+  const gchar* separator = ",\"position_covariance\":[";
+  for (const gdouble value : meta->position_covariance) {
+    g_string_append(json, separator);
+    g_string_append(
+        json, std::isfinite(value) ? g_ascii_formatd(text, sizeof text, "%.6e", value) : "null");
+    separator = ",";
+  }
+  g_string_append_c(json, ']');
+}
+
+/**
+ * gst_ellipse_meta_to_json:
+ * @meta: an ellipse
+ *
+ * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
+ * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians; and, where one
+ * is known, the region that was searched, roi, as x, y, width and height. With a camera also
+ * bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter
+ * position, other_position, position_covariance; metres. The truth has neither state nor overlaps
+ * nor scale; a number that is not finite is null.
+ *
+ * Returns: (transfer full): a new string, which `g_free()` frees
+ *
+ * Since: 0.1
+ */
+gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  GString* json = g_string_new(nullptr);
+  g_string_append_printf(json,
+                         "{\"role\":\"%s\",\"id\":%" G_GUINT64_FORMAT,
+                         gst_ellipse_meta_get_role_name(meta),
+                         meta->id);
+  const bool was_found = meta->role != GST_ELLIPSE_ROLE_TRUTH;
+  if (was_found) {
+    g_string_append_printf(json, ",\"state\":\"%s\"", gst_ellipse_meta_get_state_name(meta));
+  }
+  append_number(json, "cx", "%.4f", meta->cx);
+  append_number(json, "cy", "%.4f", meta->cy);
+  append_number(json, "semi_major", "%.4f", meta->semi_major);
+  append_number(json, "semi_minor", "%.4f", meta->semi_minor);
+  append_number(json, "angle_rad", "%.6f", meta->angle_rad);
+  if (was_found) {
+    append_number(json, "contour_overlap", "%.4f", meta->contour_overlap);
+    append_number(json, "ellipse_overlap", "%.4f", meta->ellipse_overlap);
+  }
+  append_number(json, "visible", "%.4f", meta->visible_fraction);
+  if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);
+  if (meta->roi_width > 0 && meta->roi_height > 0) {
+    g_string_append_printf(json,
+                           ",\"roi\":[%d,%d,%u,%u]",
+                           meta->roi_x,
+                           meta->roi_y,
+                           meta->roi_width,
+                           meta->roi_height);
+  }
+  if (meta->has_pose) append_pose(json, meta);
+  if (meta->has_position) append_position(json, meta);
+  g_string_append_c(json, '}');
+  return g_string_free(json, FALSE);
+}
+
+static void append_time(GString* json, const gchar* name, GstClockTime time) {
+  if (GST_CLOCK_TIME_IS_VALID(time)) {
+    g_string_append_printf(json, ",\"%s\":%" G_GUINT64_FORMAT, name, time);
+  } else {
+    g_string_append_printf(json, ",\"%s\":null", name);
+  }
+}
+
+/**
+ * gst_buffer_ellipses_to_json:
+ * @buffer: a buffer
+ * @frame: the number of the frame
+ * @width: width of the frame in px
+ * @height: height of the frame in px
+ *
+ * All that a frame says of ellipses as a JSON object on one line, without a newline: frame, pts_ns,
+ * width, height, processing_ns, and the array targets, also where nothing was found. It is what the
+ * element ellipsejson writes.
+ *
+ * Returns: (transfer full): a new string, which `g_free()` frees
+ *
+ * Since: 0.1
+ */
+gchar* gst_buffer_ellipses_to_json(GstBuffer* buffer, guint64 frame, guint width, guint height) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  GString* json = g_string_new(nullptr);
+  g_string_append_printf(json, "{\"frame\":%" G_GUINT64_FORMAT, frame);
+  append_time(json, "pts_ns", GST_BUFFER_PTS(buffer));
+  g_string_append_printf(json, ",\"width\":%u,\"height\":%u", width, height);
+  const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
+  append_time(
+      json, "processing_ns", search != nullptr ? search->processing_time : GST_CLOCK_TIME_NONE);
+  g_string_append(json, ",\"targets\":[");
+  gpointer state = nullptr;
+  const gchar* separator = "";
+  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
+    gchar* ellipse = gst_ellipse_meta_to_json(meta);
+    g_string_append_printf(json, "%s%s", separator, ellipse);
+    g_free(ellipse);
+    separator = ",";
+  }
+  g_string_append(json, "]}");
+  return g_string_free(json, FALSE);
+}
