@@ -101,7 +101,7 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
     const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
     detect_all(luma, thresholds, share * kLeastScore, 1);
   }
-  ring_corrector_.correct(luma, least_gradient_, polarities_, detections_);
+  ring_corrector_.correct(luma, least_gradient_, polarities_, lens_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
@@ -122,8 +122,8 @@ void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& t
   for (std::size_t i = 0; i < detections_.size(); ++i) {
     Detection detection = detections_[i];
     detection.ellipse = scaled(detection.ellipse, 2.0);
-    const auto refined =
-        refined_on_picture(luma, detection.ellipse, polarities_[i], least_gradient_);
+    const auto refined = refined_on_picture(
+        luma, detection.ellipse, polarities_[i], least_gradient_, kMostPlaces, lens_);
     if (refined) detection.ellipse = refined->ellipse;
     const Verdict verdict = thresholds.judge_axes_of(detection.ellipse);
     if (!verdict.is_accepted()) {
@@ -147,6 +147,7 @@ void ArcDetector::detect_all(const ImageView& luma,
   if (luma.empty()) return;
   const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
   map_.compute(luma, thresholds.edge_high, floor);
+  map_.set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
   least_gradient_ = kFullSizeGradient * map_.threshold();
   if (trace_ != nullptr) trace_edges(luma, scale);
   chains_.trace(map_);

@@ -54,13 +54,22 @@ Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
   return Eigen::Vector2i(x, y).cast<double>();
 }
 
-// The crest's place at a pixel, finer than pixels.
+// The crest's place at a pixel, finer than pixels, in the ideal plane.
 Eigen::Vector2d crest_at(const GradientMap& map, std::int32_t pixel) {
   const Gradient* here = map.gradients() + pixel;
   const bool is_flat = std::abs(here->x) > std::abs(here->y);
   Eigen::Vector2d point = place_of(pixel, map.stride());
   point[is_flat ? 0 : 1] += crest_vertex(here, is_flat ? 1 : map.stride()).offset_px;
-  return point;
+  return map.lens().near_ideal(point);
+}
+
+// A normal in the picture, taken to a place of the ideal plane.
+Eigen::Vector2d ideal_normal(const LensView& lens,
+                             const Eigen::Vector2d& ideal_px,
+                             const Eigen::Vector2d& in_picture) {
+  if (!lens.is_bent()) return in_picture;
+  const auto place = lens.picture_from_ideal(ideal_px);
+  return place ? (place->slope.transpose() * in_picture).normalized() : in_picture;
 }
 
 }  // namespace
@@ -116,7 +125,8 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   // A guess needs no more points than these: it is refined on the edges later.
   const std::size_t step = (end - begin) / kEnoughPoints + 1;
   for (std::size_t i = begin + step / 2; i < end; i += step) {
-    moments.add(crest_at(map, pixels_[i]), static_cast<double>(step));
+    const Eigen::Vector2d point = crest_at(map, pixels_[i]);
+    if (point.allFinite()) moments.add(point, static_cast<double>(step));
   }
   return moments;
 }
@@ -264,9 +274,9 @@ Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
   const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};
   for (std::size_t k = 0; k < 3; ++k) {
     const double angle = mean_angle(at[k], arc.begin, arc.end);
-    arc.points[k] = place_of(pixels_[at[k]], map.stride());
-    arc.inwards[k] =
-        -static_cast<int>(arc.polarity) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    arc.points[k] = map.lens().near_ideal(place_of(pixels_[at[k]], map.stride()));
+    arc.inwards[k] = -static_cast<int>(arc.polarity) *
+                     ideal_normal(map.lens(), arc.points[k], {std::cos(angle), std::sin(angle)});
   }
   arc.moments = moments_of(map, arc.begin, arc.end);
   return arc;

@@ -26,6 +26,7 @@ struct Arc {
   std::size_t end = 0;
   double turn_rad = 0.0;  ///< By which it turns, above 0.
   Polarity polarity = Polarity::kDarkInside;
+  // In the ideal plane:
   std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, in its middle, near its end [px].
   std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals there, towards its inside.
   Moments moments{Eigen::Vector2d::Zero()};

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include "core/ellipse_fit.hpp"
+#include "core/lens_model.hpp"
 
 namespace ellipse {
 namespace {
@@ -20,67 +19,33 @@ using Eigen::Vector2d;
 constexpr double kWidestRad = 1.53;   // 87.7 degrees: near 90 the ideal plane is endless
 constexpr double kLeastSlope = 0.05;  // of the radial map, where it is still one to one
 constexpr int kRadialSteps = 512;     // by which that is told
+constexpr int kTableSteps = 3;
+constexpr double kTableMargin = 1.05;  // for the tangential part
 constexpr int kMostIterations = 20;
 constexpr double kNearPx = 1e-5;  // from where one step more is exact
 
-// A radial factor and its derivative.
-struct Factor {
-  double value = 1.0;
-  double slope = 0.0;
-};
-
-// xd = x (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6) [Brown1971], in the
-// rational form of OpenCV. By r^2.
-Factor rational_factor(const std::array<double, 8>& d, double r2) {
-  const double above = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  const double below = 1.0 + r2 * (d[5] + r2 * (d[6] + r2 * d[7]));
-  const double above_slope = d[0] + r2 * (2.0 * d[1] + 3.0 * r2 * d[4]);
-  const double below_slope = d[5] + r2 * (2.0 * d[6] + 3.0 * r2 * d[7]);
-  const double value = above / below;
-  return {value, (above_slope - value * below_slope) / below};
-}
-
-// theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8) [KannalaBrandt2006] (6).
-Factor fisheye_angle(const std::array<double, 8>& d, double theta) {
-  const double t2 = theta * theta;
-  return {theta * (1.0 + t2 * (d[0] + t2 * (d[1] + t2 * (d[2] + t2 * d[3])))),
-          1.0 + t2 * (3.0 * d[0] + t2 * (5.0 * d[1] + t2 * (7.0 * d[2] + t2 * 9.0 * d[3])))};
-}
-
 // At focal length 1.
 LensPoint distorted(const Camera& camera, const Vector2d& p) {
-  const auto& d = camera.distortion;
-  const double r2 = p.squaredNorm();
-  if (camera.lens == LensModel::kFisheye) {
-    const double r = std::sqrt(r2);
-    if (r < 1e-9) return {p, Matrix2d::Identity()};
-    const Factor angle = fisheye_angle(d, std::atan(r));
-    const double factor = angle.value / r;
-    const double slope = (angle.slope / (1.0 + r2) - factor) / r2;
-    return {factor * p, factor * Matrix2d::Identity() + slope * p * p.transpose()};
-  }
-  const Factor factor = rational_factor(d, r2);
-  const double p1 = d[2];
-  const double p2 = d[3];
-  const double x = p.x();
-  const double y = p.y();
-  LensPoint result;
-  result.picture_px = factor.value * p + Vector2d(2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
-                                                  p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y);
-  result.slope = factor.value * Matrix2d::Identity() + 2.0 * factor.slope * p * p.transpose();
-  const double crossed = 2.0 * (p1 * x + p2 * y);
-  result.slope +=
-      (Matrix2d() << 2.0 * p1 * y + 6.0 * p2 * x, crossed, crossed, 6.0 * p1 * y + 2.0 * p2 * x)
-          .finished();
-  return result;
+  const Distorted<double> at = camera.lens == LensModel::kFisheye
+                                   ? kannala_brandt(camera.distortion, p.x(), p.y())
+                                   : brown_conrady(camera.distortion, p.x(), p.y());
+  LensPoint point{{at.x, at.y}, {}};
+  point.slope << at.x_by_x, at.x_by_y, at.y_by_x, at.y_by_y;
+  return point;
+}
+
+Vector2d beside_radial(const Camera& camera, const Vector2d& p) {
+  if (camera.lens == LensModel::kFisheye) return {0.0, 0.0};
+  const Distorted<double> aside = tangential(camera.distortion, p.x(), p.y());
+  return {aside.x, aside.y};
 }
 
 // How fast the distorted radius grows with the angle to the axis.
 double radial_slope(const Camera& camera, double theta) {
-  if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).slope;
+  if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).derivative;
   const double r = std::tan(theta);
-  const Factor factor = rational_factor(camera.distortion, r * r);
-  return factor.value > 0.0 ? factor.value + 2.0 * r * r * factor.slope : 0.0;
+  const Slope<double> factor = rational_factor(camera.distortion, r * r);
+  return factor.value > 0.0 ? factor.value + 2.0 * r * r * factor.derivative : 0.0;
 }
 
 double radial_place(const Camera& camera, double theta) {
@@ -142,7 +107,11 @@ void Camera::validate() const {
   for (const double k : distortion) check(std::isfinite(k), "distortion is not finite");
 }
 
-Lens::Lens(const Camera& camera) : camera_(camera) {
+Lens::Lens(const Camera& camera)
+    : camera_(camera),
+      focal_(camera.fx, camera.fy),
+      inverse_focal_(focal_.cwiseInverse()),
+      middle_(camera.cx, camera.cy) {
   double widest = 0.0;
   for (int i = 1; i <= kRadialSteps; ++i) {
     const double theta = kWidestRad * i / kRadialSteps;
@@ -151,23 +120,131 @@ Lens::Lens(const Camera& camera) : camera_(camera) {
   }
   largest_squared_ = std::pow(std::tan(widest), 2);
   largest_picture_ = radial_place(camera, widest);
+  if (camera.is_distorted()) make_table();
+}
+
+// As far as the picture's corners. The radial part is undone by Newton's method, from the angle
+// next to it.
+void Lens::make_table() {
+  const Vector2d farthest(std::max(camera_.cx + 1.0, camera_.width - camera_.cx),
+                          std::max(camera_.cy + 1.0, camera_.height - camera_.cy));
+  const double end =
+      std::min(largest_picture_, kTableMargin * farthest.cwiseProduct(inverse_focal_).norm());
+  table_scale_ = kTableSize / (end * end);
+  table_[0] = 1.0F;
+  double theta = 0.0;
+  for (std::size_t i = 1; i <= kTableSize; ++i) {
+    const double wanted = std::sqrt(static_cast<double>(i) / table_scale_);
+    for (int step = 0; step < kTableSteps; ++step) {
+      const double t = std::tan(theta);
+      const double per_angle = camera_.lens == LensModel::kFisheye ? 1.0 : 1.0 + t * t;
+      theta += (wanted - radial_place(camera_, theta)) / (per_angle * radial_slope(camera_, theta));
+    }
+    table_[i] = static_cast<float>(std::tan(theta) / wanted);
+  }
+  table_.back() = table_[kTableSize];
+}
+
+// Without the tangential part.
+Vector2d Lens::from_table(const Vector2d& distorted) const {
+  const double at = distorted.squaredNorm() * table_scale_;
+  if (!(at <= kTableSize)) return Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const auto k = static_cast<std::size_t>(at);
+  const auto beyond = static_cast<float>(at - static_cast<double>(k));
+  return static_cast<double>(table_[k] + beyond * (table_[k + 1] - table_[k])) * distorted;
+}
+
+Vector2d Lens::near_ideal(const Vector2d& picture_px) const {
+  if (!(table_scale_ > 0.0)) return picture_px;
+  const Vector2d wanted = ray(picture_px);
+  const Vector2d first = from_table(wanted);
+  const Vector2d aside = beside_radial(camera_, first);
+  return pixel(aside.isZero(0.0) ? first : from_table(wanted - aside));
 }
 
 std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) const {
-  const Vector2d focal(camera_.fx, camera_.fy);
-  const Vector2d middle(camera_.cx, camera_.cy);
-  const Vector2d p = (ideal_px - middle).cwiseQuotient(focal);
+  const Vector2d p = ray(ideal_px);
   if (!(p.squaredNorm() <= largest_squared_)) return std::nullopt;
   LensPoint point = distorted(camera_, p);
-  point.picture_px = point.picture_px.cwiseProduct(focal) + middle;
-  point.slope = focal.asDiagonal() * point.slope * focal.cwiseInverse().asDiagonal();
+  point.picture_px = pixel(point.picture_px);
+  point.slope(0, 1) *= focal_.x() * inverse_focal_.y();
+  point.slope(1, 0) *= focal_.y() * inverse_focal_.x();
   return point;
 }
 
+namespace {
+
+// A linear way to a place at focal length 1, or back.
+struct Axis {
+  float scale;
+  float offset;
+};
+
+struct Bending {
+  std::array<float, 8> distortion;
+  float largest_squared;
+  float focal_ratio;  // fx / fy
+  Axis to_x, to_y, from_x, from_y;
+};
+
+template <LensModel kModel>
+ELLIPSE_INLINE void bend_all(const Bending& by, const CurvePlaces& places) {
+  for (std::size_t k = 0; k < places.count; ++k) {
+    const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
+    const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
+    const float nx = places.nx[k];
+    const float ny = places.ny[k];
+    const Distorted<float> at = kModel == LensModel::kFisheye ? kannala_brandt(by.distortion, x, y)
+                                                              : brown_conrady(by.distortion, x, y);
+    const float x_by_y = at.x_by_y * by.focal_ratio;
+    const float y_by_x = at.y_by_x / by.focal_ratio;
+    // A curve's normal goes with the inverse transposed.
+    const float across_x = at.y_by_y * nx - y_by_x * ny;
+    const float across_y = at.x_by_x * ny - x_by_y * nx;
+    const float along = std::sqrt(across_x * across_x + across_y * across_y);
+    const bool is_shown = x * x + y * y <= by.largest_squared;
+    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurvePlaces::kNowhere;
+    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurvePlaces::kNowhere;
+    places.nx[k] = across_x / along;
+    places.ny[k] = across_y / along;
+    places.px_per_ideal_along[k] = along;
+    places.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
+  }
+}
+
+void bend_baseline(LensModel model, const Bending& by, const CurvePlaces& places) {
+  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
+                               : bend_all<LensModel::kBrownConrady>(by, places);
+}
+
+ELLIPSE_AVX2 void bend_avx2(LensModel model, const Bending& by, const CurvePlaces& places) {
+  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
+                               : bend_all<LensModel::kBrownConrady>(by, places);
+}
+
+}  // namespace
+
+void Lens::bend(const Vector2d& origin_px, double scale, const CurvePlaces& places) const {
+  Bending by{};
+  for (std::size_t i = 0; i < by.distortion.size(); ++i) {
+    by.distortion[i] = static_cast<float>(camera_.distortion[i]);
+  }
+  by.largest_squared = static_cast<float>(largest_squared_);
+  by.focal_ratio = static_cast<float>(camera_.fx / camera_.fy);
+  const auto axis = [](double factor, double offset) {
+    return Axis{static_cast<float>(factor), static_cast<float>(offset)};
+  };
+  const Vector2d first = ray(origin_px);
+  const Vector2d back = (middle_ - origin_px) / scale;
+  by.to_x = axis(scale * inverse_focal_.x(), first.x());
+  by.to_y = axis(scale * inverse_focal_.y(), first.y());
+  by.from_x = axis(focal_.x() / scale, back.x());
+  by.from_y = axis(focal_.y() / scale, back.y());
+  (best_simd() == Simd::kAvx2 ? bend_avx2 : bend_baseline)(camera_.lens, by, places);
+}
+
 std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) const {
-  const Vector2d focal(camera_.fx, camera_.fy);
-  const Vector2d middle(camera_.cx, camera_.cy);
-  const Vector2d wanted = (picture_px - middle).cwiseQuotient(focal);
+  const Vector2d wanted = ray(picture_px);
   const double radius = wanted.norm();
   if (!(radius <= 1.1 * largest_picture_)) return std::nullopt;
   // A start that is right at small angles, and for an equidistant lens at all.
@@ -181,33 +258,9 @@ std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) con
     const LensPoint here = distorted(camera_, p);
     const Vector2d rest = wanted - here.picture_px;
     p += here.slope.inverse() * rest;
-    if (rest.cwiseProduct(focal).squaredNorm() < kNearPx * kNearPx) {
-      return p.cwiseProduct(focal) + middle;
-    }
+    if (rest.cwiseProduct(focal_).squaredNorm() < kNearPx * kNearPx) return pixel(p);
   }
   return std::nullopt;
-}
-
-void bent_outline(const Lens& lens, const Ellipse& ideal, std::span<Vector2d> points_px) {
-  const double step = 2.0 * std::numbers::pi / static_cast<double>(points_px.size());
-  for (std::size_t i = 0; i < points_px.size(); ++i) {
-    const auto point = lens.picture_from_ideal(ideal.point_at(step * static_cast<double>(i)));
-    points_px[i] =
-        point ? point->picture_px : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  }
-}
-
-std::optional<Ellipse> unbent(const Lens& lens, const Ellipse& in_picture) {
-  constexpr int kPoints = 24;
-  std::optional<Moments> moments;
-  for (int i = 0; i < kPoints; ++i) {
-    const double t = 2.0 * std::numbers::pi * i / kPoints;
-    const auto point = lens.ideal_from_picture(in_picture.point_at(t));
-    if (!point) continue;
-    if (!moments) moments.emplace(*point);
-    moments->add(*point);
-  }
-  return moments ? fit_ellipse(*moments) : std::nullopt;
 }
 
 }  // namespace ellipse

@@ -55,13 +55,10 @@ Template circle_template(double radius_cells, bool is_bright_outside) {
 
 class Patch {
  public:
-  Patch(const ImageView& luma, const Eigen::Matrix3d& view, double contrast) {
-    const Eigen::Vector2d middle = view.col(2).head<2>() / view(2, 2);
-    const Eigen::Matrix2d slope =
-        (view.topLeftCorner<2, 2>() - middle * view.bottomLeftCorner<1, 2>()) / view(2, 2);
-    const Eigen::Vector2d right = kCell * slope.col(0);
-    const Eigen::Vector2d down = kCell * slope.col(1);
-    const Eigen::Vector2d first = middle - 0.5 * (kCells - 1) * (right + down);
+  Patch(const ImageView& luma, const PadPlace& middle, double contrast) {
+    const Eigen::Vector2d right = kCell * middle.slope.col(0);
+    const Eigen::Vector2d down = kCell * middle.slope.col(1);
+    const Eigen::Vector2d first = middle.point - 0.5 * (kCells - 1) * (right + down);
     std::array<float, std::size_t(kCells) * kCells> levels;
     for (int j = 0; j < kCells; ++j) {
       for (int i = 0; i < kCells; ++i) {
@@ -122,8 +119,10 @@ class Patch {
 
 std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
                                              const PadModel& model,
-                                             const Eigen::Matrix3d& image_from_pad) {
-  const Patch patch(luma, image_from_pad, model.circles.front().contrast);
+                                             const PadView& view) {
+  const auto middle = view.at({0.0, 0.0});
+  if (!middle) return std::nullopt;
+  const Patch patch(luma, *middle, model.circles.front().contrast);
   const bool has_ring =
       model.circles.size() > 1 && (1.0 - model.circles[1].radius) * kRadius >= 1.5;
   double best = kLeastScore;
@@ -148,7 +147,7 @@ std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
         change.topLeftCorner<2, 2>() *= size;
         change(0, 2) = kCell * (dx + 0.5);
         change(1, 2) = kCell * (dy + 0.5);
-        found = image_from_pad * change;
+        found = view.ideal_from_pad * change;
       }
     }
   }

@@ -5,17 +5,18 @@
 
 #include "core/image_view.hpp"
 #include "core/pad_model.hpp"
+#include "core/pad_view.hpp"
 
 namespace ellipse {
 
 /// Looks for a pad's circles in a coarse picture of what surrounds its expected place: 64 x 64
 /// cells in which the pad is round, moved over all shifts and three sizes.
 ///
-/// @param image_from_pad  Where it is expected.
-/// @return The view in which its circles agree best; nullopt where they agree nowhere.
-/// Allocates nothing; the time depends on no size.
+/// @param view  Where it is expected.
+/// @return The view of the ideal plane in which its circles agree best; nullopt where they agree
+/// nowhere. Allocates nothing; the time depends on no size.
 [[nodiscard]] std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
                                                            const PadModel& model,
-                                                           const Eigen::Matrix3d& image_from_pad);
+                                                           const PadView& view);
 
 }  // namespace ellipse

@@ -290,7 +290,7 @@ void ContourDetector::try_contour(std::span<const cv::Point> contour,
     const TracedPiece piece = traced(contour, trace_->pass());
     (trace_->pass().*stage).push_back(piece);
     found.candidate = trace_->add(
-        {&piece, 1}, has_ellipse ? std::optional(found.ellipse) : std::nullopt, verdict);
+        {&piece, 1}, has_ellipse ? unbent(lens_, found.ellipse) : std::nullopt, verdict);
   }
   if (verdict.is_accepted()) add_detection(found);
 }
@@ -318,8 +318,19 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   drop_short_contours(thresholds.min_contour_size);
   for (const auto& contour : contours_) try_contour(contour, thresholds, &TracedPass::chains);
   if (detections_.empty()) try_parts(thresholds);
+  take_to_ideal_plane();
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
+}
+
+// The paper knows of no lens: an ellipse is one of the picture.
+void ContourDetector::take_to_ideal_plane() {
+  if (!lens_.is_bent()) return;
+  std::erase_if(detections_, [&](Detection& detection) {
+    const auto ideal = unbent(lens_, detection.ellipse);
+    if (ideal) detection.ellipse = *ideal;
+    return !ideal;
+  });
 }
 
 }  // namespace ellipse

@@ -73,7 +73,7 @@ void DetectionTrace::choose(int candidate) {
   candidates_[static_cast<std::size_t>(candidate)].is_target = true;
 }
 
-void DetectionTrace::place_in_frame(const Rect& region, int scale) {
+void DetectionTrace::place_in_frame(const Rect& region, int scale, const LensView& lens) {
   for (TracedPass& pass : passes_) {
     pass.region.x += region.x;
     pass.region.y += region.y;
@@ -82,7 +82,8 @@ void DetectionTrace::place_in_frame(const Rect& region, int scale) {
     pass.scale *= scale;
   }
   for (TracedCandidate& candidate : candidates_) {
-    if (candidate.ellipse) candidate.ellipse = to_frame(*candidate.ellipse, region, scale);
+    if (candidate.ellipse)
+      candidate.ellipse = bent(lens, to_frame(*candidate.ellipse, region, scale));
     candidate.verdict = magnified(candidate.verdict, scale);
   }
 }

@@ -85,7 +85,7 @@ class DetectionTrace {
   void choose(int candidate);
   /// All that is said in pixels of the picture becomes pixels of the frame that it is a region of,
   /// reduced by `scale`.
-  void place_in_frame(const Rect& region, int scale);
+  void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
 
  private:
   std::vector<TracedPass> passes_;

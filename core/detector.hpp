@@ -4,6 +4,7 @@
 
 #include "core/ellipse.hpp"
 #include "core/image_view.hpp"
+#include "core/lens_view.hpp"
 #include "core/thresholds.hpp"
 
 namespace ellipse {
@@ -12,7 +13,7 @@ class DetectionTrace;
 
 /// An ellipse that passed every test of a detector.
 struct Detection {
-  Ellipse ellipse;               ///< [px] of the picture that was searched.
+  Ellipse ellipse;               ///< [px] of the picture that was searched, in its ideal plane.
   double contour_overlap = 0.0;  ///< [Keipour2021] Eq. (1).
   double ellipse_overlap = 0.0;  ///< [Keipour2021] Eq. (2).
   double score = 0.0;            ///< Evidence for it; comparable within one detector only.
@@ -49,8 +50,12 @@ class Detector {
   /// refuses; nullptr = no more. The detections stay the same to the bit. Borrowed.
   void set_trace(DetectionTrace* trace) { trace_ = trace; }
 
+  /// Through what lens every picture from now on is seen; none by default.
+  void set_lens(const LensView& lens) { lens_ = lens; }
+
  protected:
   DetectionTrace* trace_ = nullptr;
+  LensView lens_;
 };
 
 }  // namespace ellipse

@@ -10,9 +10,12 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kCircleSteps = 128;       // by which the visible part of a circle is told
-constexpr int kFineSteps = 4;           // in one of these, where little of a circle is visible
-constexpr double kMarginPx = 3.0;       // from the border
+constexpr int kCircleSteps = 128;  // by which the visible part of a circle is told
+constexpr int kFineSteps = 4;      // in one of these, where little of a circle is visible
+constexpr double kMarginPx = 3.0;  // from the border
+constexpr double kFarPx = 1e6;
+constexpr int kBorderSteps = 8;         // of each side of the picture, by which a bent one is told
+constexpr int kHalvings = 6;            // by which the rest of a line is told
 constexpr double kLeastContrast = 4.0;  // [grey levels]
 constexpr double kContrastShare = 0.25;
 constexpr int kMostSteps = 24;  // to each side of the expected place
@@ -33,20 +36,52 @@ const Eigen::Vector2d& direction(std::size_t fine_step) {
   return kTurn[fine_step];
 }
 
-// The picture's border, seen on the pad: inside where a . (x, y, 1) >= 0 for all four.
+// A rectangle of the ideal plane, without what lies near its border.
+struct IdealRect {
+  double left;
+  double top;
+  double right;
+  double bottom;
+};
+
+// All of it is inside the picture. Where the lens bends the picture's border, it is the part that
+// no side cuts.
+IdealRect inner_rect(const LensView& lens, const ImageView& luma) {
+  const double right = luma.width - 1 - kMarginPx;
+  const double bottom = luma.height - 1 - kMarginPx;
+  IdealRect rect{kMarginPx, kMarginPx, right, bottom};
+  if (!lens.is_bent()) return rect;
+  rect = {-kFarPx, -kFarPx, kFarPx, kFarPx};
+  for (int i = 0; i <= kBorderSteps; ++i) {
+    const double at = static_cast<double>(i) / kBorderSteps;
+    const double x = std::lerp(kMarginPx, right, at);
+    const double y = std::lerp(kMarginPx, bottom, at);
+    // What the lens maps from nowhere is NaN, which no comparison takes.
+    rect.left = std::max(rect.left, lens.near_ideal({kMarginPx, y}).x());
+    rect.right = std::min(rect.right, lens.near_ideal({right, y}).x());
+    rect.top = std::max(rect.top, lens.near_ideal({x, kMarginPx}).y());
+    rect.bottom = std::min(rect.bottom, lens.near_ideal({x, bottom}).y());
+  }
+  return rect;
+}
+
+// The part of the pad inside the picture: where a . (x, y, 1) >= 0 for all four borders, and where
+// the lens lets more of it in.
 class VisiblePart {
  public:
-  VisiblePart(const Eigen::Matrix3d& view, const ImageView& luma) {
-    const double right = luma.width - 1 - kMarginPx;
-    const double bottom = luma.height - 1 - kMarginPx;
-    borders_.row(0) = view.row(0) - kMarginPx * view.row(2);
-    borders_.row(1) = right * view.row(2) - view.row(0);
-    borders_.row(2) = view.row(1) - kMarginPx * view.row(2);
-    borders_.row(3) = bottom * view.row(2) - view.row(1);
+  VisiblePart(const PadView& view, const ImageView& luma) : view_(view), luma_(luma) {
+    const IdealRect rect = inner_rect(view.lens, luma);
+    const Eigen::Matrix3d& h = view.ideal_from_pad;
+    borders_.row(0) = h.row(0) - rect.left * h.row(2);
+    borders_.row(1) = rect.right * h.row(2) - h.row(0);
+    borders_.row(2) = h.row(1) - rect.top * h.row(2);
+    borders_.row(3) = rect.bottom * h.row(2) - h.row(1);
   }
 
   [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
-    return ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
+    const bool is_within =
+        ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
+    return is_within || (view_.lens.is_bent() && is_let_in(place));
   }
 
   // The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
@@ -59,10 +94,33 @@ class VisiblePart {
       if (begin < 0.0) part.begin = std::max(part.begin, begin / (begin - end));
       if (end < 0.0) part.end = std::min(part.end, begin / (begin - end));
     }
-    return part;
+    if (!view_.lens.is_bent() || !(part.begin < part.end)) return part;
+    return {farthest(from, to, part.begin, 0.0), farthest(from, to, part.end, 1.0)};
   }
 
  private:
+  [[nodiscard]] bool is_let_in(const Eigen::Vector2d& place) const {
+    const auto seen = view_.at(place);
+    return seen && seen->point.x() >= kMarginPx && seen->point.y() >= kMarginPx &&
+           seen->point.x() <= luma_.width - 1 - kMarginPx &&
+           seen->point.y() <= luma_.height - 1 - kMarginPx;
+  }
+
+  // From a place of a line that is inside towards one of its ends, as far as the lens shows it.
+  [[nodiscard]] double farthest(const Eigen::Vector2d& from,
+                                const Eigen::Vector2d& to,
+                                double inside,
+                                double end) const {
+    if (inside == end || has(from + end * (to - from))) return end;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (inside + end);
+      (has(from + middle * (to - from)) ? inside : end) = middle;
+    }
+    return inside;
+  }
+
+  const PadView& view_;
+  const ImageView& luma_;
   Eigen::Matrix<double, 4, 3> borders_;
 };
 
@@ -105,28 +163,27 @@ void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample
 
 }  // namespace
 
-void EdgeSearch::add(const Eigen::Matrix3d& image_from_pad,
+void EdgeSearch::add(const Eigen::Matrix3d& view,
                      const Eigen::Vector2d& place,
                      const Eigen::Vector2d& to_bright,
                      double contrast,
                      int feature) {
-  const auto view = view_of(image_from_pad, place, to_bright);
-  if (!view || samples_.size() >= kMostSamples) return;
+  const auto edge = view_of(view, place, to_bright);
+  if (!edge || samples_.size() >= kMostSamples) return;
   EdgeSample& sample = samples_.emplace_back();
-  sample.view = *view;
+  sample.view = *edge;
   sample.contrast = static_cast<float>(contrast);
   sample.feature = feature;
 }
 
 void EdgeSearch::place(const PadModel& model,
-                       const Eigen::Matrix3d& image_from_pad,
+                       const PadView& view,
                        const ImageView& luma,
                        int samples) {
   samples_.clear();
   samples_.reserve(kMostSamples);
-  const VisiblePart visible(image_from_pad, luma);
-  const double px_per_radius =
-      std::sqrt(std::abs(image_from_pad.topLeftCorner<2, 2>().determinant()));
+  const VisiblePart visible(view, luma);
+  const double px_per_radius = view.radius_px();
   std::array<std::array<bool, kCircleSteps>, 8> seen{};
   double total_px = 0.0;
   const std::size_t circles = std::min(model.circles.size(), seen.size());
@@ -165,7 +222,11 @@ void EdgeSearch::place(const PadModel& model,
         const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
         if (k > 0 && !visible.has(circle.radius * outwards)) continue;
         since_px = std::min(since_px - spacing_px, spacing_px);
-        add(image_from_pad, circle.radius * outwards, sign * outwards, circle.contrast, int(c));
+        add(view.ideal_from_pad,
+            circle.radius * outwards,
+            sign * outwards,
+            circle.contrast,
+            int(c));
       }
     }
   }
@@ -176,12 +237,37 @@ void EdgeSearch::place(const PadModel& model,
     const int count = static_cast<int>(length_px / spacing_px);
     for (int i = 0; i < count; ++i) {
       const double at = part.begin + part.length() * (i + 0.5) / count;
-      add(image_from_pad,
+      add(view.ideal_from_pad,
           line.from + at * (line.to - line.from),
           line.to_bright,
           line.contrast,
           static_cast<int>(circles + l));
     }
+  }
+  if (view.lens.is_bent()) bend(view.lens);
+}
+
+// All samples from the ideal plane to the picture.
+void EdgeSearch::bend(const LensView& lens) {
+  constexpr std::size_t kMost = kMostSamples;
+  std::array<std::array<float, kMost>, 6> numbers;
+  auto& [x, y, nx, ny, across, along] = numbers;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const EdgeView& view = samples_[i].view;
+    x[i] = static_cast<float>(view.point.x());
+    y[i] = static_cast<float>(view.point.y());
+    nx[i] = static_cast<float>(view.normal.x());
+    ny[i] = static_cast<float>(view.normal.y());
+  }
+  lens.bend(
+      {0.0, 0.0},
+      {samples_.size(), x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    EdgeView& view = samples_[i].view;
+    view.point = {x[i], y[i]};
+    view.normal = {nx[i], ny[i]};
+    view.px_per_unit *= across[i];
+    view.row *= across[i];
   }
 }
 

@@ -7,6 +7,7 @@
 #include "core/homography.hpp"
 #include "core/image_view.hpp"
 #include "core/pad_model.hpp"
+#include "core/pad_view.hpp"
 
 namespace ellipse {
 
@@ -32,10 +33,7 @@ struct EdgeSample {
 class EdgeSearch {
  public:
   /// Spreads places over all edges inside the picture, evenly by their length there.
-  void place(const PadModel& model,
-             const Eigen::Matrix3d& image_from_pad,
-             const ImageView& luma,
-             int samples);
+  void place(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
 
   /// Looks at each place for edges of the right sign.
   /// @param gain       Of the picture's contrast over the model's.
@@ -54,11 +52,12 @@ class EdgeSearch {
   static constexpr int kMostSamples = 256;
 
  private:
-  void add(const Eigen::Matrix3d& image_from_pad,
+  void add(const Eigen::Matrix3d& view,
            const Eigen::Vector2d& place,
            const Eigen::Vector2d& to_bright,
            double contrast,
            int feature);
+  void bend(const LensView& lens);
   void look_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
 
   std::vector<EdgeSample> samples_;

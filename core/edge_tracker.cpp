@@ -62,6 +62,10 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
+PadView seen_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
+  return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
+}
+
 // How far a change moves the edges.
 double rms_px(std::span<const EdgeSample> samples, const PoseChange& change) {
   double sum = 0.0;
@@ -76,15 +80,16 @@ double tolerance_px(double radius_px) {
 }  // namespace
 
 double EdgeTracker::radius_px() const {
-  return std::sqrt(std::abs(view_.topLeftCorner<2, 2>().determinant()));
+  return PadView(view_, lens_).radius_px();
 }
 
 bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   is_locked_ = false;
   refined_.reset();
   frame_px_ = window.frame_px;
+  lens_ = window.lens;
   view_ = image_from_pad(outer_edge);
-  const Eigen::Matrix3d local = shifted(view_, -window.origin_px);
+  const PadView local = seen_in(window, view_);
   auto model = learn_circles(window.luma, local, ring_ratio_);
   if (!model) return false;
   model_ = std::move(*model);
@@ -122,7 +127,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::finish(const LumaWindow& window
                                                         const PoseChange& change,
                                                         double reach_px) {
   const Eigen::Matrix3d view = moved(start, change);
-  search_.place(model_, shifted(view, -window.origin_px), window.luma, kFineSamples);
+  search_.place(model_, seen_in(window, view), window.luma, kFineSamples);
   if (search_.samples().size() < kLeastMet) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
   const PosePrior here{prior.mean - change, prior.information};
@@ -150,7 +155,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_near(const LumaWindow& win
                                                            const Eigen::Matrix3d& start,
                                                            const PoseCovariance& covariance) {
   const PosePrior prior{PoseChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, shifted(start, -window.origin_px), window.luma, kFineSamples);
+  search_.place(model_, seen_in(window, start), window.luma, kFineSamples);
   if (search_.samples().size() < kLeastMet) return std::nullopt;
   search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMostPx);
   auto estimate =
@@ -178,7 +183,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_wide(const LumaWindow& win
                                                            const PoseCovariance& covariance,
                                                            double reach_px) {
   const PosePrior prior{PoseChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, shifted(start, -window.origin_px), window.luma, kWideSamples);
+  search_.place(model_, seen_in(window, start), window.luma, kWideSamples);
   const auto samples = search_.samples();
   if (samples.size() < kLeastMet) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
@@ -229,6 +234,7 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_wide(const LumaWindow& win
 std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double frames) {
   if (!is_locked_) return std::nullopt;
   frame_px_ = window.frame_px;
+  lens_ = window.lens;
   refined_.reset();
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
@@ -239,8 +245,7 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
     const double reach_px = std::max(8.0, 0.16 * radius_px());
     attempt = look_wide(window, prediction, before.pose, reach_px);
     if (!attempt) {
-      const auto coarse =
-          coarse_search(window.luma, model_, shifted(prediction, -window.origin_px));
+      const auto coarse = coarse_search(window.luma, model_, seen_in(window, prediction));
       if (coarse) {
         PoseCovariance loose = PoseCovariance::Zero();
         loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
@@ -296,8 +301,8 @@ void EdgeTracker::accept(const Attempt& attempt, const PoseMotion& before) {
 // The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
 void EdgeTracker::refine(const LumaWindow& window, double visible) {
   if (visible < kLeastVisibleToRefine) return;
-  const auto exact = refined_outer_edge(
-      window.luma, shifted(view_, -window.origin_px), model_, gain_, refinement_);
+  const auto exact =
+      refined_outer_edge(window.luma, seen_in(window, view_), model_, gain_, refinement_);
   if (!exact) return;
   const auto view = with_outer_edge(
       view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
@@ -337,7 +342,7 @@ void EdgeTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) 
       attempt.support.coverage < kCoverageToLearn) {
     return;
   }
-  line_learner_.take(window.luma, shifted(view_, -window.origin_px));
+  line_learner_.take(window.luma, seen_in(window, view_));
   if (!line_learner_.is_ready()) return;
   line_learner_.learn(model_);
   line_learner_.start();
@@ -404,7 +409,8 @@ std::optional<TiltEvidence> EdgeTracker::tilt_evidence() const {
 
 Rect EdgeTracker::region_after(double frames, int width, int height) const {
   const Rect frame{0, 0, width, height};
-  const auto ellipse = project_circle(moved(view_, frames * motion_.velocity), 1.0);
+  const auto ideal = project_circle(moved(view_, frames * motion_.velocity), 1.0);
+  const auto ellipse = ideal ? bent(lens_, *ideal) : std::nullopt;
   if (!ellipse) return frame;
   const Eigen::Vector2d half = half_extent(*ellipse);
   const double margin = 1.3 * ellipse->semi_major + 16.0;

@@ -6,6 +6,7 @@
 #include "core/edge_search.hpp"
 #include "core/homography.hpp"
 #include "core/image_view.hpp"
+#include "core/lens_view.hpp"
 #include "core/line_learner.hpp"
 #include "core/outer_edge.hpp"
 #include "core/pad_model.hpp"
@@ -20,11 +21,12 @@ struct LumaWindow {
   ImageView luma;
   Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
   Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
+  LensView lens{};                      ///< Of whole frames; its camera outlives the tracking.
 };
 
 /// What one frame told.
 struct EdgeTrack {
-  Ellipse ellipse;        ///< The outer circle [px of the frame].
+  Ellipse ellipse;        ///< The outer circle [px of the frame's ideal plane].
   double coverage = 0.0;  ///< Share of the edges in view that were met, be it too few.
   double visible = 0.0;   ///< Share of the outer circle inside the frame.
   bool is_seen = false;   ///< Else its motion was continued.
@@ -108,6 +110,7 @@ class EdgeTracker {
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
   PoseMotion motion_;
   Eigen::Vector2d frame_px_{0.0, 0.0};
+  LensView lens_;
   double surprise_ = 1.0;  // of the motion, against its noise
   double gain_ = 1.0;      // of the picture's contrast over the model's
   int misses_ = 0;

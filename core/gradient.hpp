@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image_view.hpp"
+#include "core/lens_view.hpp"
 #include "core/simd.hpp"
 
 namespace ellipse {
@@ -49,6 +50,10 @@ class GradientMap {
   /// Allocates only when the picture grows. O(pixels).
   void compute(const ImageView& luma, double threshold, double floor);
 
+  /// Through what lens the picture is seen; none by default.
+  void set_lens(const LensView& lens) { lens_ = lens; }
+  [[nodiscard]] const LensView& lens() const { return lens_; }
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   /// From row to row, of both maps [pixels].
@@ -80,6 +85,7 @@ class GradientMap {
   [[nodiscard]] std::int16_t* row_of(std::vector<std::int16_t>& rows, int y);
 
   Simd simd_;
+  LensView lens_;
   int width_ = 0;
   int height_ = 0;
   int stride_ = 0;

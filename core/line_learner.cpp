@@ -10,6 +10,7 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kParts = 8;
+constexpr int kStraightPixels = 8;      // from above: a perspective leaves its chord by little
 constexpr double kStraightPx = 1.2;     // most that a line leaves its chord
 constexpr double kLeastLength = 0.1;    // [radii]
 constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, all along it
@@ -32,31 +33,33 @@ void LineLearner::reserve(PadModel& model) {
   chains_.trace(map_);
 }
 
-// Pixels that the picture does not show are 0, and no others.
-void LineLearner::take(const ImageView& luma, const Eigen::Matrix3d& image_from_pad) {
-  const Eigen::Matrix3f view = image_from_pad.cast<float>();
-  const Eigen::Vector3f step = kPixel * view.col(0);
+// Pixels that the picture does not show are 0, and no others. Between places some pixels apart the
+// view is straight.
+void LineLearner::take(const ImageView& luma, const PadView& view) {
   constexpr float kBorder = 1.01F;  // whose hundredth is for rounding
   const float right = static_cast<float>(luma.width) - kBorder;
   const float bottom = static_cast<float>(luma.height) - kBorder;
-  const auto is_inside = [&](const Eigen::Vector3f& at) {
-    return at.z() > 0.0F && at.x() >= 0.0F && at.y() >= 0.0F && at.x() < right * at.z() &&
-           at.y() < bottom * at.z();
-  };
   const int end = std::min(kSize, rows_ + kSize / kParts);
   for (; rows_ < end; ++rows_) {
-    const Eigen::Vector2f first = place_of(0, rows_).cast<float>();
-    const Eigen::Vector3f begin = view * first.homogeneous();
-    const Eigen::Vector3f last = begin + static_cast<float>(kSize - 1) * step;
-    const bool is_whole = is_inside(begin) && is_inside(last);  // so is all between
     std::uint8_t* pixel = pixels_.data() + static_cast<std::ptrdiff_t>(rows_) * kSize;
-    for (int i = 0; i < kSize; ++i) {
-      const Eigen::Vector3f at = begin + static_cast<float>(i) * step;
-      const bool is_shown = is_whole || is_inside(at);
-      const float near = 1.0F / at.z();
-      pixel[i] = is_shown ? static_cast<std::uint8_t>(
-                                std::max(1.0F, luma.at(near * at.x(), near * at.y()) + 0.5F))
-                          : std::uint8_t{0};
+    auto next = view.at(place_of(0, rows_));
+    for (int column = 0; column < kSize; column += kStraightPixels) {
+      const auto here = next;
+      next = view.at(place_of(column + kStraightPixels, rows_));
+      Eigen::Vector2f first(-1.0F, -1.0F);  // outside, where it is not shown
+      Eigen::Vector2f step(0.0F, 0.0F);
+      if (here && next) {
+        first = here->point.cast<float>();
+        step = ((next->point - here->point) / kStraightPixels).cast<float>();
+      }
+      for (int i = 0; i < kStraightPixels; ++i) {
+        const Eigen::Vector2f at = first + static_cast<float>(i) * step;
+        const bool is_inside =
+            at.x() >= 0.0F && at.y() >= 0.0F && at.x() < right && at.y() < bottom;
+        *pixel++ = is_inside
+                       ? static_cast<std::uint8_t>(std::max(1.0F, luma.at(at.x(), at.y()) + 0.5F))
+                       : std::uint8_t{0};
+      }
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "core/gradient.hpp"
 #include "core/image_view.hpp"
 #include "core/pad_model.hpp"
+#include "core/pad_view.hpp"
 
 namespace ellipse {
 
@@ -24,8 +25,8 @@ class LineLearner {
   void start() { rows_ = 0; }
   /// Adds the next rows of that picture, an eighth of it, so that no frame pays for all. The frames
   /// may differ: each shows the pad where its view says. Allocates nothing after reserve().
-  /// @param image_from_pad  Exact to about a pixel.
-  void take(const ImageView& luma, const Eigen::Matrix3d& image_from_pad);
+  /// @param view  Exact to about a pixel.
+  void take(const ImageView& luma, const PadView& view);
   /// Whether the picture is whole.
   [[nodiscard]] bool is_ready() const { return rows_ == kSize; }
 

@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "core/homography.hpp"
 #include "core/photometric_refinement.hpp"
 #include "core/picture_refinement.hpp"
 #include "core/ring_edges.hpp"
@@ -29,23 +28,24 @@ Polarity polarity_of(bool is_bright_outside) {
 
 // The crests of both edges of a thin ring are drawn apart.
 std::optional<FittedEllipse> on_crests(const ImageView& luma,
-                                       const Eigen::Matrix3d& image_from_pad,
+                                       const PadView& view,
                                        const PadModel& model,
                                        const Ellipse& outer,
                                        double ring_px,
                                        double least_contrast) {
   const double least = kCrestOfStep * least_contrast;
   const bool is_bright_outside = model.circles.front().is_bright_outside;
-  const auto edge = refined_on_picture(luma, outer, polarity_of(is_bright_outside), least, kPlaces);
+  const auto edge =
+      refined_on_picture(luma, outer, polarity_of(is_bright_outside), least, kPlaces, view.lens);
   if (!edge || edge->support < kLeastSupport) return std::nullopt;
   const bool is_ring =
       model.circles.size() > 1 && model.circles[1].is_bright_outside != is_bright_outside;
   FittedEllipse exact{edge->ellipse, edge->uncertainty};
   if (!is_ring || ring_px >= kThinRingPx) return exact;
-  const auto inner = project_circle(image_from_pad, model.circles[1].radius);
+  const auto inner = project_circle(view.ideal_from_pad, model.circles[1].radius);
   if (!inner) return exact;
   const auto next =
-      refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces);
+      refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces, view.lens);
   if (!next || next->support < kLeastSupport) return exact;
   exact.ellipse = without_repulsion({edge->ellipse, next->ellipse}).outer;
   return exact;
@@ -58,11 +58,11 @@ std::span<const char* const> refinement_nicks() {
 }
 
 std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
-                                                const Eigen::Matrix3d& image_from_pad,
+                                                const PadView& view,
                                                 const PadModel& model,
                                                 double gain,
                                                 Refinement refinement) {
-  const auto outer = project_circle(image_from_pad, 1.0);
+  const auto outer = project_circle(view.ideal_from_pad, 1.0);
   if (!outer || refinement == Refinement::kNone) return std::nullopt;
   const PadCircle& circle = model.circles.front();
   const double least_contrast = kLeastContrast * circle.contrast * gain;
@@ -70,14 +70,14 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                              ? (1.0 - model.circles[1].radius) * outer->semi_minor
                              : std::numeric_limits<double>::infinity();
   std::optional<FittedEllipse> exact;
-  if (refinement == Refinement::kPhotometric) {
+  if (refinement == Refinement::kPhotometric && !view.lens.is_bent()) {
     exact = refined_photometrically(luma,
                                     *outer,
                                     polarity_of(circle.is_bright_outside),
                                     ring_px - kReachOfNextEdgePx,
                                     least_contrast);
   }
-  if (!exact) exact = on_crests(luma, image_from_pad, model, *outer, ring_px, least_contrast);
+  if (!exact) exact = on_crests(luma, view, model, *outer, ring_px, least_contrast);
   if (!exact) return std::nullopt;
   const bool is_near =
       max_difference_px(exact->ellipse, *outer) <= kNearPx + kNearRelative * outer->semi_major;

@@ -7,6 +7,7 @@
 #include "core/ellipse_fit.hpp"
 #include "core/image_view.hpp"
 #include "core/pad_model.hpp"
+#include "core/pad_view.hpp"
 
 namespace ellipse {
 
@@ -20,12 +21,13 @@ enum class Refinement {
 /// Their nicks, in their order.
 [[nodiscard]] std::span<const char* const> refinement_nicks();
 
-/// The outer edge of a pad whose view is known within a pixel or so, made exact on the picture.
+/// The outer edge of a pad whose view is known within a pixel or so, made exact on the picture; in
+/// its ideal plane.
 ///
 /// @param gain  Of the picture's contrast over the model's.
 /// @return nullopt where the picture does not show it well enough. Allocates nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
-                                                              const Eigen::Matrix3d& image_from_pad,
+                                                              const PadView& view,
                                                               const PadModel& model,
                                                               double gain,
                                                               Refinement refinement);

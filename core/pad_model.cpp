@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/homography.hpp"
-
 namespace ellipse {
 namespace {
 
@@ -38,9 +36,14 @@ int index_of(double radius) {
 class RadialProfile {
  public:
   // Both are borrowed.
-  RadialProfile(const ImageView& luma, const Eigen::Matrix3d& view) : luma_(luma), view_(view) {
-    const double size_px = std::max(1.0, std::floor(view.topLeftCorner<2, 2>().norm()));
+  RadialProfile(const ImageView& luma, const PadView& view) : luma_(luma), view_(view) {
+    const double size_px =
+        std::max(1.0, std::floor(view.ideal_from_pad.topLeftCorner<2, 2>().norm()));
     half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
+    for (std::size_t k = 0; k < kAngles; ++k) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / kAngles;
+      directions_[k] = {std::cos(angle), std::sin(angle)};
+    }
     for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
   }
 
@@ -75,13 +78,11 @@ class RadialProfile {
  private:
   [[nodiscard]] float level(int i, int k) const {
     const double radius = radius_at(i);
-    const double angle = 2.0 * std::numbers::pi * k / kAngles;
-    const Eigen::Vector3d seen =
-        view_ * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0);
-    const double x = seen.x() / seen.z();
-    const double y = seen.y() / seen.z();
-    if (!(seen.z() > 0.0) ||
-        !(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
+    const auto seen = view_.at(radius * *(directions_.begin() + k));
+    if (!seen) return static_cast<float>(kUnknown);
+    const double x = seen->point.x();
+    const double y = seen->point.y();
+    if (!(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
       return static_cast<float>(kUnknown);
     }
     return luma_.at(static_cast<float>(x), static_cast<float>(y));
@@ -101,17 +102,18 @@ class RadialProfile {
   }
 
   const ImageView& luma_;
-  const Eigen::Matrix3d& view_;
+  const PadView& view_;
   int half_width_ = 2;
+  std::array<Eigen::Vector2d, kAngles> directions_;
   std::array<double, kRadii> medians_;
 };
 
 }  // namespace
 
 std::optional<PadModel> learn_circles(const ImageView& luma,
-                                      const Eigen::Matrix3d& image_from_pad,
+                                      const PadView& view,
                                       double ring_ratio) {
-  const RadialProfile profile(luma, image_from_pad);
+  const RadialProfile profile(luma, view);
   const auto strength = [&](int i) { return std::abs(profile.step(i)); };
   const auto is_peak = [&](int i) {
     bool is_highest = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image_view.hpp"
+#include "core/pad_view.hpp"
 
 namespace ellipse {
 
@@ -35,14 +36,14 @@ struct PadModel {
 /// Learns the circles of a pad from a picture: the median brightness over the angles, as a function
 /// of the radius, has a step at each.
 ///
-/// @param image_from_pad  With the outer circle on the target's outer edge, within a few percent.
+/// @param view            With the outer circle on the target's outer edge, within a few percent.
 /// @param ring_ratio      Radius of the circle next inside the outer one, where it is known: it is
 ///                        taken for what it is, also where the picture is too coarse to show it.
 ///                        0 = is learned.
 /// nullopt where there is no step at the outer circle. Allocates the model, and nothing without
 /// one.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
-                                                    const Eigen::Matrix3d& image_from_pad,
+                                                    const PadView& view,
                                                     double ring_ratio = 0.0);
 
 }  // namespace ellipse

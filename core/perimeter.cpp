@@ -62,6 +62,7 @@ class Places {
       nx[k] = normal_x / speed[k];
       ny[k] = normal_y / speed[k];
     }
+    if (map.lens().is_bent()) bend(map.lens(), static_cast<std::size_t>(samples));
     const int margin = GradientMap::kBorder + tolerance_px;
     left_ = margin - origin_x_;
     top_ = margin - origin_y_;
@@ -87,6 +88,15 @@ class Places {
     return {circle_.x[k], circle_.y[k]};
   }
 
+  // Pixels of the picture per pixel of the ideal plane, across the perimeter.
+  [[nodiscard]] float px_per_ideal(std::size_t k) const {
+    return is_bent_ ? px_per_ideal_[k] : 1.0F;
+  }
+  // Length per eccentric anomaly in the ideal plane.
+  [[nodiscard]] float ideal_speed(std::size_t k) const {
+    return is_bent_ ? ideal_speed_[k] : speed[k];
+  }
+
   PerSample<float> x;
   PerSample<float> y;
   PerSample<float> nx;  // the normal, outwards
@@ -94,6 +104,22 @@ class Places {
   PerSample<float> speed;  // length per eccentric anomaly
 
  private:
+  // From the ideal plane to the picture.
+  void bend(const LensView& lens, std::size_t samples) {
+    is_bent_ = true;
+    PerSample<float> along;
+    lens.bend(
+        Eigen::Vector2d(origin_x_, origin_y_),
+        {samples, x.data(), y.data(), nx.data(), ny.data(), px_per_ideal_.data(), along.data()});
+    for (std::size_t k = 0; k < samples; ++k) {
+      ideal_speed_[k] = speed[k];
+      speed[k] *= along[k];
+    }
+  }
+
+  bool is_bent_ = false;
+  PerSample<float> ideal_speed_;
+  PerSample<float> px_per_ideal_;
   const Circle& circle_;
   int origin_x_;
   int origin_y_;
@@ -136,7 +162,7 @@ struct Meeting {
 
 // @param here    The gradient of the edge's pixel, `offset` steps beside the place.
 // @param sign    1 where the inside is dark, else -1.
-// @param axes    Product of the semi-axes [px^2].
+// @param axes    Product of the semi-axes [px^2 of the ideal plane].
 Meeting meeting(
     const Places& places, std::size_t k, const Gradient* here, int offset, float sign, float axes) {
   const bool is_flat = places.is_flat(k);
@@ -152,7 +178,7 @@ Meeting meeting(
   const float gy = here->y;
   const float strength = std::sqrt(gx * gx + gy * gy);
   const float sine = sign * (gy * nx - gx * ny) / strength;
-  const float curvature = axes / (speed * speed) / speed;
+  const float curvature = axes / (speed * speed) / places.ideal_speed(k) * places.px_per_ideal(k);
   // Beside its foot the perimeter falls back behind its tangent.
   const float aside = dy * nx - dx * ny;
   return {dx * nx + dy * ny + curvature * (0.5F * aside * aside + kShift),
@@ -267,7 +293,9 @@ PerimeterEvidence PerimeterProbe::probe(
     hits_.push_back({static_cast<int>(k),
                      {places.x[k] - cx, places.y[k] - cy},
                      {nx, ny},
-                     {places.anomaly(k), axes_product / speed, edge.residual_px},
+                     {places.anomaly(k),
+                      axes_product / places.ideal_speed(k) * places.px_per_ideal(k),
+                      edge.residual_px},
                      edge.direction_error_rad,
                      speed * spacing});
   }

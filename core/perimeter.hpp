@@ -12,12 +12,13 @@
 
 namespace ellipse {
 
-/// Where an edge was met, searching from the perimeter along its normal.
+/// Where an edge was met, searching from the perimeter along its normal. All of the picture: where
+/// its lens bends it, so it does the perimeter.
 struct EdgeHit {
   int sample = 0;                    ///< Its number around the perimeter.
   Eigen::Vector2f foot;              ///< On the perimeter, from the ellipse's centre [px].
   Eigen::Vector2f normal;            ///< Of the perimeter there, outwards.
-  PerimeterOffset offset;            ///< Of the edge.
+  PerimeterOffset offset;            ///< Of the edge; the anomaly is the ellipse's.
   float direction_error_rad = 0.0F;  ///< From the normal to the gradient.
   float weight = 0.0F;               ///< Length of the perimeter that it stands for [px].
 };
@@ -46,7 +47,8 @@ struct PerimeterEvidence {
                                        int tolerance_px,
                                        double least);
 
-/// Walks around ellipses and looks for chained edges along the normals.
+/// Walks around ellipses and looks for chained edges along the normals. The ellipses are those of
+/// the map's ideal plane.
 ///
 /// Single precision, from the ellipse's centre: 6e-8 of its axes.
 class PerimeterProbe {

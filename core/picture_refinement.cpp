@@ -56,36 +56,107 @@ std::optional<Crest> crest_across(const ImageView& luma,
   return Crest{{x + (is_flat ? along : 0.0), y + (is_flat ? 0.0 : along)}, *top};
 }
 
+// Places around an ellipse of the ideal plane, in the picture. Where they are is told from the
+// ellipse's centre, which is why single precision will do.
+class PlacesAround {
+ public:
+  PlacesAround(const Ellipse& e, int count, const LensView& lens)
+      : center_(e.center()),
+        axes_product_(e.semi_major * e.semi_minor),
+        step_(2.0 * std::numbers::pi / count),
+        size_(static_cast<std::size_t>(count)) {
+    const Eigen::Matrix2d axes = Eigen::Rotation2Dd(e.angle_rad).toRotationMatrix();
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(step_).toRotationMatrix();
+    Eigen::Vector2d anomaly(1.0, 0.0);
+    for (std::size_t k = 0; k < size_; ++k, anomaly = turn * anomaly) {
+      const Eigen::Vector2d foot =
+          axes * anomaly.cwiseProduct(Eigen::Vector2d(e.semi_major, e.semi_minor));
+      const Eigen::Vector2d slope =
+          axes * anomaly.cwiseProduct(Eigen::Vector2d(e.semi_minor, e.semi_major));
+      const double speed = slope.norm();
+      x_[k] = static_cast<float>(foot.x());
+      y_[k] = static_cast<float>(foot.y());
+      nx_[k] = static_cast<float>(slope.x() / speed);
+      ny_[k] = static_cast<float>(slope.y() / speed);
+      speed_[k] = static_cast<float>(speed);
+      across_[k] = 1.0F;
+      along_[k] = 1.0F;
+    }
+    lens.bend(center_,
+              {size_, x_.data(), y_.data(), nx_.data(), ny_.data(), across_.data(), along_.data()});
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] Eigen::Vector2d foot(std::size_t k) const {
+    return center_ + Eigen::Vector2d(x_[k], y_[k]);
+  }
+  [[nodiscard]] Eigen::Vector2d normal(std::size_t k) const { return {nx_[k], ny_[k]}; }
+  // Pixels of the picture per pixel of the ideal plane, across the perimeter.
+  [[nodiscard]] double px_per_ideal(std::size_t k) const { return across_[k]; }
+  // Of the perimeter that a place stands for.
+  [[nodiscard]] double length_px(std::size_t k) const {
+    return static_cast<double>(along_[k]) * speed_[k] * step_;
+  }
+  // Of the perimeter; what the lens itself bends is far less.
+  [[nodiscard]] double curvature(std::size_t k) const {
+    const double speed = static_cast<double>(speed_[k]) * along_[k];
+    return axes_product_ / (speed * speed * speed_[k]) * across_[k];
+  }
+
+ private:
+  using PerPlace = std::array<float, kMostPlaces>;
+
+  Eigen::Vector2d center_;
+  double axes_product_;
+  double step_;
+  std::size_t size_;
+  PerPlace x_;
+  PerPlace y_;
+  PerPlace nx_;
+  PerPlace ny_;
+  PerPlace speed_;  // length per eccentric anomaly, in the ideal plane
+  PerPlace across_;
+  PerPlace along_;
+};
+
+// A crest, taken to the ideal plane.
+struct FoundPoint {
+  Eigen::Vector2d ideal;
+  double px_per_ideal;  // pixels of the picture per one there, across the perimeter
+  double length_px;     // of the perimeter that it stands for
+};
+
+// A distance from the perimeter is one of the picture.
+PerimeterOffset scaled(PerimeterOffset offset, double px_per_ideal) {
+  offset.distance_px *= px_per_ideal;
+  offset.px_per_unit *= px_per_ideal;
+  return offset;
+}
+
 }  // namespace
 
-std::optional<RefinedEllipse> refined_on_picture(
-    const ImageView& luma, const Ellipse& e, Polarity polarity, double least_gradient, int places) {
+std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
+                                                 const Ellipse& e,
+                                                 Polarity polarity,
+                                                 double least_gradient,
+                                                 int places,
+                                                 const LensView& lens) {
   places = std::min(places, kMostPlaces);
-  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d across(-axis.y(), axis.x());
   const double sign = static_cast<int>(polarity);
-  std::array<Eigen::Vector2d, kMostPlaces> points;
-  std::array<double, kMostPlaces> lengths{};
+  std::array<FoundPoint, kMostPlaces> points;
   std::size_t count = 0;
   int inside = 0;
   double heights = 0.0;
-  const double step = 2.0 * std::numbers::pi / places;
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(step).toRotationMatrix();
-  Eigen::Vector2d anomaly(1.0, 0.0);
-  for (int i = 0; i < places; ++i, anomaly = turn * anomaly) {
-    const double u = anomaly.x();
-    const double v = anomaly.y();
-    const Eigen::Vector2d foot = e.center() + e.semi_major * u * axis + e.semi_minor * v * across;
+  const PlacesAround around(e, places, lens);
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    const Eigen::Vector2d foot = around.foot(k);
     if (!is_inside(luma, foot)) continue;
     ++inside;
-    const Eigen::Vector2d slope = e.semi_minor * u * axis + e.semi_major * v * across;
-    const double speed = slope.norm();
-    const Eigen::Vector2d normal = slope / speed;
-    const auto crest = crest_across(luma, foot, sign * normal, least_gradient);
+    const auto crest = crest_across(luma, foot, sign * around.normal(k), least_gradient);
     if (!crest) continue;
-    const double curvature = e.semi_major * e.semi_minor / (speed * speed * speed);
-    points[count] = crest->point + kCrestShift * curvature * normal;
-    lengths[count++] = speed * step;
+    const Eigen::Vector2d edge =
+        crest->point + kCrestShift * around.curvature(k) * around.normal(k);
+    points[count++] = {lens.near_ideal(edge), around.px_per_ideal(k), around.length_px(k)};
     heights += crest->height;
   }
   if (count < kLeastPoints) return std::nullopt;
@@ -97,8 +168,8 @@ std::optional<RefinedEllipse> refined_on_picture(
     double squares = kLeastVariance;
     double weights = 1.0;
     for (std::size_t i = 0; i < count; ++i) {
-      const PerimeterOffset offset = fit.offset_of(points[i]);
-      const double weight = lengths[i] * tukey_weight(offset.distance_px, reach);
+      const PerimeterOffset offset = scaled(fit.offset_of(points[i].ideal), points[i].px_per_ideal);
+      const double weight = points[i].length_px * tukey_weight(offset.distance_px, reach);
       if (!(weight > 0.0)) continue;
       fit.add(offset, weight);
       squares += weight * offset.distance_px * offset.distance_px;

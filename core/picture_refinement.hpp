@@ -5,6 +5,7 @@
 #include "core/arcs.hpp"
 #include "core/ellipse.hpp"
 #include "core/image_view.hpp"
+#include "core/lens_view.hpp"
 
 namespace ellipse {
 
@@ -23,11 +24,14 @@ inline constexpr int kMostPlaces = 96;
 ///
 /// @param places  At most kMostPlaces. With fewer it is faster, and the noise tells more.
 /// @param least_gradient  Weaker crests do not count [units of Gradient].
+/// @param lens    The ellipse is of the ideal plane, before and after; the perimeter is searched as
+///                the lens bends it.
 /// @return nullopt where too few crests are near. Allocates nothing; the time depends on no size.
 [[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
                                                                const Ellipse& e,
                                                                Polarity polarity,
                                                                double least_gradient,
-                                                               int places = kMostPlaces);
+                                                               int places = kMostPlaces,
+                                                               const LensView& lens = {});
 
 }  // namespace ellipse

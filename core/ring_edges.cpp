@@ -154,14 +154,16 @@ RingCorrector::RingCorrector() {
 void RingCorrector::correct(const ImageView& luma,
                             double least_gradient,
                             std::span<const Polarity> polarities,
+                            const LensView& lens,
                             std::span<Detection> detections) {
   crests_.clear();
   for (const Detection& detection : detections) crests_.push_back(detection.ellipse);
   for (std::size_t i = 0; i < crests_.size(); ++i) {
     const Ellipse& crest = crests_[i];
     if (crest.semi_minor > kLargestPx) continue;
-    const auto edge = refined_on_picture(luma, crest, polarities[i], least_gradient);
-    const auto next = edge ? next_edge(luma, least_gradient, polarities, i) : std::nullopt;
+    const auto edge =
+        refined_on_picture(luma, crest, polarities[i], least_gradient, kMostPlaces, lens);
+    const auto next = edge ? next_edge(luma, least_gradient, polarities, lens, i) : std::nullopt;
     if (!next || next->support < kLeastSupport) continue;
     if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
     const bool is_outer = crest.semi_major > next->ellipse.semi_major;
@@ -175,11 +177,12 @@ void RingCorrector::correct(const ImageView& luma,
 std::optional<RefinedEllipse> RingCorrector::next_edge(const ImageView& luma,
                                                        double least_gradient,
                                                        std::span<const Polarity> polarities,
+                                                       const LensView& lens,
                                                        std::size_t i) const {
   const Ellipse& edge = crests_[i];
   const Polarity other = opposite(polarities[i]);
   const auto look_at = [&](const Ellipse& guess) {
-    return refined_on_picture(luma, guess, other, least_gradient);
+    return refined_on_picture(luma, guess, other, least_gradient, kMostPlaces, lens);
   };
   const Ellipse* closest = nullptr;
   for (std::size_t k = 0; k < crests_.size(); ++k) {

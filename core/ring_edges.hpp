@@ -50,12 +50,14 @@ class RingCorrector {
   void correct(const ImageView& luma,
                double least_gradient,
                std::span<const Polarity> polarities,
+               const LensView& lens,
                std::span<Detection> detections);
 
  private:
   [[nodiscard]] std::optional<RefinedEllipse> next_edge(const ImageView& luma,
                                                         double least_gradient,
                                                         std::span<const Polarity> polarities,
+                                                        const LensView& lens,
                                                         std::size_t i) const;
 
   std::vector<Ellipse> crests_;  // the detections, not yet corrected

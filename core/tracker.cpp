@@ -94,18 +94,10 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   return target;
 }
 
-// What a camera adds to what is seen. The ellipse is in the picture before, in the ideal plane
-// afterwards.
+// What a camera adds to what is seen.
 void Tracker::locate(Target& target) {
   const Camera& camera = lens_->camera();
-  bool is_followed = edge_tracker_.is_locked();
-  if (camera.is_distorted()) {
-    const auto ideal = unbent(*lens_, target.ellipse);
-    if (!ideal) return;
-    target.ellipse = *ideal;
-    target.uncertainty.reset();
-    is_followed = false;
-  }
+  const bool is_followed = edge_tracker_.is_locked();
   if (!target.uncertainty) {
     target.uncertainty =
         expected_uncertainty(target.ellipse, camera.width, camera.height, kDetectedSigmaPx);
@@ -120,8 +112,8 @@ void Tracker::locate(Target& target) {
                                          Eigen::Vector3d::Map(settings_.gravity.data()));
 }
 
-const Lens* Tracker::bent_lens() const {
-  return lens_ && lens_->camera().is_distorted() ? &*lens_ : nullptr;
+LensView Tracker::lens() const {
+  return lens_ ? LensView(*lens_) : LensView();
 }
 
 // From its edges alone: nothing else of the frame is read.
@@ -134,10 +126,11 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
   candidates_.clear();
   const LumaWindow window{luma_reader_.read(frame, search_region_),
                           Eigen::Vector2d(search_region_.x, search_region_.y),
-                          Eigen::Vector2d(frame.width, frame.height)};
+                          Eigen::Vector2d(frame.width, frame.height),
+                          lens()};
   const auto track = edge_tracker_.track(window, frames);
   if (!track) return std::nullopt;
-  const double visible = visible_fraction(track->ellipse, frame.width, frame.height);
+  const double visible = visible_fraction(lens(), track->ellipse, frame.width, frame.height);
   const bool is_likely = visible >= kLeastPredicted && track->coverage >= kLeastCoverage;
   if (!track->is_seen && !is_likely) return std::nullopt;
   Target target;
@@ -206,7 +199,8 @@ void Tracker::lock_edges(const PixelView& frame, const Target& target) {
   if (target.visible_fraction < kEnoughToLock) return;
   const LumaWindow window{luma_reader_.read(frame, searchable_),
                           Eigen::Vector2d(searchable_.x, searchable_.y),
-                          Eigen::Vector2d(frame.width, frame.height)};
+                          Eigen::Vector2d(frame.width, frame.height),
+                          lens()};
   (void)edge_tracker_.lock(window, target.ellipse);
 }
 
@@ -231,6 +225,8 @@ std::optional<Target> Tracker::search_target(const PixelView& frame) {
 std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tracking) {
   const ImageView region = luma_reader_.read(frame, search_region_);
   const ImageView reduced = scaler_.reduce(region, scale_);
+  detector_->set_lens(
+      lens().part(Eigen::Vector2d(search_region_.x, search_region_.y)).reduced(scale_));
   const auto detections = detector_->detect(reduced, determine_thresholds(is_tracking));
   candidates_.assign(detections.begin(), detections.end());
   for (Detection& candidate : candidates_) {
@@ -239,7 +235,7 @@ std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tra
   const std::optional<Ellipse> last_target =
       is_tracking_ ? std::optional(to_region(last_ellipse_, search_region_, scale_)) : std::nullopt;
   const std::optional<Detection> selected = select_target(detections, last_target, trace_);
-  if (trace_ != nullptr) trace_->place_in_frame(search_region_, scale_);
+  if (trace_ != nullptr) trace_->place_in_frame(search_region_, scale_, lens());
   if (!selected) return std::nullopt;
 
   Target target;
@@ -248,7 +244,7 @@ std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tra
   target.id = had_target_ ? last_id_ : last_id_ + 1;
   target.contour_overlap = selected->contour_overlap;
   target.ellipse_overlap = selected->ellipse_overlap;
-  target.visible_fraction = visible_fraction(target.ellipse, frame.width, frame.height);
+  target.visible_fraction = visible_fraction(lens(), target.ellipse, frame.width, frame.height);
   target.scale = scale_;
   target.search_region = search_region_;
   return target;
@@ -275,8 +271,11 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
   is_tracking_ = had_target_ && settings_.tracking == TrackingMode::kRedetect;
   roi_ = {};
   if (!is_tracking_) return;
-  roi_ = calculate_roi(
-      target->ellipse, settings_.roi_expansion, scale_, frame_bounds_.width, frame_bounds_.height);
+  const auto seen = bent(lens(), target->ellipse);
+  roi_ =
+      seen ? calculate_roi(
+                 *seen, settings_.roi_expansion, scale_, frame_bounds_.width, frame_bounds_.height)
+           : frame_bounds_;
 }
 
 void Tracker::take_in(const PixelView& frame, const SearchScope& scope) {

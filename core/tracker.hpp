@@ -70,8 +70,8 @@ class Tracker {
   /// Forgets the target, the scale and the region. Numbers of targets go on.
   void reset();
 
-  /// All ellipses that the detector found in the last frame [px of the frame]; none in a frame
-  /// where it was not asked, see TrackerSettings::wants_candidates. Until the next call.
+  /// All ellipses that the detector found in the last frame [px, as Target::ellipse]; none in a
+  /// frame where it was not asked, see TrackerSettings::wants_candidates. Until the next call.
   [[nodiscard]] std::span<const Detection> candidates() const { return candidates_; }
 
   /// Every search by the detector from now on tells there what it sees, and why what is not the
@@ -82,8 +82,8 @@ class Tracker {
   /// Where the last frame was searched [px].
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
-  /// The lens of the last frame, where it is distorted; else nullptr. Until the next call.
-  [[nodiscard]] const Lens* bent_lens() const;
+  /// Through what lens the last frame was seen. Until the next call.
+  [[nodiscard]] LensView lens() const;
 
  private:
   [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);

@@ -60,7 +60,8 @@ static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
   }
 }
 
-static void write_outline(GstEllipseMeta* meta, const ellipse::Lens& lens) {
+static void write_outline(GstEllipseMeta* meta, const ellipse::LensView& lens) {
+  if (!lens.is_bent()) return;
   std::array<Eigen::Vector2d, G_N_ELEMENTS(GstEllipseMeta::outline) / 2> points;
   ellipse::bent_outline(
       lens, {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad}, points);
@@ -74,7 +75,7 @@ static void write_outline(GstEllipseMeta* meta, const ellipse::Lens& lens) {
 
 static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
                                                 const ellipse::Target& target,
-                                                const ellipse::Lens* bent_lens,
+                                                const ellipse::LensView& lens,
                                                 const GstVideoInfo& info,
                                                 GstClockTime processing_time) {
   GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
@@ -90,7 +91,7 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->roi_height = static_cast<guint>(target.search_region.height);
   meta->processing_time = processing_time;
   if (target.pose) write_pose(meta, *target.pose);
-  if (bent_lens != nullptr) write_outline(meta, *bent_lens);
+  write_outline(meta, lens);
   return meta;
 }
 
@@ -99,6 +100,7 @@ static constexpr double kSameEllipsePx = 1.5;
 static void attach_candidate_metas(GstBuffer* buffer,
                                    std::span<const ellipse::Detection> candidates,
                                    const std::optional<ellipse::Target>& target,
+                                   const ellipse::LensView& lens,
                                    const GstVideoInfo& info) {
   for (const ellipse::Detection& candidate : candidates) {
     // The target itself, which following it made a little different.
@@ -108,6 +110,7 @@ static void attach_candidate_metas(GstBuffer* buffer,
     GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
     meta->contour_overlap = candidate.contour_overlap;
     meta->ellipse_overlap = candidate.ellipse_overlap;
+    write_outline(meta, lens);
   }
 }
 
@@ -151,11 +154,11 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
   gst_buffer_add_ellipse_search_meta(buffer, processing_time);
   const GstEllipseMeta* meta = nullptr;
   if (target) {
-    meta = attach_target_meta(buffer, *target, tracker.bent_lens(), info, processing_time);
+    meta = attach_target_meta(buffer, *target, tracker.lens(), info, processing_time);
     if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
   }
   if (properties.tracker.wants_candidates) {
-    attach_candidate_metas(buffer, tracker.candidates(), target, info);
+    attach_candidate_metas(buffer, tracker.candidates(), target, tracker.lens(), info);
   }
   return meta;
 }
