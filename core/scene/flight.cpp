@@ -114,7 +114,7 @@ CameraPose pose_at(const Flight& flight, double time_s) {
   return hovering(flight.lowest, time_s);
 }
 
-Matrix3d image_from_pad(const CameraPose& pose, double hfov_rad, int width, int height) {
+Matrix3d image_from_pad(const CameraPose& pose, const Camera& camera) {
   const Vector3d forward = (pose.looks_at - pose.position).normalized();
   const Vector3d north(0.0, 1.0, 0.0);
   const Vector3d right = forward.cross(north).normalized();
@@ -123,13 +123,13 @@ Matrix3d image_from_pad(const CameraPose& pose, double hfov_rad, int width, int 
   camera_from_pad << right.transpose(), down.transpose(), forward.transpose();
   camera_from_pad =
       Eigen::AngleAxisd(pose.roll_rad, Vector3d::UnitZ()).toRotationMatrix() * camera_from_pad;
-
-  const double focal_px = width / 2.0 / std::tan(hfov_rad / 2.0);
-  Matrix3d intrinsics;
-  intrinsics << focal_px, 0.0, (width - 1) / 2.0, 0.0, focal_px, (height - 1) / 2.0, 0.0, 0.0, 1.0;
   Matrix3d plane;
   plane << camera_from_pad.leftCols<2>(), -camera_from_pad * pose.position;
-  return intrinsics * plane;
+  return camera.matrix() * plane;
+}
+
+Matrix3d image_from_pad(const CameraPose& pose, double hfov_rad, int width, int height) {
+  return image_from_pad(pose, Camera::with_hfov(hfov_rad, width, height));
 }
 
 }  // namespace ellipse

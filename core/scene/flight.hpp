@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "core/camera.hpp"
+
 namespace ellipse {
 
 /// A pinhole camera over the pad, whose centre is (0, 0, 0), x and y in its plane, z up; in units
@@ -33,7 +35,10 @@ struct Flight {
 /// Where the camera is at a time [s]. Deterministic, thread-safe.
 [[nodiscard]] CameraPose pose_at(const Flight& flight, double time_s);
 
-/// From the pad's plane to pixels. @param hfov_rad  Horizontal field of view.
+/// From the pad's plane to pixels of the camera's ideal plane.
+[[nodiscard]] Eigen::Matrix3d image_from_pad(const CameraPose& pose, const Camera& camera);
+
+/// The same for a pinhole. @param hfov_rad  Horizontal field of view.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const CameraPose& pose,
                                              double hfov_rad,
                                              int width,

@@ -15,16 +15,18 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void add_glare(const Glare& glare, const View& view, const LightImage& image) {
-  if (!(glare.level > 0.0) || !view.camera) return;
-  const Vector3d& camera = *view.camera;
-  const Matrix3d plane_from_image = view.image_from_pad.inverse();
+void add_glare(const Glare& glare,
+               const Vector3d& camera,
+               const Patch& patch,
+               const LightImage& image) {
   const Vector2d middle = camera.head<2>() + camera.z() * glare.tilt;
   const double spread = camera.z() * glare.spread;
-  float* light = image.light.data();
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x, ++light) {
-      const Vector3d q = plane_from_image * Vector3d(x, y, 1.0);
+  for (int y = patch.top; y < patch.top + patch.height; ++y) {
+    float* light =
+        &image.light[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                     static_cast<std::size_t>(patch.left)];
+    for (int x = patch.left; x < patch.left + patch.width; ++x, ++light) {
+      const Vector3d q = patch.plane_from_image * Vector3d(x, y, 1.0);
       if (!(q.z() > 0.0)) continue;
       const double off = ((q.hnormalized() - middle) / spread).squaredNorm();
       if (off < 24.0) *light += static_cast<float>(glare.level * std::exp(-0.5 * off));

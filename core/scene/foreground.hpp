@@ -14,8 +14,20 @@ struct LightImage {
   int height = 0;
 };
 
-/// The sun's mirror image, where the view tells the camera's place.
-void add_glare(const Glare& glare, const View& view, const LightImage& image);
+/// A part of the picture in which the plane is seen by one homography.
+struct Patch {
+  int left = 0;  ///< [px]
+  int top = 0;
+  int width = 0;
+  int height = 0;
+  Eigen::Matrix3d plane_from_image;
+};
+
+/// The sun's mirror image in a patch. @param camera  Its place over the plane [radii of the pad].
+void add_glare(const Glare& glare,
+               const Eigen::Vector3d& camera,
+               const Patch& patch,
+               const LightImage& image);
 
 /// More light on one side than on the other. @param gradient  As Light::gradient.
 void add_gradient(const Eigen::Vector2d& gradient, const LightImage& image);

@@ -33,6 +33,7 @@ struct SceneRenderer::Block {
   int top = 0;
   int width = 0;
   int height = 0;
+  int size = 0;  // of those that the picture's border does not cut
   Vector2d middle_px{0.0, 0.0};
   double half_px = 0.0;  // from its middle to its corners
   bool is_in_front = true;
@@ -56,7 +57,8 @@ SceneRenderer::SceneRenderer(const Scene& scene)
     : scene_(scene),
       ground_(scene.ground, scene.seed),
       pad_(scene.pad, scene.sensor.blur_px, scene.seed),
-      sensor_(scene.sensor) {}
+      sensor_(scene.sensor),
+      camera_(camera_of(scene, 0, 0)) {}
 
 Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableImage& picture) {
   start_frame(picture);
@@ -65,12 +67,12 @@ Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableIma
   for (int i = 0; i < instants; ++i) {
     const double part = (i + 0.5) / instants - 0.5;
     const double instant_s = time_s + part * scene_.sensor.exposure_s;
-    add_instant({.image_from_pad = image_from_pad(scene_, instant_s, width_, height_)}, weight);
+    add_instant({.image_from_pad = view_at(instant_s)}, weight);
   }
   const LightImage light{light_, width_, height_};
-  const View view{.image_from_pad = image_from_pad(scene_, time_s, width_, height_),
+  const View view{.image_from_pad = view_at(time_s),
                   .camera = pose_at(scene_.flight, time_s).position};
-  add_glare(scene_.light.glare, view, light);
+  add_glare_of(view);
   add_gradient(scene_.light.gradient, light);
   add_bars(scene_, time_s, light);
   return expose(view.image_from_pad, frame, picture);
@@ -80,7 +82,7 @@ Truth SceneRenderer::render(const View& view, std::uint64_t frame, const Mutable
   start_frame(picture);
   add_instant(view, 1.0F);
   const LightImage light{light_, width_, height_};
-  add_glare(scene_.light.glare, view, light);
+  add_glare_of(view);
   add_gradient(scene_.light.gradient, light);
   add_bars(scene_, 0.0, light);
   return expose(view.image_from_pad, frame, picture);
@@ -96,36 +98,87 @@ void SceneRenderer::start_frame(const MutableImage& picture) {
   width_ = picture.width;
   height_ = picture.height;
   light_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0.0F);
+  if (camera_.width == width_ && camera_.height == height_) return;
+  camera_ = camera_of(scene_, width_, height_);
+  if (camera_.is_distorted()) lens_map_.emplace(camera_);
+}
+
+Matrix3d SceneRenderer::view_at(double time_s) const {
+  return image_from_pad(pose_at(scene_.flight, time_s), camera_);
 }
 
 Truth SceneRenderer::expose(const Matrix3d& image_from_pad,
                             std::uint64_t frame,
                             const MutableImage& picture) {
   sensor_.read(light_, hash(scene_.seed ^ hash(frame)), picture);
-  return truth_of(scene_.pad, image_from_pad, width_, height_);
+  return truth_of(scene_.pad, image_from_pad, camera_);
 }
 
-// As many as the fastest of the picture's corners needs.
+// How far a place of the picture moves in the picture; 0 where the lens does not show it.
+double SceneRenderer::moved_px(const Matrix3d& end_from_begin, const Vector2d& picture_px) const {
+  const auto moved = [&](const Vector2d& p) {
+    return Vector2d((end_from_begin * p.homogeneous()).hnormalized());
+  };
+  if (!lens_map_) return (moved(picture_px) - picture_px).norm();
+  const auto ideal = lens_map_->lens().ideal_from_picture(picture_px);
+  const auto end = ideal ? lens_map_->lens().picture_from_ideal(moved(*ideal)) : std::nullopt;
+  return end ? (end->picture_px - picture_px).norm() : 0.0;
+}
+
+// As many as the fastest of the picture's corners needs, and of its middle and sides: a lens may
+// not show the corners.
 int SceneRenderer::instants_at(double time_s) const {
   const double exposure_s = scene_.sensor.exposure_s;
   if (!(exposure_s > 0.0)) return 1;
-  const auto view = [&](double part) {
-    return image_from_pad(scene_, time_s + part * exposure_s, width_, height_);
-  };
+  const auto view = [&](double part) { return view_at(time_s + part * exposure_s); };
   const Matrix3d end_from_begin = view(0.5) * view(-0.5).inverse();
   double farthest_px = 0.0;
-  for (const double x : {0.0, width_ - 1.0}) {
-    for (const double y : {0.0, height_ - 1.0}) {
-      const Vector2d end = (end_from_begin * Vector3d(x, y, 1.0)).hnormalized();
-      farthest_px = std::max(farthest_px, (end - Vector2d(x, y)).norm());
+  for (const double x : {0.0, 0.5, 1.0}) {
+    for (const double y : {0.0, 0.5, 1.0}) {
+      if (!lens_map_ && (x == 0.5 || y == 0.5)) continue;
+      const Vector2d place(x * (width_ - 1), y * (height_ - 1));
+      farthest_px = std::max(farthest_px, moved_px(end_from_begin, place));
     }
   }
   const double spacing_px = kInstantSpacing * scene_.sensor.blur_px;
   return static_cast<int>(std::clamp(std::ceil(farthest_px / spacing_px), 1.0, 1e6));
 }
 
+// A lens bends each patch in its own way; without one the picture is one patch.
+template <class Use>
+void SceneRenderer::for_each_patch(const Matrix3d& plane_from_ideal, const Use& use) const {
+  if (!lens_map_) return use(Patch{0, 0, width_, height_, plane_from_ideal});
+  constexpr int kSize = LensMap::kBlock;
+  for (int top = 0; top < height_; top += kSize) {
+    for (int left = 0; left < width_; left += kSize) {
+      const int column = left / kSize;
+      const int row = top / kSize;
+      if (!lens_map_->is_shown(column, row)) continue;
+      use(Patch{left,
+                top,
+                std::min(kSize, width_ - left),
+                std::min(kSize, height_ - top),
+                plane_from_ideal * lens_map_->ideal_from_picture(column, row)});
+    }
+  }
+}
+
 void SceneRenderer::add_instant(const View& view, float weight) {
-  plane_from_image_ = view.image_from_pad.inverse();
+  for_each_patch(view.image_from_pad.inverse(), [&](const Patch& patch) {
+    look(view, patch.plane_from_image);
+    add_blocks(patch, weight);
+  });
+}
+
+void SceneRenderer::add_glare_of(const View& view) {
+  if (!(scene_.light.glare.level > 0.0) || !view.camera) return;
+  for_each_patch(view.image_from_pad.inverse(), [&](const Patch& patch) {
+    add_glare(scene_.light.glare, *view.camera, patch, {light_, width_, height_});
+  });
+}
+
+void SceneRenderer::look(const View& view, const Matrix3d& plane_from_image) {
+  plane_from_image_ = plane_from_image;
   ground_from_image_ = view.ground_from_pad.matrix() * plane_from_image_;
   plane_area_ = std::abs(plane_from_image_.determinant());
   pad_.look(plane_from_image_);
@@ -134,9 +187,12 @@ void SceneRenderer::add_instant(const View& view, float weight) {
     const Vector2d normal(std::cos(shadow.direction_rad), std::sin(shadow.direction_rad));
     shadows_.push_back(project_band(plane_from_image_, normal, shadow.center, shadow.half_width));
   }
-  for (int top = 0; top < height_; top += kBlock) {
-    for (int left = 0; left < width_; left += kBlock) {
-      Block block = block_at(left, top);
+}
+
+void SceneRenderer::add_blocks(const Patch& patch, float weight) {
+  for (int top = patch.top; top < patch.top + patch.height; top += kBlock) {
+    for (int left = patch.left; left < patch.left + patch.width; left += kBlock) {
+      Block block = block_at(patch, left, top);
       fill(block);
       for (int y = 0; y < block.height; ++y) {
         float* row =
@@ -148,12 +204,13 @@ void SceneRenderer::add_instant(const View& view, float weight) {
   }
 }
 
-SceneRenderer::Block SceneRenderer::block_at(int left, int top) const {
+SceneRenderer::Block SceneRenderer::block_at(const Patch& patch, int left, int top) const {
   Block block;
   block.left = left;
   block.top = top;
-  block.width = std::min(kBlock, width_ - left);
-  block.height = std::min(kBlock, height_ - top);
+  block.width = std::min(kBlock, patch.left + patch.width - left);
+  block.height = std::min(kBlock, patch.top + patch.height - top);
+  block.size = lens_map_ ? LensMap::kBlock : kBlock;
   const Vector2d first(left, top);
   const Vector2d half_size(0.5 * (block.width - 1), 0.5 * (block.height - 1));
   block.middle_px = first + half_size;
@@ -164,7 +221,7 @@ SceneRenderer::Block SceneRenderer::block_at(int left, int top) const {
   block.middle = middle.hnormalized();
   for (const double sx : {-0.5, 0.5}) {
     for (const double sy : {-0.5, 0.5}) {
-      const Vector2d corner = block.middle_px + Vector2d(sx * kBlock, sy * kBlock);
+      const Vector2d corner = block.middle_px + Vector2d(sx * block.size, sy * block.size);
       const Vector3d q = plane_from_image_ * corner.homogeneous();
       block.is_in_front = block.is_in_front && q.z() > 0.0;
       if (block.is_in_front) {
@@ -206,12 +263,14 @@ void SceneRenderer::fill_ground(Block& block) const {
     return GroundTexture::coarseness(wider * std::sqrt(plane_area_ / (depth * depth * depth)));
   };
   const Vector3d step = ground_from_image_.col(0);
+  const int steps = block.size;
   for (int y = 0; y < block.height; ++y) {
     Vector3d q = ground_from_image_ * Vector3d(block.left, block.top + y, 1.0);
-    const double last_depth = q.z() + kBlock * step.z();
+    const double last_depth = q.z() + steps * step.z();
     const bool is_seen = q.z() > 0.0 && last_depth > 0.0;
     const float first = is_seen ? coarseness(q.z()) : 0.0F;
-    const float change = is_seen ? (coarseness(last_depth) - first) / kBlock : 0.0F;
+    const float change =
+        is_seen ? (coarseness(last_depth) - first) / static_cast<float>(steps) : 0.0F;
     for (int x = 0; x < block.width; ++x, q += step) {
       float& light = block.at(x, y);
       if (!(q.z() > 0.0)) {

@@ -1,14 +1,131 @@
 // SPDX-License-Identifier: MIT
 #include "core/scene/scene.hpp"
 
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
 namespace ellipse {
+namespace {
+
+using Eigen::Vector2d;
+
+// How far from the middle the picture's border lies, at focal length 1.
+double border_place(const Distortion& distortion, double hfov_rad) {
+  Camera unit{.width = 1, .height = 1, .fx = 1.0, .fy = 1.0};
+  unit.lens = distortion.model;
+  unit.distortion = distortion.coefficients;
+  const Lens lens(unit);
+  const double ideal = std::tan(0.5 * hfov_rad);
+  const auto left = lens.picture_from_ideal({-ideal, 0.0});
+  const auto right = lens.picture_from_ideal({ideal, 0.0});
+  if (!(hfov_rad > 0.0) || !left || !right) {
+    throw std::invalid_argument("hfov_rad: the lens does not show as much");
+  }
+  return 0.5 * (right->picture_px.x() - left->picture_px.x());
+}
+
+// An outline as the lens bends it.
+class BentOutline {
+ public:
+  BentOutline(const Camera& camera, const Ellipse& ideal)
+      : lens_(camera), ideal_(ideal), middle_(camera.cx, camera.cy) {}
+
+  [[nodiscard]] double share_in_frame() {
+    constexpr int kPieces = 64;
+    Place begin = at(0.0);
+    for (int i = 1; i <= kPieces; ++i) {
+      const Place end = at(2.0 * std::numbers::pi * i / kPieces);
+      add(begin, end, kMostHalvings);
+      begin = end;
+    }
+    return total_ > 0.0 ? inside_ / total_ : 0.0;
+  }
+
+ private:
+  static constexpr int kMostHalvings = 16;
+
+  struct Place {
+    double anomaly_rad;
+    Vector2d picture_px;
+    bool is_shown;
+  };
+
+  [[nodiscard]] Place at(double anomaly_rad) const {
+    const Vector2d ideal = ideal_.point_at(anomaly_rad);
+    if (const auto point = lens_.picture_from_ideal(ideal)) {
+      return {anomaly_rad, point->picture_px, true};
+    }
+    return {anomaly_rad, end_towards(ideal), false};
+  }
+
+  // Where the lens ends on the way to a point.
+  [[nodiscard]] Vector2d end_towards(const Vector2d& ideal) const {
+    constexpr int kHalvings = 30;
+    double shown = 0.0;
+    double hidden = 1.0;
+    Vector2d picture_px = middle_;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double share = 0.5 * (shown + hidden);
+      const auto point = lens_.picture_from_ideal(middle_ + share * (ideal - middle_));
+      if (point) picture_px = point->picture_px;
+      (point ? shown : hidden) = share;
+    }
+    return picture_px;
+  }
+
+  // Even anomalies are uneven lengths in the picture, the more the wider the lens.
+  void add(const Place& begin, const Place& end, int halvings) {
+    const double length = (end.picture_px - begin.picture_px).norm();
+    if (length > 1.0 && halvings > 0) {
+      const Place middle = at(0.5 * (begin.anomaly_rad + end.anomaly_rad));
+      add(begin, middle, halvings - 1);
+      add(middle, end, halvings - 1);
+      return;
+    }
+    total_ += length;
+    if (begin.is_shown && end.is_shown && is_in_frame(end.picture_px)) inside_ += length;
+  }
+
+  [[nodiscard]] bool is_in_frame(const Vector2d& p) const {
+    const Camera& camera = lens_.camera();
+    return p.x() >= -0.5 && p.y() >= -0.5 && p.x() < camera.width - 0.5 &&
+           p.y() < camera.height - 0.5;
+  }
+
+  Lens lens_;
+  Ellipse ideal_;
+  Vector2d middle_;
+  double inside_ = 0.0;
+  double total_ = 0.0;
+};
+
+}  // namespace
+
+Camera camera_of(const Scene& scene, int width, int height) {
+  Camera camera = Camera::with_hfov(scene.hfov_rad, width, height);
+  if (!scene.lens) return camera;
+  camera.lens = scene.lens->model;
+  camera.distortion = scene.lens->coefficients;
+  camera.fx = camera.fy = 0.5 * width / border_place(*scene.lens, scene.hfov_rad);
+  return camera;
+}
 
 Truth truth_of(const Pad& pad, const Eigen::Matrix3d& image_from_pad, int width, int height) {
+  Camera pinhole;
+  pinhole.width = width;
+  pinhole.height = height;
+  return truth_of(pad, image_from_pad, pinhole);
+}
+
+Truth truth_of(const Pad& pad, const Eigen::Matrix3d& image_from_pad, const Camera& camera) {
   Truth truth;
   if (pad.pattern == Pattern::kNone) return truth;
   truth.outer_edge = project_circle(image_from_pad, 1.0);
   if (!truth.outer_edge) return truth;
-  truth.visible_fraction = visible_fraction(*truth.outer_edge, width, height);
+  truth.visible_fraction = camera.is_distorted()
+                               ? BentOutline(camera, *truth.outer_edge).share_in_frame()
+                               : visible_fraction(*truth.outer_edge, camera.width, camera.height);
   if (const auto radius = inner_radius(pad)) {
     truth.inner_edge = project_circle(image_from_pad, *radius);
   }
@@ -16,7 +133,7 @@ Truth truth_of(const Pad& pad, const Eigen::Matrix3d& image_from_pad, int width,
 }
 
 Eigen::Matrix3d image_from_pad(const Scene& scene, double time_s, int width, int height) {
-  return image_from_pad(pose_at(scene.flight, time_s), scene.hfov_rad, width, height);
+  return image_from_pad(pose_at(scene.flight, time_s), camera_of(scene, width, height));
 }
 
 }  // namespace ellipse

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "core/camera.hpp"
 #include "core/ellipse.hpp"
 #include "core/scene/flight.hpp"
 #include "core/scene/ground.hpp"
@@ -47,6 +49,12 @@ struct Light {
   Glare glare;
 };
 
+/// How a lens bends the picture.
+struct Distortion {
+  LensModel model = LensModel::kBrownConrady;
+  std::array<double, 8> coefficients{};  ///< In the order of the model; the rest is 0.
+};
+
 /// A landing pad on the ground under a flying camera. A value: the same one gives the same
 /// pictures on any machine.
 struct Scene {
@@ -56,31 +64,47 @@ struct Scene {
   Sensor sensor;
   Flight flight;
   std::vector<Bar> bars;
-  double hfov_rad = 1.012;  ///< Horizontal field of view.
-  std::uint64_t seed = 1;   ///< Of all that is random.
+  double hfov_rad = 1.012;  ///< Horizontal field of view, from border to border of the picture.
+  std::optional<Distortion> lens;  ///< None = a pinhole.
+  std::uint64_t seed = 1;          ///< Of all that is random.
 };
 
-/// What a frame shows.
+/// What a frame shows. The ellipses are of the ideal plane: of the picture itself, where no lens
+/// bends it.
 struct Truth {
-  std::optional<Ellipse> outer_edge;  ///< The exact picture of the painted circle [px].
+  std::optional<Ellipse> outer_edge;  ///< The exact image of the painted circle [px].
   std::optional<Ellipse> inner_edge;  ///< Of the edge next inside it [px].
-  double visible_fraction = 0.0;      ///< Share of the outer edge inside the frame.
+  double visible_fraction = 0.0;      ///< Share of the outer edge's length inside the frame.
 };
 
 /// How a camera of its own sees a pad: one that flies by no Flight, over a pad that may move.
 struct View {
-  Eigen::Matrix3d image_from_pad;           ///< The pad's plane to pixels.
+  Eigen::Matrix3d image_from_pad;           ///< The pad's plane to pixels of the ideal plane.
   std::optional<Eigen::Vector3d> camera{};  ///< On the pad [radii]; without it there is no glare.
   /// The pad on the ground [radii]; the ground is seen to pass beneath a pad that moves.
   Eigen::Isometry2d ground_from_pad = Eigen::Isometry2d::Identity();
 };
 
+/// The camera that a scene is seen by: its lens, and the focal length at which the picture shows
+/// hfov_rad between the outer edges of its first and last column.
+/// Throws std::invalid_argument where the lens does not show as much.
+[[nodiscard]] Camera camera_of(const Scene& scene, int width, int height);
+
+/// Of a picture that no lens bends.
 [[nodiscard]] Truth truth_of(const Pad& pad,
                              const Eigen::Matrix3d& image_from_pad,
                              int width,
                              int height);
 
-/// Where the camera of a scene sees the pad's plane at a time.
+/// Of a camera's picture. The outline's length is that of the bent one, summed in steps of at most
+/// a pixel; where the lens ends, it runs along the end and is not in the frame.
+/// @param image_from_pad  To the ideal plane.
+/// Thread-safe; allocates nothing.
+[[nodiscard]] Truth truth_of(const Pad& pad,
+                             const Eigen::Matrix3d& image_from_pad,
+                             const Camera& camera);
+
+/// Where the camera of a scene sees the pad's plane at a time, in its ideal plane [px].
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Scene& scene,
                                              double time_s,
                                              int width,
