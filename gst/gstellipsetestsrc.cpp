@@ -6,8 +6,9 @@
  *
  * Renders what a drone's camera sees above a landing pad: scenes from a plain approach to dusk,
  * glare, occlusion, motion blur and clutter without any pad. Each buffer carries the exact ellipse
- * of the pad's outer edge as a #GstEllipseMeta with the role "truth". The same properties give the
- * same frames on any machine.
+ * of the pad's outer edge as a #GstEllipseMeta with the role "truth". Through a lens that bends the
+ * picture it is the ellipse of the ideal plane, with the bent outline beside it, as #ellipsetrack
+ * has them. The same properties give the same frames on any machine.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
@@ -31,11 +32,22 @@
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/meta_outline.hpp"
 #include "gst/video_view.hpp"
 
-enum { PROP_0, PROP_SCENE, PROP_PATTERN, PROP_GROUND, PROP_NOISE, PROP_SEED, PROP_IS_LIVE };
+enum {
+  PROP_0,
+  PROP_SCENE,
+  PROP_PATTERN,
+  PROP_GROUND,
+  PROP_LENS,
+  PROP_NOISE,
+  PROP_SEED,
+  PROP_IS_LIVE
+};
 
 static constexpr gint kAsTheScene = -1;  // of the enum properties, and of "noise"
+static constexpr gint kNoLens = 0;       // beyond it those of the catalog
 static constexpr guint8 kNeutralChroma = 128;
 
 struct _GstEllipseTestSrc {
@@ -45,6 +57,7 @@ struct _GstEllipseTestSrc {
   gint scene;
   gint pattern;
   gint ground;
+  gint lens;
   gdouble noise;
   guint seed;
   gboolean is_changed;  // since the renderer was made
@@ -104,6 +117,18 @@ static GType gst_ellipse_ground_get_type(void) {
   return kType;
 }
 
+static GType gst_ellipse_lens_get_type(void) {
+  static const GType kType = [] {
+    static std::vector<GEnumValue> values = {{kNoLens, "None: a pinhole", "none"}};
+    for (const ellipse::NamedLens& lens : ellipse::lens_catalog()) {
+      values.push_back({static_cast<gint>(values.size()), lens.description, lens.name});
+    }
+    values.push_back({0, nullptr, nullptr});
+    return g_enum_register_static("GstEllipseLens", values.data());
+  }();
+  return kType;
+}
+
 static void gst_ellipse_test_src_set_property(GObject* object,
                                               guint id,
                                               const GValue* value,
@@ -123,6 +148,9 @@ static void gst_ellipse_test_src_set_property(GObject* object,
       break;
     case PROP_GROUND:
       self->ground = g_value_get_enum(value);
+      break;
+    case PROP_LENS:
+      self->lens = g_value_get_enum(value);
       break;
     case PROP_NOISE:
       self->noise = g_value_get_double(value);
@@ -156,6 +184,9 @@ static void gst_ellipse_test_src_get_property(GObject* object,
       break;
     case PROP_GROUND:
       g_value_set_enum(value, self->ground);
+      break;
+    case PROP_LENS:
+      g_value_set_enum(value, self->lens);
       break;
     case PROP_NOISE:
       g_value_set_double(value, self->noise);
@@ -242,6 +273,8 @@ static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellip
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
   meta->pts = GST_BUFFER_PTS(buffer);
+  const ellipse::Lens* bent_lens = self->renderer->bent_lens();
+  if (bent_lens != nullptr) write_outline(meta, *bent_lens);
 }
 
 // The scene as the properties have it; nullopt where they have not changed.
@@ -250,6 +283,7 @@ static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
   const gint number = self->scene;
   const gint pattern = self->pattern;
   const gint ground = self->ground;
+  const gint lens = self->lens;
   const gdouble noise = self->noise;
   const guint seed = self->seed;
   const bool is_changed = self->is_changed != FALSE;
@@ -260,6 +294,9 @@ static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
   ellipse::Scene scene = ellipse::scene_catalog()[static_cast<std::size_t>(number)].make(seed);
   if (pattern != kAsTheScene) scene.pad.pattern = static_cast<ellipse::Pattern>(pattern);
   if (ground != kAsTheScene) scene.ground.kind = static_cast<ellipse::GroundKind>(ground);
+  if (lens != kNoLens) {
+    ellipse::lens_catalog()[static_cast<std::size_t>(lens - kNoLens - 1)].put_on(scene);
+  }
   if (noise >= 0.0) scene.sensor.read_noise = noise;
   return scene;
 }
@@ -309,6 +346,7 @@ static void gst_ellipse_test_src_finalize(GObject* object) {
 static void gst_ellipse_test_src_init(GstEllipseTestSrc* self) {
   self->pattern = kAsTheScene;
   self->ground = kAsTheScene;
+  self->lens = kNoLens;
   self->noise = kAsTheScene;
   self->seed = 1;
   self->is_changed = TRUE;
@@ -342,6 +380,13 @@ static void install_properties(GObjectClass* object_class) {
                             "What lies around the pad",
                             gst_ellipse_ground_get_type(),
                             kAsTheScene,
+                            flags));
+  install(PROP_LENS,
+          g_param_spec_enum("lens",
+                            "Lens",
+                            "How the lens bends the picture",
+                            gst_ellipse_lens_get_type(),
+                            kNoLens,
                             flags));
   install(PROP_NOISE,
           g_param_spec_double("noise",
@@ -393,4 +438,5 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
   gst_type_mark_as_plugin_api(gst_ellipse_scene_get_type(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(gst_ellipse_pattern_get_type(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(gst_ellipse_ground_get_type(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(gst_ellipse_lens_get_type(), static_cast<GstPluginAPIFlags>(0));
 }

@@ -145,10 +145,13 @@ void cover_region(Canvas& canvas, const GstEllipseMeta& meta) {
   }
 }
 
-// Of the circle, where the camera is known; else of its ellipse.
+// Of the circle, where the camera is known; of what a lens bends, where it is not; else of its
+// ellipse.
 Vector2d centre_of(const GstEllipseMeta& meta) {
   const bool is_known = meta.has_pose && is_near(meta.centre_x) && is_near(meta.centre_y);
-  return is_known ? Vector2d(meta.centre_x, meta.centre_y) : Vector2d(meta.cx, meta.cy);
+  if (is_known) return {meta.centre_x, meta.centre_y};
+  const Outline outline(meta);
+  return outline.empty() ? Vector2d(meta.cx, meta.cy) : outline.extent().center();
 }
 
 std::string label_of(const GstEllipseMeta& meta) {

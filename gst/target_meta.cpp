@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "gst/ellipse/gstellipsesearchmeta.h"
+#include "gst/meta_outline.hpp"
 
 const gchar* state_nick(const std::optional<ellipse::Target>& target) {
   if (!target) return "lost";
@@ -58,19 +58,6 @@ static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
   for (int i = 0; i < 3; ++i) {
     for (int k = i; k < 3; ++k) *to++ = pose.covariance_m2(i, k);
   }
-}
-
-static void write_outline(GstEllipseMeta* meta, const ellipse::LensView& lens) {
-  if (!lens.is_bent()) return;
-  std::array<Eigen::Vector2d, G_N_ELEMENTS(GstEllipseMeta::outline) / 2> points;
-  ellipse::bent_outline(
-      lens, {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad}, points);
-  gfloat* to = meta->outline;
-  for (const Eigen::Vector2d& point : points) {
-    *to++ = static_cast<gfloat>(point.x());
-    *to++ = static_cast<gfloat>(point.y());
-  }
-  meta->n_outline = static_cast<guint>(points.size());
 }
 
 static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,

@@ -2,6 +2,7 @@
 #include "core/scene/catalog.hpp"
 
 #include <array>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -174,6 +175,27 @@ constexpr std::array kCatalog = {
     NamedScene{"distractors", "The approach over discs and lesser rings", distractors},
 };
 
+void barrel(Scene& scene) {
+  scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
+}
+
+// The pad is half as large as through a lens of 58 degrees: half as far away it is as large, and
+// fills the view at the end of a descent. What leaves the picture has twice as far to go, and stays
+// far enough away to lie before the camera as a whole.
+void fisheye(Scene& scene) {
+  scene.lens = Distortion{LensModel::kFisheye, {}};
+  scene.hfov_rad = 2.0 / 3.0 * std::numbers::pi;
+  scene.flight.reach *= 2.0;
+  if (scene.flight.path == Path::kReenter) return;
+  scene.flight.highest *= 0.5;
+  scene.flight.lowest *= 0.5;
+}
+
+constexpr std::array kLenses = {
+    NamedLens{"barrel", "Brown-Conrady, k1 = -0.22, the scene's field of view", barrel},
+    NamedLens{"fisheye", "Equidistant, 120 degrees, flown twice as near", fisheye},
+};
+
 constexpr std::array kPatternNicks = {"ring-x", "ring", "disc", "ring-h", "bullseye", "none"};
 constexpr std::array kGroundNicks = {"plain",
                                      "asphalt",
@@ -199,6 +221,20 @@ Scene scene_by_name(const char* name, std::uint64_t seed) {
     names += names.empty() ? entry.name : std::string(", ") + entry.name;
   }
   throw std::invalid_argument("scene \"" + std::string(name) + "\" is none of: " + names);
+}
+
+std::span<const NamedLens> lens_catalog() {
+  return kLenses;
+}
+
+void put_on_lens(Scene& scene, const char* name) {
+  std::string names;
+  for (const NamedLens& lens : kLenses) {
+    if (std::string_view(lens.name) == name) return lens.put_on(scene);
+    if (!names.empty()) names += ", ";
+    names += lens.name;
+  }
+  throw std::invalid_argument("lens \"" + std::string(name) + "\" is none of: " + names);
 }
 
 std::span<const char* const> pattern_nicks() {

@@ -62,7 +62,7 @@ CameraPose dashing(const Flight& flight, double time_s) {
   // 200 px to each side at 6 rad/s are 1200 px/s, with a focal length of 577 px.
   constexpr double kReach = 200.0 / 577.0;
   CameraPose pose = hovering(flight.lowest, time_s);
-  const double aside = kReach * flight.lowest * std::sin(6.0 * time_s);
+  const double aside = flight.reach * kReach * flight.lowest * std::sin(6.0 * time_s);
   pose.position.x() += aside;
   pose.looks_at.x() += aside;
   return pose;
@@ -70,7 +70,7 @@ CameraPose dashing(const Flight& flight, double time_s) {
 
 CameraPose shaking(const Flight& flight, double time_s) {
   CameraPose pose = hovering(flight.lowest, time_s);
-  const double amplitude = 0.02 * flight.lowest;
+  const double amplitude = flight.reach * 0.02 * flight.lowest;
   pose.looks_at +=
       amplitude *
       Vector3d(std::sin(2.0 * kPi * 7.3 * time_s), std::sin(2.0 * kPi * 9.1 * time_s + 0.5), 0.0);
@@ -81,8 +81,8 @@ CameraPose shaking(const Flight& flight, double time_s) {
 CameraPose reentering(const Flight& flight, double time_s) {
   CameraPose pose = hovering(flight.lowest, time_s);
   const double turn = 2.0 * kPi * time_s / flight.period_s;
-  const Vector3d away =
-      flight.lowest * Vector3d(0.85 * std::sin(turn), 0.3 * std::sin(2.0 * turn), 0.0);
+  const Vector3d away = flight.reach * flight.lowest *
+                        Vector3d(0.85 * std::sin(turn), 0.3 * std::sin(2.0 * turn), 0.0);
   pose.position += 0.3 * away;
   pose.looks_at += away;
   return pose;

@@ -30,6 +30,7 @@ struct Flight {
   double period_s = 20.0;
   double highest = 20.0;  ///< Distance from the pad [radii].
   double lowest = 2.6;    ///< Distance from the pad [radii].
+  double reach = 1.0;     ///< Of kDash, kShake and kReenter: so many times as far aside.
 };
 
 /// Where the camera is at a time [s]. Deterministic, thread-safe.

@@ -39,6 +39,9 @@ class SceneRenderer {
                std::uint64_t frame,
                const MutableImage& picture);
 
+  /// The lens of the last frame, where it bends the picture; else nullptr. Until the next frame.
+  [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
+
  private:
   struct Block;  // some pixels, and the piece of the plane that they see
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "core/scene/catalog.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -129,10 +130,37 @@ TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
     return bytes_of(first_frame(settings, caps_of("GRAY8", 160, 90)));
   };
   const std::string plain = of("scene=approach");
-  EXPECT_EQ(plain, of("scene=approach pattern=scene ground=scene noise=-1"));
+  EXPECT_EQ(plain, of("scene=approach pattern=scene ground=scene noise=-1 lens=none"));
   EXPECT_EQ(plain, of("scene=approach pattern=ring-x ground=asphalt noise=2"));
-  for (const char* change : {"pattern=bullseye", "ground=grass", "noise=9", "seed=2"}) {
+  for (const char* change :
+       {"pattern=bullseye", "ground=grass", "noise=9", "seed=2", "lens=barrel", "lens=fisheye"}) {
     EXPECT_NE(plain, of(change)) << change;
+  }
+}
+
+// As ellipsetrack tells it of a lens that bends the picture.
+TEST(EllipseTestSrc, TruthThroughALensHasItsOutline) {
+  for (const char* name : {"none", "barrel", "fisheye"}) {
+    const auto buffer =
+        first_frame("scene=hover lens=" + std::string(name), caps_of("GRAY8", 320, 180));
+    const GstEllipseMeta* truth = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH);
+    ASSERT_NE(truth, nullptr);
+    ellipse::Scene scene = ellipse::scene_by_name("hover");
+    if (std::string(name) == "none") {
+      EXPECT_EQ(truth->n_outline, 0U);
+      continue;
+    }
+    ellipse::put_on_lens(scene, name);
+    const ellipse::Lens lens(ellipse::camera_of(scene, 320, 180));
+    const ellipse::Ellipse ideal{
+        truth->cx, truth->cy, truth->semi_major, truth->semi_minor, truth->angle_rad};
+    ASSERT_EQ(truth->n_outline, 64U) << name;
+    for (guint i = 0; i < truth->n_outline; ++i) {
+      const auto point =
+          lens.ideal_from_picture({truth->outline[2 * i], truth->outline[2 * i + 1]});
+      ASSERT_TRUE(point) << name;
+      EXPECT_NEAR(ellipse::sampson_distance(ideal, *point), 0.0, 1e-3) << name;
+    }
   }
 }
 
