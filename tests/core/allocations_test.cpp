@@ -290,6 +290,26 @@ TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
   }
 }
 
+// A lens so weak that it shows the films as they are.
+TEST_F(Allocations, NoneThroughALens) {
+  TrackerSettings settings;
+  settings.camera = Camera::with_hfov(1.012, 640, 360);
+  settings.camera->distortion = {-1e-4};
+  settings.target_diameter_m = 1.5;
+  Tracker tracker(settings);
+  for (const bool is_second : {false, true}) {
+    tracker.reset();
+    show(kFilms[0], [&](int i, const ImageView& luma, const Truth&) {
+      std::optional<Target> target;
+      const auto process = [&] { target = tracker.process(luma, i * 33'333'333LL); };
+      const std::int64_t allocations = allocations_of(process);
+      if (!is_second || i < 10) return;
+      EXPECT_EQ(allocations, 0) << i;
+      EXPECT_TRUE(target && target->pose) << i;
+    });
+  }
+}
+
 TEST_F(Allocations, OfTrackerDoNotPileUp) {
   const Picture picture = ring_picture();
   Tracker tracker;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lens_view.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/scene/lens_map.hpp"
 #include "tests/support/picture.hpp"
