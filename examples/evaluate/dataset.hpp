@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "core/ellipse.hpp"
+#include "examples/evaluate/bent_frame.hpp"
 
 namespace evaluate {
 
 /// What a frame shows, according to its data set.
 struct Truth {
-  /// The target's outer edge [px]. nullopt where the frame shows nothing of the target.
+  /// The target's outer edge [px]; in the ideal plane where a lens bends the picture. nullopt where
+  /// the frame shows nothing of the target.
   std::optional<ellipse::Ellipse> target;
   /// Share of the perimeter inside the frame, 0 where the target is larger than the frame. nullopt
   /// where the data set does not say.
@@ -55,6 +57,7 @@ struct Sequence {
   std::string name;
   std::vector<Frame> frames;  ///< In the natural order of their file names.
   std::shared_ptr<PictureSource> pictures;
+  std::shared_ptr<const BentFrame> bent{};  ///< What a lens makes of the frames; else nullptr.
 };
 
 struct Dataset {

@@ -70,7 +70,7 @@ class Run {
       ++evaluation_.missing_frames;
       return;
     }
-    const SeenFrame seen{&sequence, &frame, {picture.cols, picture.rows}};
+    const SeenFrame seen{&sequence, &frame, {picture.cols, picture.rows, sequence.bent.get()}};
     // In another order each time, because each leaves the caches to the next.
     shuffle();
     double reference_ms = 0.0;
@@ -83,6 +83,9 @@ class Run {
       }
     }
     for (std::size_t i = 0; i < methods_.size(); ++i) {
+      if (seen.size.bent != nullptr && answers_[i].target && !methods_[i]->knows_lens()) {
+        answers_[i].target = seen.size.bent->to_ideal(*answers_[i].target);
+      }
       evaluation_.methods[i].results.push_back(judged(answers_[i], seen, reference_ms, rule_));
     }
     evaluation_.frames.push_back(seen);
@@ -121,7 +124,7 @@ Evaluation evaluate(const std::vector<Sequence>& sequences,
   Evaluation& evaluation = run.evaluation();
   for (const Sequence& sequence : sequences) evaluation.planned_frames += sequence.frames.size();
   for (const Sequence& sequence : sequences) {
-    for (const auto& method : methods) method->start();
+    for (const auto& method : methods) method->start(sequence.bent.get());
     for (const Frame& frame : sequence.frames) {
       run.see(sequence, frame);
       evaluation.is_interrupted = !advance(frame);

@@ -2,11 +2,13 @@
 #include "examples/evaluate/gallery.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "core/lens_view.hpp"
 #include "examples/evaluate/text.hpp"
 
 namespace evaluate {
@@ -33,6 +35,24 @@ void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) 
               kSubPixelBits);
 }
 
+// Of the ideal plane, as the lens bends it.
+void draw_bent(cv::Mat& picture,
+               const ellipse::Ellipse& e,
+               const ellipse::Lens& lens,
+               const cv::Scalar& color) {
+  std::array<Eigen::Vector2d, 256> outline;
+  ellipse::bent_outline(lens, e, outline);
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& from = outline[i];
+    const Eigen::Vector2d& to = outline[(i + 1) % outline.size()];
+    if (!from.allFinite() || !to.allFinite()) continue;
+    const auto pixel = [](const Eigen::Vector2d& p) {
+      return cv::Point(cvRound(p.x()), cvRound(p.y()));
+    };
+    cv::line(picture, pixel(from), pixel(to), color, 2, cv::LINE_AA);
+  }
+}
+
 bool is_bad(Outcome outcome) {
   return outcome == Outcome::kWrong || outcome == Outcome::kFalsePositive ||
          outcome == Outcome::kFalseNegative;
@@ -57,8 +77,15 @@ std::vector<double> badness(const Evaluation& evaluation, std::size_t method) {
 Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
   Exhibit exhibit;
   cv::cvtColor(seen.sequence->pictures->picture(*seen.frame), exhibit.picture, cv::COLOR_GRAY2BGR);
-  if (seen.frame->truth.target) draw(exhibit.picture, *seen.frame->truth.target, kTruthColor);
-  if (result.answer) draw(exhibit.picture, *result.answer, kAnswerColor);
+  const auto show = [&](const ellipse::Ellipse& e, const cv::Scalar& color) {
+    if (seen.size.bent != nullptr) {
+      draw_bent(exhibit.picture, e, seen.size.bent->lens(), color);
+    } else {
+      draw(exhibit.picture, e, color);
+    }
+  };
+  if (seen.frame->truth.target) show(*seen.frame->truth.target, kTruthColor);
+  if (result.answer) show(*result.answer, kAnswerColor);
   exhibit.caption = std::string(kOutcomeNames[static_cast<std::size_t>(result.outcome)]) + "  " +
                     seen.frame->name;
   if (result.outcome == Outcome::kTruePositive) {

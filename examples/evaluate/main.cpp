@@ -21,16 +21,20 @@ void on_interrupt(int /*signal*/) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  CLI::Option* datasets =
-      app.add_option("DATASET",
-                     options.datasets,
-                     "Folders with gt.csv or ground_truth.txt; scenes:SEED, scenes:FROM-TO or a "
-                     "list of them = all scenes of the catalog; none = the rendered twin");
-  app.add_option("--seconds", options.pace.seconds, "How long each of scenes:SEED is")
+  CLI::Option* datasets = app.add_option(
+      "DATASET",
+      options.datasets,
+      "Folders with gt.csv or ground_truth.txt; scenes:SEED, scenes:FROM-TO or a "
+      "list of them = all scenes of the catalog; distorted:SEED and so on = the same "
+      "through lenses that bend the picture; none = the rendered twin");
+  app.add_option(
+         "--seconds", options.pace.seconds, "How long each of scenes:SEED and distorted:SEED is")
       ->capture_default_str()
       ->check(CLI::PositiveNumber)
       ->needs(datasets);
-  app.add_option("--fps", options.pace.frames_per_second, "Frames a second of scenes:SEED")
+  app.add_option("--fps",
+                 options.pace.frames_per_second,
+                 "Frames a second of scenes:SEED and distorted:SEED")
       ->capture_default_str()
       ->check(CLI::PositiveNumber)
       ->needs(datasets);

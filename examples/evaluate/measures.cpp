@@ -53,7 +53,10 @@ bool is_right(const ellipse::Ellipse& answer,
               const FrameSize& frame,
               Rule rule) {
   if (rule == Rule::kIou) {
-    return ellipse::iou_inside(answer, truth, frame.width, frame.height) >= kLeastIou;
+    const double iou = frame.bent != nullptr
+                           ? frame.bent->iou(answer, truth)
+                           : ellipse::iou_inside(answer, truth, frame.width, frame.height);
+    return iou >= kLeastIou;
   }
   const double apart = (answer.center() - truth.center()).norm();
   return apart <= 0.1 * 2.0 * truth.semi_minor &&

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/ellipse.hpp"
+#include "examples/evaluate/bent_frame.hpp"
 #include "examples/evaluate/dataset.hpp"
 
 namespace evaluate {
@@ -37,6 +38,7 @@ inline constexpr double kLeastToStart = 0.5;
 struct FrameSize {
   int width = 0;
   int height = 0;
+  const BentFrame* bent = nullptr;  ///< Where a lens bends it. Borrowed.
 };
 
 /// Share of the target's perimeter inside the frame, 0 to 1; 0 where there is no target.

@@ -21,13 +21,22 @@ using Clock = std::chrono::steady_clock;
 class TrackerMethod : public Method {
  public:
   TrackerMethod(const std::string& name, const ellipse::TrackerSettings& settings)
-      : Method(name), tracker_(settings) {}
+      : Method(name), settings_(settings), knows_lens_(true), tracker_(settings) {}
   TrackerMethod(const std::string& name,
                 const ellipse::TrackerSettings& settings,
                 std::unique_ptr<ellipse::Detector> detector)
-      : Method(name), tracker_(settings, std::move(detector)) {}
+      : Method(name), settings_(settings), tracker_(settings, std::move(detector)) {}
 
-  void start() override { tracker_.reset(); }
+  void start(const BentFrame* bent) override {
+    if (knows_lens_) {
+      ellipse::TrackerSettings settings = settings_;
+      if (bent != nullptr) settings.camera = bent->lens().camera();
+      tracker_.configure(settings);
+    }
+    tracker_.reset();
+  }
+
+  [[nodiscard]] bool knows_lens() const override { return knows_lens_; }
 
   Answer find(const Frame& /*frame*/, const cv::Mat& picture, std::int64_t pts_ns) override {
     const ellipse::ImageView view{
@@ -45,6 +54,8 @@ class TrackerMethod : public Method {
   }
 
  private:
+  ellipse::TrackerSettings settings_;
+  bool knows_lens_ = false;  // peers are for pinholes
   ellipse::Tracker tracker_;
 };
 
@@ -54,7 +65,10 @@ class BoxMethod : public Method {
  public:
   explicit BoxMethod(const char* peer) : Method(peer), peer_(make_box_peer(peer)) {}
 
-  void start() override { peer_.stop(); }
+  void start(const BentFrame* bent) override {
+    bent_ = bent;
+    peer_.stop();
+  }
 
   Answer find(const Frame& frame, const cv::Mat& picture, std::int64_t /*pts_ns*/) override {
     Answer answer;
@@ -67,14 +81,18 @@ class BoxMethod : public Method {
     answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
     const bool is_enough = frame.truth.is_labelled &&
                            visible_part(frame.truth, {picture.cols, picture.rows}) >= kLeastToStart;
-    if (is_enough && peer_.begin(picture, *frame.truth.target)) {
-      answer.target = frame.truth.target;
+    if (!is_enough) return answer;
+    const auto told =
+        bent_ != nullptr ? bent_->to_picture(*frame.truth.target) : frame.truth.target;
+    if (told && peer_.begin(picture, *told)) {
+      answer.target = told;
       answer.is_given = true;
     }
     return answer;
   }
 
  private:
+  const BentFrame* bent_ = nullptr;
   BoxPeer peer_;
 };
 

@@ -31,7 +31,10 @@ class Method {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Called before the first frame of each sequence.
-  virtual void start() {}
+  /// @param bent  What a lens makes of its frames, nullptr for a pinhole. Borrowed until the next.
+  virtual void start(const BentFrame* /*bent*/) {}
+  /// Whether its answers are of the ideal plane; else they are of the picture.
+  [[nodiscard]] virtual bool knows_lens() const { return false; }
   [[nodiscard]] virtual Answer find(const Frame& frame,
                                     const cv::Mat& picture,
                                     std::int64_t pts_ns) = 0;

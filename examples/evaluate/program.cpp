@@ -143,14 +143,20 @@ class Program {
       sequences_ = make_twin(ground);
     }
     for (const std::string& name : options_.datasets) {
-      const auto seeds = scene_seeds(name);
-      Dataset dataset =
-          seeds ? Dataset{make_scenes(*seeds, options_.pace), {}, 0} : read_dataset(name);
+      Dataset dataset = dataset_by_name(name);
       make_names_unique(dataset, name);
       missing_frames_ += dataset.missing_frames;
       problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
       for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
     }
+  }
+
+  [[nodiscard]] Dataset dataset_by_name(const std::string& name) const {
+    if (const auto seeds = scene_seeds(name)) return {make_scenes(*seeds, options_.pace), {}, 0};
+    if (const auto seeds = scene_seeds(name, "distorted")) {
+      return {make_distorted(*seeds, options_.pace), {}, 0};
+    }
+    return read_dataset(name);
   }
 
   // Figures are given by the data set's name: two of one name must not become one.

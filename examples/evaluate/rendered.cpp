@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/scene/renderer.hpp"
 #include "examples/evaluate/measures.hpp"
@@ -13,11 +14,11 @@
 namespace evaluate {
 namespace {
 
-constexpr FrameSize kSize{640, 360};
+constexpr FrameSize kSize{kRenderedWidth, kRenderedHeight};
 
-Truth truth_at(const ellipse::Scene& scene, double time_s) {
-  const Eigen::Matrix3d view = image_from_pad(scene, time_s, kSize.width, kSize.height);
-  const ellipse::Truth shown = ellipse::truth_of(scene.pad, view, kSize.width, kSize.height);
+Truth truth_at(const ellipse::Scene& scene, const ellipse::Camera& camera, double time_s) {
+  const Eigen::Matrix3d view = image_from_pad(pose_at(scene.flight, time_s), camera);
+  const ellipse::Truth shown = ellipse::truth_of(scene.pad, view, camera);
   const Truth truth{shown.outer_edge, shown.visible_fraction, true};
   return is_in_view(truth, kSize) ? truth : Truth{};
 }
@@ -52,8 +53,11 @@ Sequence make_rendered(const std::string& dataset,
                        const std::string& name,
                        const ellipse::Scene& scene,
                        const FrameTimes& times,
-                       const Conditions& conditions) {
-  Sequence sequence{dataset, name, {}, std::make_shared<RenderedPictures>(scene, times)};
+                       const Conditions& conditions,
+                       std::shared_ptr<const BentFrame> bent) {
+  Sequence sequence{
+      dataset, name, {}, std::make_shared<RenderedPictures>(scene, times), std::move(bent)};
+  const ellipse::Camera camera = camera_of(scene, kSize.width, kSize.height);
   for (int i = 0; i < times.frames; ++i) {
     const auto number = static_cast<std::size_t>(i);
     const double time_s = times.at_s(number);
@@ -61,7 +65,7 @@ Sequence make_rendered(const std::string& dataset,
                                {},
                                number,
                                std::llround(1e9 * time_s),
-                               truth_at(scene, time_s),
+                               truth_at(scene, camera, time_s),
                                conditions});
   }
   return sequence;

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <memory>
 #include <string>
 
 #include "core/scene/scene.hpp"
@@ -19,12 +20,18 @@ struct FrameTimes {
   }
 };
 
+/// The size of all rendered frames.
+inline constexpr int kRenderedWidth = 640;
+inline constexpr int kRenderedHeight = 360;
+
 /// A sequence of a scene, 640 x 360, named "name/frame0000.png" and so on. Its truth is there at
 /// once; a picture is rendered whenever it is asked for, the same one on every machine.
+/// @param bent  What the scene's lens makes of such a frame; nullptr for a pinhole.
 [[nodiscard]] Sequence make_rendered(const std::string& dataset,
                                      const std::string& name,
                                      const ellipse::Scene& scene,
                                      const FrameTimes& times,
-                                     const Conditions& conditions = {});
+                                     const Conditions& conditions = {},
+                                     std::shared_ptr<const BentFrame> bent = nullptr);
 
 }  // namespace evaluate

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 
@@ -13,7 +14,6 @@
 namespace evaluate {
 namespace {
 
-constexpr std::string_view kPrefix = "scenes:";
 constexpr std::size_t kMostSeeds = 1000;
 constexpr double kMostFrames = 1e6;
 
@@ -25,7 +25,7 @@ constexpr double kMostFrames = 1e6;
 std::uint64_t take_seed(std::string_view& rest, const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), seed);
-  if (error != std::errc{}) fail(text, "expected scenes:SEED, scenes:FROM-TO, or a list of them");
+  if (error != std::errc{}) fail(text, "expected a SEED, FROM-TO, or a list of them");
   rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
   return seed;
 }
@@ -36,11 +36,35 @@ bool take(std::string_view& rest, char separator) {
   return is_there;
 }
 
+FrameTimes times_of(const ScenePace& pace) {
+  const double frames = std::round(pace.seconds * pace.frames_per_second);
+  if (!(frames >= 1.0 && frames <= kMostFrames && pace.frames_per_second > 0.0)) {
+    throw std::invalid_argument("scenes: seconds and frames a second give no sequence");
+  }
+  return {0.0, static_cast<int>(frames), 1, pace.frames_per_second};
+}
+
+// One for all scenes that are seen by the same camera.
+class SharedFrames {
+ public:
+  std::shared_ptr<const BentFrame> of(const ellipse::Scene& scene) {
+    const ellipse::Camera camera = camera_of(scene, kRenderedWidth, kRenderedHeight);
+    for (const auto& known : frames_) {
+      if (known->lens().camera() == camera) return known;
+    }
+    return frames_.emplace_back(std::make_shared<const BentFrame>(camera));
+  }
+
+ private:
+  std::vector<std::shared_ptr<const BentFrame>> frames_;
+};
+
 }  // namespace
 
-std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text) {
-  if (!text.starts_with(kPrefix)) return std::nullopt;
-  std::string_view rest = std::string_view(text).substr(kPrefix.size());
+std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
+                                                      const std::string& kind) {
+  if (!text.starts_with(kind + ":")) return std::nullopt;
+  std::string_view rest = std::string_view(text).substr(kind.size() + 1);
   std::vector<std::uint64_t> seeds;
   do {
     const std::uint64_t from = take_seed(rest, text);
@@ -54,16 +78,31 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text) {
 }
 
 std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds, const ScenePace& pace) {
-  const double frames = std::round(pace.seconds * pace.frames_per_second);
-  if (!(frames >= 1.0 && frames <= kMostFrames && pace.frames_per_second > 0.0)) {
-    throw std::invalid_argument("scenes: seconds and frames a second give no sequence");
-  }
-  const FrameTimes times{0.0, static_cast<int>(frames), 1, pace.frames_per_second};
+  const FrameTimes times = times_of(pace);
   std::vector<Sequence> sequences;
   for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
     for (const std::uint64_t seed : seeds) {
       const std::string name = format("%s-%llu", scene.name, static_cast<unsigned long long>(seed));
       sequences.push_back(make_rendered("scenes", name, scene.make(seed), times));
+    }
+  }
+  return sequences;
+}
+
+std::vector<Sequence> make_distorted(const std::vector<std::uint64_t>& seeds,
+                                     const ScenePace& pace) {
+  const FrameTimes times = times_of(pace);
+  std::vector<Sequence> sequences;
+  SharedFrames frames;
+  for (const ellipse::NamedScene& named : ellipse::scene_catalog()) {
+    for (const ellipse::NamedLens& lens : ellipse::lens_catalog()) {
+      for (const std::uint64_t seed : seeds) {
+        ellipse::Scene scene = named.make(seed);
+        lens.put_on(scene);
+        const std::string name =
+            format("%s-%s-%llu", named.name, lens.name, static_cast<unsigned long long>(seed));
+        sequences.push_back(make_rendered("distorted", name, scene, times, {}, frames.of(scene)));
+      }
     }
   }
   return sequences;

@@ -30,7 +30,7 @@ ellipse::Scene marked_pad() {
 // A sequence in which the pad is where it is put.
 class EachBoxPeer : public testing::TestWithParam<const char*> {
  protected:
-  EachBoxPeer() : method_(make_method(GetParam(), {})) { method_->start(); }
+  EachBoxPeer() : method_(make_method(GetParam(), {})) { method_->start(nullptr); }
 
   Answer see(const ellipse::Ellipse& pad) {
     support::Picture picture = support::rendered(marked_pad(), pad);
@@ -110,7 +110,7 @@ TEST_P(EachBoxPeer, SurvivesATargetThatLeaves) {
 TEST_P(EachBoxPeer, StartsAfreshWithEachSequence) {
   EXPECT_TRUE(see(kStart).is_given);
   EXPECT_FALSE(see(kStart).is_given);
-  method_->start();
+  method_->start(nullptr);
   EXPECT_TRUE(see(kStart).is_given);
 }
 
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(BoxPeers,
 
 TEST(BoxPeers, CsrtCarriesTheEllipseToALargerBox) {
   const auto csrt = make_method("csrt", {});
-  csrt->start();
+  csrt->start(nullptr);
   ellipse::Ellipse pad{160.0, 120.0, 40.0, 30.0, 0.4};
   std::optional<ellipse::Ellipse> last;
   for (int i = 0; i < 12; ++i) {

@@ -169,6 +169,22 @@ TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
   EXPECT_EQ(run("ellipse-evaluate", "scenes:seven").status, 1);
 }
 
+TEST_F(Programs, EvaluateLooksThroughLenses) {
+  const fs::path frames = folder_ / "frames";
+  const Outcome outcome = run("ellipse-evaluate",
+                              "distorted:7 --seconds 0.1 --fps 10 --methods arcs+edges --frames " +
+                                  frames.string() + " --report " + (folder_ / "page").string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  for (const char* part : {"\n36 frames",  // 18 scenes, two lenses
+                           "Following through distorted",
+                           "touchdown-barrel-7",
+                           "approach-fisheye-7"}) {
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
+  }
+  EXPECT_GT(fs::file_size(folder_ / "page/index.html"), 5000U);
+  EXPECT_EQ(run("ellipse-evaluate", "distorted:seven").status, 1);
+}
+
 TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
   for (const char* bad : {"--methods magic", "--sweep magic=1:2:1", "--peer magic"}) {
     const Outcome outcome = run("ellipse-evaluate", bad);
