@@ -125,8 +125,8 @@ double SceneRenderer::moved_px(const Matrix3d& end_from_begin, const Vector2d& p
   return end ? (end->picture_px - picture_px).norm() : 0.0;
 }
 
-// As many as the fastest of the picture's corners needs, and of its middle and sides: a lens may
-// not show the corners.
+// As many as the fastest of the picture's corners needs. A lens may not show them: then also its
+// middle and sides count.
 int SceneRenderer::instants_at(double time_s) const {
   const double exposure_s = scene_.sensor.exposure_s;
   if (!(exposure_s > 0.0)) return 1;
