@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tests/gst/support.hpp"
+#include "tests/support/child_process.hpp"
 
 // What lines are sent to, and where they are read again: all on the loopback.
 namespace support {
@@ -147,13 +148,9 @@ class Broker {
  public:
   explicit Broker(const std::string& mosquitto) {
     port_ = std::to_string(Socket(G_SOCKET_TYPE_STREAM).bind());
-    process_ = g_subprocess_new(static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDOUT_SILENCE |
-                                                              G_SUBPROCESS_FLAGS_STDERR_SILENCE),
-                                nullptr,
-                                mosquitto.c_str(),
-                                "-p",
-                                port_.c_str(),
-                                nullptr);
+    process_ = start_child({mosquitto, "-p", port_},
+                           static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDOUT_SILENCE |
+                                                         G_SUBPROCESS_FLAGS_STDERR_SILENCE));
   }
   ~Broker() {
     g_subprocess_force_exit(process_);

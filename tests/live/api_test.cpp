@@ -8,6 +8,7 @@
 
 #include "core/tracker.hpp"
 #include "tests/gst/support.hpp"
+#include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
 namespace {
@@ -198,30 +199,9 @@ TEST(LiveApi, EncodesNothingWithoutAViewer) {
   EXPECT_LE(client.stat("encoded"), encoded + 1);  // the one that was on its way
 }
 
-// Reads an endless answer until it has what is looked for.
-std::string read_stream(const std::string& url, const std::string& part, int times) {
-  const support::Ref<SoupSession> session(soup_session_new());
-  const support::Ref<SoupMessage> message(soup_message_new("GET", url.c_str()));
-  const support::Ref<GInputStream> stream(
-      soup_session_send(session.get(), message.get(), nullptr, nullptr));
-  std::string text;
-  std::array<char, 4096> bytes;
-  for (int found = 0; stream && found < times;) {
-    const gssize size =
-        g_input_stream_read(stream.get(), bytes.data(), bytes.size(), nullptr, nullptr);
-    if (size <= 0) break;
-    text.append(bytes.data(), static_cast<std::size_t>(size));
-    found = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-      ++found;
-    }
-  }
-  return text;
-}
-
 TEST(LiveApi, EventsAreTheLines) {
   const LiveProgram program({});
-  std::istringstream text(read_stream(program.url() + "api/events", "\n\n", 10));
+  std::istringstream text(support::read_stream(program.url() + "api/events", "\n\n", 10));
   gint64 frame = -1;
   for (std::string line; std::getline(text, line) && frame < 1000;) {
     if (!line.starts_with("data: ")) continue;
@@ -237,7 +217,8 @@ TEST(LiveApi, EventsAreTheLines) {
 
 TEST(LiveApi, MjpegIsForWhatKnowsNoWebSocket) {
   const LiveProgram program({});
-  const std::string text = read_stream(program.url() + "video.mjpeg", "Content-Length: ", 4);
+  const std::string text =
+      support::read_stream(program.url() + "video.mjpeg", "Content-Length: ", 4);
   const std::size_t start = text.find("\r\n\r\n") + 4;
   const int size = std::stoi(text.substr(text.find("Content-Length: ") + 16));
   const std::string jpeg = text.substr(start, static_cast<std::size_t>(size));

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
 namespace {

@@ -7,6 +7,7 @@
 
 #include "examples/evaluate/dataset.hpp"
 #include "tests/gst/support.hpp"
+#include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
 namespace {

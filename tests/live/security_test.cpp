@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/gst/loopback.hpp"
+#include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
 namespace {

@@ -9,6 +9,7 @@
 
 #include "examples/live/source_spec.hpp"
 #include "tests/gst/support.hpp"
+#include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
 namespace {

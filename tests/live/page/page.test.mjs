@@ -2,10 +2,12 @@
 //
 // The page in a real browser, over the program as it is.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
+import { setTimeout } from "node:timers/promises";
 import { openPage, shownBy, startBrowser, startProgram } from "./program.mjs";
 import { largestDistance } from "./ring.mjs";
 
@@ -349,6 +351,16 @@ it("changes the source where that is allowed", async () => {
   await stateIs(page, "tracked");
   await page.close();
   await program.stop();
+});
+
+it("leaves no program behind where the tests are killed", { timeout: 30000 }, async () => {
+  const script = `import { startProgram } from "./program.mjs";
+    console.log((await startProgram("--source", "test:approach")).url);
+    process.kill(process.pid, "SIGKILL");`;
+  const { stdout, signal } = spawnSync(process.execPath, ["--input-type=module", "-e", script], { encoding: "utf8" });
+  assert.equal(signal, "SIGKILL");
+  const isUp = () => fetch(new URL("api/target", stdout.trim())).then(() => true, () => false);
+  while (await isUp()) await setTimeout(50);
 });
 
 it("says that the program is gone", async () => {

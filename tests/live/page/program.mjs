@@ -4,9 +4,14 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { chromium } from "playwright-core";
 
-/** Starts the program at a free port. @returns {url, stop, ask}: ask talks to its API. */
+/**
+ * Starts the program at a free port. The kernel ends it together with this process: it is not left
+ * behind where the tests are killed.
+ * @returns {url, stop, ask}: ask talks to its API.
+ */
 export async function startProgram(...args) {
-  const child = spawn(process.env.ELLIPSE_LIVE, ["--port", "0", ...args]);
+  const command = ["--pdeathsig", "KILL", process.env.ELLIPSE_LIVE, "--port", "0", ...args];
+  const child = spawn("setpriv", command);
   let output = "";
   child.stderr.on("data", (data) => { output += data; });
   const url = await new Promise((resolve, reject) => {
@@ -43,8 +48,11 @@ export function startBrowser() {
   });
 }
 
-/** The page once it shows frames. What goes wrong in it is collected in `page.troubles`. */
-export async function openPage(browser, url, size = { width: 1440, height: 900 }) {
+/**
+ * The page once it shows frames, so many of them. What goes wrong in it is collected in
+ * `page.troubles`.
+ */
+export async function openPage(browser, url, size = { width: 1440, height: 900 }, frames = 3) {
   const page = await browser.newPage({ viewport: size });
   page.troubles = [];
   page.on("pageerror", (error) => page.troubles.push(String(error)));
@@ -56,7 +64,7 @@ export async function openPage(browser, url, size = { width: 1440, height: 900 }
     if (protocol.startsWith("http") && host !== new URL(url).host) page.troubles.push(request.url());
   });
   await page.goto(url);
-  await page.waitForFunction(() => Number(document.querySelector("#screen").dataset.shown) > 2);
+  await page.waitForFunction((least) => Number(document.querySelector("#screen").dataset.shown) >= least, frames);
   await page.waitForSelector("[data-setting=max-axis]");
   return page;
 }

@@ -8,7 +8,7 @@ skip() {
 }
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$1" && cd "$1" || exit 1
-for tool in node npm gst-launch-1.0; do
+for tool in node npm setpriv gst-launch-1.0; do
   command -v $tool > /dev/null || skip "there is no $tool"
 done
 CHROMIUM=$(command -v chromium) || skip "there is no chromium"
@@ -23,4 +23,5 @@ ELLIPSE_TEST_VIDEO=$PWD/approach.mkv
 gst-launch-1.0 -q ellipsetestsrc scene=approach num-buffers=60 ! videoconvert ! jpegenc \
   ! matroskamux ! filesink location="$ELLIPSE_TEST_VIDEO" || exit 1
 export CHROMIUM ELLIPSE_TEST_VIDEO
-exec node --test --test-reporter=spec page.test.mjs
+# In one process, which ends with whom started it: so do its browser and its programs.
+exec setpriv --pdeathsig KILL node --test-reporter=spec page.test.mjs
