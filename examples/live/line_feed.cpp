@@ -58,12 +58,20 @@ void LineFeed::add(std::unique_ptr<WebSocket> socket) {
   auto& place = listeners_.emplace_back();
   place =
       std::make_unique<SocketListener>(std::move(socket), [this, &place] { remove(place.get()); });
+  greet(*place);
 }
 
 void LineFeed::add_events(SoupServerMessage* request) {
   auto& place = listeners_.emplace_back();
   place = std::make_unique<EventListener>(
       request, [this, &place] { flush(*place); }, [this, &place] { remove(place.get()); });
+  greet(*place);
+}
+
+void LineFeed::greet(Listener& listener) {
+  if (last_.empty()) return;
+  listener.queue.push_back(last_);
+  flush(listener);
 }
 
 void LineFeed::remove(const Listener* listener) {
@@ -71,6 +79,7 @@ void LineFeed::remove(const Listener* listener) {
 }
 
 void LineFeed::send(const std::vector<std::string>& lines) {
+  if (!lines.empty()) last_ = lines.back();
   for (const auto& listener : listeners_) {
     for (const std::string& line : lines) listener->queue.push_back(line);
     for (; listener->queue.size() > kLongestQueue; ++lost_) listener->queue.pop_front();

@@ -12,8 +12,9 @@
 
 namespace live {
 
-/// Sends the JSON lines of all frames to everybody who listens. Each has a queue of its own, from
-/// which the oldest lines are lost where it is slow. For the main loop's thread.
+/// Sends the JSON lines of all frames to everybody who listens. Who joins gets the last one at
+/// once: the next may be long in coming, where the source is paused. Each has a queue of its own,
+/// from which the oldest lines are lost where it is slow. For the main loop's thread.
 class LineFeed {
  public:
   LineFeed();
@@ -44,10 +45,12 @@ class LineFeed {
 
  private:
   static gboolean on_glance(gpointer data);
+  void greet(Listener& listener);
   void flush(Listener& listener);
   void remove(const Listener* listener);
 
   std::list<std::unique_ptr<Listener>> listeners_;
+  std::string last_;  // the newest line; empty before the first
   guint glance_;
   guint64 lost_ = 0;
 };

@@ -13,6 +13,7 @@ namespace live {
 namespace {
 
 constexpr guint kGlanceMs = 1000;
+constexpr gint64 kFollowedUs = 500 * 1000;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
 constexpr std::size_t kMostDelays = 256;
 constexpr std::size_t kMostInFlight = 2;  // one on its way, one being painted
@@ -46,7 +47,7 @@ class SocketViewer : public Viewer {
     socket_->send_binary(picture.stamped.get());
   }
 
-  void end_if_stalled() override {
+  void take_glance(const Picture& /*newest*/) override {
     if (in_flight_.empty() || g_get_monotonic_time() - waiting_since_us_ < kPatienceUs) return;
     socket_->close("no acknowledgement");
   }
@@ -75,6 +76,8 @@ class SocketViewer : public Viewer {
   gint64 waiting_since_us_ = 0;
 };
 
+// A browser shows a picture when the next one begins, so that one which nothing follows is sent
+// once more.
 class StreamViewer : public Viewer {
  public:
   StreamViewer(SoupServerMessage* request,
@@ -87,17 +90,34 @@ class StreamViewer : public Viewer {
   [[nodiscard]] bool is_ready() const override { return stream_.is_ready(); }
 
   void send(const Picture& picture) override {
+    const bool is_first = sent_us_ == 0;
+    const std::string part = part_of(picture);
+    stream_.write(is_first ? part + part : part);
+    sent_us_ = g_get_monotonic_time();
+    has_second_ = is_first;
+  }
+
+  void take_glance(const Picture& picture) override {
+    const bool is_followed = g_get_monotonic_time() - sent_us_ < kFollowedUs;
+    if (has_second_ || is_followed || last != picture.number || !is_ready()) return;
+    stream_.write(part_of(picture));
+    has_second_ = true;
+  }
+
+ private:
+  static std::string part_of(const Picture& picture) {
     const gsize size = g_bytes_get_size(picture.jpeg.get());
     std::string part = std::string("--") + kBoundary +
                        "\r\nContent-Type: image/jpeg\r\nX-PTS: " + std::to_string(picture.pts) +
                        "\r\nContent-Length: " + std::to_string(size) + "\r\n\r\n";
     part.append(static_cast<const char*>(g_bytes_get_data(picture.jpeg.get(), nullptr)), size);
     part += "\r\n";
-    stream_.write(part);
+    return part;
   }
 
- private:
   HttpStream stream_;
+  gint64 sent_us_ = 0;       // 0 = nothing yet
+  bool has_second_ = false;  // the last one was sent twice
 };
 
 }  // namespace
@@ -180,7 +200,7 @@ void VideoFeed::deliver(Picture picture) {
 
 gboolean VideoFeed::on_glance(gpointer data) {
   auto* self = static_cast<VideoFeed*>(data);
-  for (const auto& viewer : self->viewers_) viewer->end_if_stalled();
+  for (const auto& viewer : self->viewers_) viewer->take_glance(self->picture_);
   self->update();
   return G_SOURCE_CONTINUE;
 }

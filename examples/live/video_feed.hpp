@@ -18,8 +18,8 @@ class Viewer {
   /// Whether another picture may be sent now.
   [[nodiscard]] virtual bool is_ready() const = 0;
   virtual void send(const Picture& picture) = 0;
-  /// Ends it, where it has taken nothing for long.
-  virtual void end_if_stalled() {}
+  /// Once a second: ends what has taken nothing for long, sends again what is not shown yet.
+  virtual void take_glance(const Picture& newest) = 0;
 
   static constexpr guint64 kNothing = G_MAXUINT64;
   guint64 last = kNothing;  ///< The number of the frame that it was sent last.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 #include "examples/live/source_spec.hpp"
 #include "tests/gst/support.hpp"
@@ -133,15 +134,62 @@ INSTANTIATE_TEST_SUITE_P(LiveSource,
                          testing::Values("file", "folder"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(LiveSource, AViewerOfAPausedFileSeesItsFrame) {
+// Browsers show a picture when the next one begins.
+void expect_mjpeg_twice(const LiveProgram& program, gint64 pts) {
+  const std::string head = "X-PTS: " + std::to_string(pts) + "\r\n";
+  const std::string text = support::read_stream(program.url() + "video.mjpeg", head, 2);
+  EXPECT_NE(text.find(head), text.rfind(head));
+}
+
+// Whoever joins gets the very frame that is shown, by each way that there is.
+void expect_greetings(const LiveProgram& program, const Client& client) {
+  const gint64 shown = number_in(client, "pts_ns");
+  SocketClient video(program.url(), "ws/video");
+  EXPECT_EQ(SocketClient::pts_of(video.next()), static_cast<guint64>(shown));
+  SocketClient lines(program.url(), "ws/meta");
+  EXPECT_EQ(Line(lines.next()).number("pts_ns"), shown);
+  const std::string pts = std::to_string(shown);
+  const std::string events = support::read_stream(program.url() + "api/events", "\n\n", 2);
+  EXPECT_NE(events.find("\"pts_ns\":" + pts + ","), std::string::npos) << events;
+  expect_mjpeg_twice(program, shown);
+  EXPECT_EQ(lines.waiting(), 0U);
+}
+
+TEST(LiveSource, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 60)});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
-  SocketClient video(program.url(), "ws/video");
-  const std::string message = video.next();
-  EXPECT_EQ(SocketClient::pts_of(message), static_cast<guint64>(number_in(client, "pts_ns")));
+  expect_greetings(program, client);
+}
+
+TEST(LiveSource, WhoJoinsWhileTheViewIsHeldGetsItsFrameAtOnce) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const double frames = client.stat("frames");
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));
+  expect_greetings(program, client);
+}
+
+TEST(LiveSource, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 60)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const gint64 shown = number_in(client, "pts_ns");
+  std::string text;
+  std::thread watcher(
+      [&] { text = support::read_stream(program.url() + "video.mjpeg", "X-PTS: ", 4); });
+  EXPECT_TRUE(wait_until([&] { return client.stat("sent") > 0; }));
+  EXPECT_EQ(client.post("api/step").status, 200U);
+  watcher.join();
+  EXPECT_TRUE(wait_until([&] { return number_in(client, "pts_ns") > shown; }));
+  const std::string head = "X-PTS: " + std::to_string(number_in(client, "pts_ns")) + "\r\n";
+  EXPECT_NE(text.find(head), text.rfind(head)) << head;
 }
 
 TEST(LiveSource, AFileIsPlayedAgainWhereAsked) {

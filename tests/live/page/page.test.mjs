@@ -26,7 +26,7 @@ function withProgram(args, tests) {
   tests({
     get program() { return context.program; },
     labels: join(process.env.XDG_DATA_HOME, "labels/gt.csv"),
-    open: async (size) => openPage(browser, context.program.url, size),
+    open: async (size, frames) => openPage(browser, context.program.url, size, frames),
   });
 }
 
@@ -50,6 +50,20 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     assert.match(await page.textContent("#figure-time"), /^\d+\.\d\d ms$/);
     assert.equal(await page.textContent("#source-name"), "test:approach");
     assert.deepEqual(page.troubles, []);
+    await page.close();
+  });
+
+  it("is there at once for who joins while it is paused", async () => {
+    await live.program.ask("POST", "/api/pause");
+    const page = await live.open(undefined, 1);
+    await stateIs(page, "tracked");
+    assert.equal(await shownBy(page), 1);
+    const isShown = await page.evaluate(() => new Promise((resolve) => {
+      const image = new Image();
+      image.onload = () => resolve(image.naturalWidth > 0);
+      image.src = "video.mjpeg";
+    }));
+    assert.ok(isShown);
     await page.close();
   });
 
