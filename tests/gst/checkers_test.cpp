@@ -18,11 +18,7 @@ using support::Owned;
 using support::Pipeline;
 using support::run_own_tests;
 using support::TemporaryFolder;
-
-std::string text_of(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using support::text_of;
 
 bool is_installed(const char* program) {
   gchar* path = g_find_program_in_path(program);
@@ -98,6 +94,25 @@ TEST(ThreadSanitizer, KnowsGLibsMutexes) {
   EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log)) << text_of(log);
   EXPECT_FALSE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderNone", log));
   EXPECT_NE(text_of(log).find("data race"), std::string::npos) << text_of(log);
+}
+
+TEST(ThreadSanitizer, DISABLED_HandsOverThroughAQueue) {
+  GAsyncQueue* queue = g_async_queue_new();
+  int number = 0;
+  std::thread other([&] {
+    number = 7;
+    g_async_queue_push(queue, &number);
+  });
+  EXPECT_EQ(*static_cast<int*>(g_async_queue_pop(queue)), 7);
+  other.join();
+  g_async_queue_unref(queue);
+}
+
+TEST(ThreadSanitizer, KnowsGLibsQueues) {
+  const TemporaryFolder folder;
+  const std::string log = folder.file("log");
+  EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_HandsOverThroughAQueue", log))
+      << text_of(log);
 }
 #endif
 

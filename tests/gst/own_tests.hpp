@@ -2,9 +2,17 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 namespace support {
+
+/// All of a file; empty where there is none.
+inline std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 /// Runs some of this program's tests in a process of its own, the disabled ones among them.
 /// @param before  What stands before the program: variables, or a command that takes one.

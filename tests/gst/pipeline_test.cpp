@@ -110,7 +110,10 @@ std::string leaks_of(const std::string& tests) {
   const TemporaryFolder folder;
   const std::string log = folder.file("leaks.log");
   const std::string tracer = "GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log;
-  if (!support::run_own_tests(tracer, tests, folder.file("output"))) return "the tests failed";
+  const std::string output = folder.file("output");
+  if (!support::run_own_tests(tracer, tests, output)) {
+    return "the tests failed:\n" + support::text_of(output);
+  }
   std::ifstream in(log);
   std::string alive;
   for (std::string line; std::getline(in, line);) {

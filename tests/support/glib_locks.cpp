@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Tells ThreadSanitizer of GLib's mutexes. GLib makes them of futexes, and is not instrumented: it
-// would take what they guard for unguarded. These stand before GLib's own and call them.
+// would take what they guard for unguarded. These stand before GLib's own and call them. GLib calls
+// its own past them: so what goes through one of its queues, as GstHarness's buffers do, is told of
+// too.
 #include <dlfcn.h>
 #include <glib.h>
 #include <sanitizer/tsan_interface.h>
@@ -21,6 +23,11 @@ void lets_go_of(GMutex* mutex) {
 void holds(GMutex* mutex, unsigned flags = 0) {
   __tsan_mutex_pre_lock(mutex, flags);
   __tsan_mutex_post_lock(mutex, flags, 0);
+}
+
+gpointer taken_from(GAsyncQueue* queue, gpointer data) {
+  if (data != nullptr) __tsan_acquire(queue);
+  return data;
 }
 
 }  // namespace
@@ -67,6 +74,27 @@ gboolean g_cond_wait_until(GCond* cond, GMutex* mutex, gint64 end_time) {
   const gboolean is_woken = kNext(cond, mutex, end_time);
   holds(mutex);
   return is_woken;
+}
+
+void g_async_queue_push(GAsyncQueue* queue, gpointer data) {
+  static auto* const kNext = next(&g_async_queue_push, "g_async_queue_push");
+  __tsan_release(queue);
+  kNext(queue, data);
+}
+
+gpointer g_async_queue_pop(GAsyncQueue* queue) {
+  static auto* const kNext = next(&g_async_queue_pop, "g_async_queue_pop");
+  return taken_from(queue, kNext(queue));
+}
+
+gpointer g_async_queue_try_pop(GAsyncQueue* queue) {
+  static auto* const kNext = next(&g_async_queue_try_pop, "g_async_queue_try_pop");
+  return taken_from(queue, kNext(queue));
+}
+
+gpointer g_async_queue_timeout_pop(GAsyncQueue* queue, guint64 timeout) {
+  static auto* const kNext = next(&g_async_queue_timeout_pop, "g_async_queue_timeout_pop");
+  return taken_from(queue, kNext(queue, timeout));
 }
 
 }  // extern "C"
