@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// What no client sends.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "tests/gst/loopback.hpp"
+#include "tests/live/live_clients.hpp"
+#include "tests/live/live_program.hpp"
+
+namespace {
+
+using support::Client;
+using support::LiveProgram;
+using support::Socket;
+using support::wait_until;
+
+std::string garbage(std::mt19937& random) {
+  static const char* const kStarts[] = {"GET / HTTP/1.1\r\n",
+                                        "PUT /api/properties HTTP/1.1\r\nHost: 127.0.0.1\r\n",
+                                        "POST /api/seek HTTP/1.1\r\nContent-Length: -5\r\n",
+                                        "GET /ws/video HTTP/1.1\r\nHost: localhost\r\nUpgrade: "
+                                        "websocket\r\nConnection: Upgrade\r\n"
+                                        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                                        "Sec-WebSocket-Version: 13\r\n\r\n",
+                                        "GET /%zz HTTP/9.9\r\n",
+                                        "\r\n\r\n",
+                                        "OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                                        "GET http://[::1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                                        "CONNECT localhost:1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                                        "POST /api/analyze HTTP/1.1\r\nHost: localhost\r\n"
+                                        "Transfer-Encoding: chunked\r\n\r\nffffffff\r\n"};
+  std::string text = kStarts[random() % std::size(kStarts)];
+  const std::size_t size = random() % 300;
+  for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(random() % 256);
+  if (random() % 2 == 0) text += "\r\n\r\n";
+  return text;
+}
+
+long resident_kib(const LiveProgram& program) {
+  std::ifstream in("/proc/" + program.id() + "/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
+  }
+  return 0;
+}
+
+void send_garbage(const LiveProgram& program, std::mt19937& random, int times) {
+  for (int i = 0; i < times; ++i) {
+    Socket socket(G_SOCKET_TYPE_STREAM);
+    socket.connect(program.port());
+    socket.send(garbage(random));
+  }
+}
+
+TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
+  LiveProgram program({});
+  const Client client(program.url());
+  std::mt19937 random(7);
+  send_garbage(program, random, 200);
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
+  const long before = resident_kib(program);
+  send_garbage(program, random, 1000);
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
+  EXPECT_LT(resident_kib(program) - before, 4096);
+  EXPECT_EQ(program.stop(), 0);
+}
+
+// Frames of every kind, masked or not, whole or not, behind a proper handshake.
+TEST(LiveGarbage, MalformedWebSocketFramesDoNoHarm) {
+  LiveProgram program({});
+  const Client client(program.url());
+  std::mt19937 random(3);
+  for (int i = 0; i < 300; ++i) {
+    Socket socket(G_SOCKET_TYPE_STREAM);
+    socket.connect(program.port());
+    socket.send(
+        "GET /ws/video HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: "
+        "Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: "
+        "13\r\n\r\n");
+    std::string frame;
+    frame += static_cast<char>(random() % 256);
+    frame += static_cast<char>(random() % 256);
+    for (std::size_t n = random() % 40; n > 0; --n) frame += static_cast<char>(random() % 256);
+    socket.send(frame);
+  }
+  EXPECT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 60));
+  EXPECT_TRUE(wait_until([&] { return client.stat("viewers") == 0; }, 60));
+  EXPECT_EQ(program.stop(), 0);
+}
+
+}  // namespace
