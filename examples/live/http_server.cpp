@@ -144,6 +144,7 @@ void HttpServer::listen() {
   const Ref<GSocketAddress> wanted(
       g_inet_socket_address_new_from_string(settings_.address.c_str(), settings_.port));
   if (!wanted) throw std::runtime_error("\"" + settings_.address + "\" is no address to listen at");
+  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kMostConnections);
   GSocketAddress* effective = nullptr;
   GError* problem = nullptr;
   g_socket_listener_add_address(G_SOCKET_LISTENER(service_.get()),
