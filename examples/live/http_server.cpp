@@ -4,79 +4,15 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
-
-#include "examples/live/json_writer.hpp"
 
 namespace live {
 namespace {
 
 constexpr std::size_t kMostConnections = 160;
 constexpr guint kIdleSeconds = 20;  // for a request to come, or to go on
-constexpr goffset kLargestBody = 64 * 1024;
-constexpr std::size_t kLongestPath = 1024;
-constexpr gsize kLargestHeaders = 16 * 1024;
-constexpr double kRequestsPerSecond = 100.0;
-constexpr double kRequestsAtOnce = 300.0;
-constexpr std::size_t kMostAddresses = 1024;
-constexpr char kCookie[] = "ellipse_token";
 constexpr char kSocketKey[] = "live-socket";
-
-std::string header(SoupServerMessage* message, const char* name) {
-  const char* value =
-      soup_message_headers_get_one(soup_server_message_get_request_headers(message), name);
-  return value != nullptr ? value : "";
-}
-
-bool is_write(SoupServerMessage* message) {
-  const std::string method = soup_server_message_get_method(message);
-  return method != "GET" && method != "HEAD";
-}
-
-gsize size_of_headers(SoupServerMessage* message) {
-  SoupMessageHeadersIter iter;
-  soup_message_headers_iter_init(&iter, soup_server_message_get_request_headers(message));
-  const char* name = nullptr;
-  const char* value = nullptr;
-  gsize size = 0;
-  while (soup_message_headers_iter_next(&iter, &name, &value)) {
-    size += std::string_view(name).size() + std::string_view(value).size();
-  }
-  return size;
-}
-
-std::string cookie_of(SoupServerMessage* message) {
-  const std::string cookies = "; " + header(message, "Cookie");
-  const std::string start = std::string("; ") + kCookie + "=";
-  const std::size_t at = cookies.find(start);
-  if (at == std::string::npos) return "";
-  const std::size_t begin = at + start.size();
-  return cookies.substr(begin, cookies.find(';', begin) - begin);
-}
-
-// What a browser may do with all that comes from here.
-void add_policy(SoupServerMessage* message) {
-  SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
-  soup_message_headers_replace(headers, "X-Content-Type-Options", "nosniff");
-  soup_message_headers_replace(headers, "Referrer-Policy", "no-referrer");
-  soup_message_headers_replace(headers, "Cross-Origin-Resource-Policy", "same-origin");
-  soup_message_headers_replace(headers,
-                               "Content-Security-Policy",
-                               "default-src 'self'; img-src 'self' blob: data:; "
-                               "frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
-}
-
-void answer(SoupServerMessage* message, const Reply& reply) {
-  soup_server_message_set_status(message, static_cast<guint>(reply.status), nullptr);
-  SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
-  soup_message_headers_replace(headers, "Cache-Control", "no-store");
-  // libsoup keeps those connections alive only that it has accepted itself.
-  soup_message_headers_replace(headers, "Connection", "close");
-  soup_server_message_set_response(
-      message, reply.type.c_str(), SOUP_MEMORY_COPY, reply.body.data(), reply.body.size());
-}
 
 std::string body_of(SoupServerMessage* message) {
   const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
@@ -111,21 +47,9 @@ void drop_socket(gpointer socket) {
 
 }  // namespace
 
-Reply error_reply(int status, const std::string& message) {
-  return {.status = status, .body = error_json(message)};
-}
-
-LaterReply::LaterReply(SoupServerMessage* message) : message_(share(message)) {
-  soup_server_message_pause(message);
-}
-
-void LaterReply::send(const Reply& reply) {
-  answer(message_.get(), reply);
-  soup_server_message_unpause(message_.get());
-}
-
 HttpServer::HttpServer(Settings settings)
     : settings_(std::move(settings)),
+      gate_(settings_.token),
       server_(soup_server_new("server-header", "ellipse-live", nullptr)),
       service_(g_socket_service_new()) {
   soup_server_add_handler(server_.get(), nullptr, on_request, this, nullptr);
@@ -225,11 +149,6 @@ void HttpServer::on_connection_gone(gpointer data, GObject* /*connection*/) {
 
 /* Requests */
 
-void HttpServer::refuse(SoupServerMessage* message, int status, const std::string& why) {
-  ++counters_.refused;
-  answer(message, error_reply(status, why));
-}
-
 void HttpServer::on_early(SoupServer* /*server*/,
                           SoupServerMessage* message,
                           const char* path,
@@ -238,78 +157,13 @@ void HttpServer::on_early(SoupServer* /*server*/,
   auto* self = static_cast<HttpServer*>(data);
   ++self->counters_.requests;
   add_policy(message);
-  self->check(message, path);
+  if (self->gate_.refuses(message, path)) ++self->counters_.refused;
   // Kept for a WebSocket, which loses sight of whose it is.
   const auto socket =
       self->sockets_->find(text_of(soup_server_message_get_remote_address(message)));
   if (socket == self->sockets_->end()) return;
   g_object_set_data_full(
       G_OBJECT(message), kSocketKey, g_object_ref(socket->second.get()), drop_socket);
-}
-
-void HttpServer::check(SoupServerMessage* message, const std::string& path) {
-  if (!may_ask_now(message)) return refuse(message, 429, "too many requests");
-  const std::string host = header(message, "Host");
-  if (settings_.token.empty() && !is_loopback_host(host)) {
-    return refuse(message, 403, "the Host is not this machine");
-  }
-  if (is_foreign({host, header(message, "Origin"), header(message, "Sec-Fetch-Site")})) {
-    return refuse(message, 403, "another site's page may not do this");
-  }
-  if (path.size() > kLongestPath) return refuse(message, 414, "the path is too long");
-  if (size_of_headers(message) > kLargestHeaders) {
-    return refuse(message, 431, "the headers are too large");
-  }
-  if (take_token_from_link(message, path)) return;
-  if (!has_token(message)) {
-    soup_message_headers_replace(
-        soup_server_message_get_response_headers(message), "WWW-Authenticate", "Bearer");
-    return refuse(message, 401, "the token is missing or wrong");
-  }
-  SoupMessageHeaders* headers = soup_server_message_get_request_headers(message);
-  const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
-  if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "the length must be given");
-  const goffset length = soup_message_headers_get_content_length(headers);
-  if (length > (is_write(message) ? kLargestBody : 0)) {
-    return refuse(message, 413, "the body is too large");
-  }
-}
-
-bool HttpServer::may_ask_now(SoupServerMessage* message) {
-  const char* host = soup_server_message_get_remote_host(message);
-  const std::string address = host != nullptr ? host : "";
-  if (allowances_.size() >= kMostAddresses) allowances_.clear();
-  return allowances_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
-}
-
-bool HttpServer::has_token(SoupServerMessage* message) const {
-  if (settings_.token.empty()) return true;
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string authorization = header(message, "Authorization");
-  if (std::string_view(authorization).starts_with(kBearer)) {
-    return is_same_secret(std::string_view(authorization).substr(kBearer.size()), settings_.token);
-  }
-  return is_same_secret(cookie_of(message), settings_.token);
-}
-
-// The link that was printed, /?token=...: a browser goes on with a cookie, and a clean address.
-bool HttpServer::take_token_from_link(SoupServerMessage* message, const std::string& path) {
-  const char* query = g_uri_get_query(soup_server_message_get_uri(message));
-  constexpr std::string_view kStart = "token=";
-  if (settings_.token.empty() || path != "/" || query == nullptr) return false;
-  const std::string_view given = query;
-  if (!given.starts_with(kStart) || !is_same_secret(given.substr(kStart.size()), settings_.token)) {
-    return false;
-  }
-  soup_message_headers_replace(
-      soup_server_message_get_response_headers(message),
-      "Set-Cookie",
-      (std::string(kCookie) + "=" + settings_.token + "; Path=/; HttpOnly; SameSite=Strict")
-          .c_str());
-  soup_server_message_set_redirect(message, 303, "/");
-  soup_message_headers_replace(
-      soup_server_message_get_response_headers(message), "Connection", "close");
-  return true;
 }
 
 void HttpServer::on_request(SoupServer* /*server*/,

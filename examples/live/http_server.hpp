@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "examples/live/http_gate.hpp"
+#include "examples/live/http_reply.hpp"
 #include "examples/live/ref.hpp"
-#include "examples/live/security.hpp"
 #include "examples/live/web_socket.hpp"
 
 namespace live {
@@ -23,26 +24,8 @@ struct Request {
   std::map<std::string, std::string> query;
 };
 
-struct Reply {
-  int status = 200;
-  std::string type = "application/json";
-  std::string body;
-};
-
-[[nodiscard]] Reply error_reply(int status, const std::string& message);
-
-/// Answers a request later. For the main loop's thread.
-class LaterReply {
- public:
-  explicit LaterReply(SoupServerMessage* message);
-  void send(const Reply& reply);
-
- private:
-  Ref<SoupServerMessage> message_;
-};
-
-/// HTTP and WebSockets on libsoup, behind the checks that concern every request: who asks, from
-/// where, how often, how much. In the main loop's thread.
+/// HTTP and WebSockets on libsoup, behind the gate that every request passes. In the main loop's
+/// thread.
 class HttpServer {
  public:
   struct Settings {
@@ -108,20 +91,15 @@ class HttpServer {
 
   static std::optional<std::string> rest_of(const std::string& path, const Route& route);
   void listen();
-  void refuse(SoupServerMessage* message, int status, const std::string& why);
-  void check(SoupServerMessage* message, const std::string& path);
-  [[nodiscard]] bool has_token(SoupServerMessage* message) const;
-  bool take_token_from_link(SoupServerMessage* message, const std::string& path);
-  [[nodiscard]] bool may_ask_now(SoupServerMessage* message);
   void dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query);
 
   Settings settings_;
+  HttpGate gate_;
   Ref<SoupServer> server_;
   Ref<GSocketService> service_;
   guint port_ = 0;
   std::vector<Route> routes_;
   std::map<std::string, std::function<void(std::unique_ptr<WebSocket>)>> websockets_;
-  std::map<std::string, Allowance> allowances_;  // by the client's address
   Counters counters_;
   std::shared_ptr<Sockets> sockets_ = std::make_shared<Sockets>();
 };

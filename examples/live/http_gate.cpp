@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/http_gate.hpp"
+
+#include <string_view>
+
+#include "examples/live/http_reply.hpp"
+
+namespace live {
+namespace {
+
+constexpr goffset kLargestBody = 64 * 1024;
+constexpr std::size_t kLongestPath = 1024;
+constexpr gsize kLargestHeaders = 16 * 1024;
+constexpr double kRequestsPerSecond = 100.0;
+constexpr double kRequestsAtOnce = 300.0;
+constexpr std::size_t kMostAddresses = 1024;
+constexpr char kCookie[] = "ellipse_token";
+
+std::string header(SoupServerMessage* message, const char* name) {
+  const char* value =
+      soup_message_headers_get_one(soup_server_message_get_request_headers(message), name);
+  return value != nullptr ? value : "";
+}
+
+bool is_write(SoupServerMessage* message) {
+  const std::string method = soup_server_message_get_method(message);
+  return method != "GET" && method != "HEAD";
+}
+
+gsize size_of_headers(SoupServerMessage* message) {
+  SoupMessageHeadersIter iter;
+  soup_message_headers_iter_init(&iter, soup_server_message_get_request_headers(message));
+  const char* name = nullptr;
+  const char* value = nullptr;
+  gsize size = 0;
+  while (soup_message_headers_iter_next(&iter, &name, &value)) {
+    size += std::string_view(name).size() + std::string_view(value).size();
+  }
+  return size;
+}
+
+std::string cookie_of(SoupServerMessage* message) {
+  const std::string cookies = "; " + header(message, "Cookie");
+  const std::string start = std::string("; ") + kCookie + "=";
+  const std::size_t at = cookies.find(start);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + start.size();
+  return cookies.substr(begin, cookies.find(';', begin) - begin);
+}
+
+bool refuse(SoupServerMessage* message, int status, const std::string& why) {
+  answer(message, error_reply(status, why));
+  return true;
+}
+
+}  // namespace
+
+bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
+  if (!may_ask_now(message)) return refuse(message, 429, "too many requests");
+  const std::string host = header(message, "Host");
+  if (token_.empty() && !is_loopback_host(host)) {
+    return refuse(message, 403, "the Host is not this machine");
+  }
+  if (is_foreign({host, header(message, "Origin"), header(message, "Sec-Fetch-Site")})) {
+    return refuse(message, 403, "another site's page may not do this");
+  }
+  if (path.size() > kLongestPath) return refuse(message, 414, "the path is too long");
+  if (size_of_headers(message) > kLargestHeaders) {
+    return refuse(message, 431, "the headers are too large");
+  }
+  if (take_token_from_link(message, path)) return false;
+  if (!has_token(message)) {
+    soup_message_headers_replace(
+        soup_server_message_get_response_headers(message), "WWW-Authenticate", "Bearer");
+    return refuse(message, 401, "the token is missing or wrong");
+  }
+  SoupMessageHeaders* headers = soup_server_message_get_request_headers(message);
+  const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
+  if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "the length must be given");
+  const goffset length = soup_message_headers_get_content_length(headers);
+  if (length > (is_write(message) ? kLargestBody : 0)) {
+    return refuse(message, 413, "the body is too large");
+  }
+  return false;
+}
+
+bool HttpGate::may_ask_now(SoupServerMessage* message) {
+  const char* host = soup_server_message_get_remote_host(message);
+  const std::string address = host != nullptr ? host : "";
+  if (allowances_.size() >= kMostAddresses) allowances_.clear();
+  return allowances_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
+}
+
+bool HttpGate::has_token(SoupServerMessage* message) const {
+  if (token_.empty()) return true;
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string authorization = header(message, "Authorization");
+  if (std::string_view(authorization).starts_with(kBearer)) {
+    return is_same_secret(std::string_view(authorization).substr(kBearer.size()), token_);
+  }
+  return is_same_secret(cookie_of(message), token_);
+}
+
+// The link that was printed, /?token=...: a browser goes on with a cookie, and a clean address.
+bool HttpGate::take_token_from_link(SoupServerMessage* message, const std::string& path) const {
+  const char* query = g_uri_get_query(soup_server_message_get_uri(message));
+  constexpr std::string_view kStart = "token=";
+  if (token_.empty() || path != "/" || query == nullptr) return false;
+  const std::string_view given = query;
+  if (!given.starts_with(kStart) || !is_same_secret(given.substr(kStart.size()), token_)) {
+    return false;
+  }
+  soup_message_headers_replace(
+      soup_server_message_get_response_headers(message),
+      "Set-Cookie",
+      (std::string(kCookie) + "=" + token_ + "; Path=/; HttpOnly; SameSite=Strict").c_str());
+  soup_server_message_set_redirect(message, 303, "/");
+  soup_message_headers_replace(
+      soup_server_message_get_response_headers(message), "Connection", "close");
+  return true;
+}
+
+}  // namespace live
