@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/live_pipeline.hpp"
 
-#include <gst/video/video.h>
-
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
-
-#include "gst/ellipse/gstellipsemeta.h"
 
 namespace live {
 namespace {
@@ -81,16 +77,9 @@ LivePipeline::LivePipeline(Handlers handlers)
     : handlers_(std::move(handlers)),
       pipeline_(gst_pipeline_new("live")),
       tracker_(add(pipeline_, "ellipsetrack")),
-      sink_(add(pipeline_, "appsink")) {
+      sink_(add(pipeline_, "appsink")),
+      tap_(tracker_, GST_APP_SINK(sink_), std::move(handlers_.on_frame)) {
   gst_element_link(tracker_, sink_);
-  // One buffer at most waits here, and only while on_sample() takes it.
-  g_object_set(sink_, "max-buffers", 1, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
-  GstAppSinkCallbacks callbacks{};
-  callbacks.new_sample = on_sample;
-  callbacks.new_preroll = on_preroll;
-  gst_app_sink_set_callbacks(GST_APP_SINK(sink_), &callbacks, this, nullptr);
-  const Ref<GstPad> pad(gst_element_get_static_pad(tracker_, "sink"));
-  gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, on_arrival, this, nullptr);
   const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
   bus_watch_ = gst_bus_add_watch(bus.get(), on_message, this);
   glance_ = g_timeout_add(kGlanceMs, on_glance, this);
@@ -102,53 +91,6 @@ LivePipeline::~LivePipeline() {
   g_source_remove(bus_watch_);
   gst_element_set_state(pipeline_, GST_STATE_NULL);
   gst_object_unref(pipeline_);
-}
-
-/* Frames, in the streaming thread */
-
-GstPadProbeReturn LivePipeline::on_arrival(GstPad* /*pad*/,
-                                           GstPadProbeInfo* /*info*/,
-                                           gpointer data) {
-  static_cast<LivePipeline*>(data)->arrived_us_ = g_get_monotonic_time();
-  return GST_PAD_PROBE_OK;
-}
-
-GstFlowReturn LivePipeline::on_sample(GstAppSink* sink, gpointer data) {
-  if (GstSample* sample = gst_app_sink_pull_sample(sink)) {
-    static_cast<LivePipeline*>(data)->take(sample);
-  }
-  return GST_FLOW_OK;
-}
-
-GstFlowReturn LivePipeline::on_preroll(GstAppSink* sink, gpointer data) {
-  if (GstSample* sample = gst_app_sink_pull_preroll(sink)) {
-    static_cast<LivePipeline*>(data)->take(sample);
-  }
-  return GST_FLOW_OK;
-}
-
-void LivePipeline::take(GstSample* sample) {
-  auto frame = std::make_shared<Frame>();
-  frame->sample.reset(sample);
-  GstBuffer* buffer = gst_sample_get_buffer(sample);
-  GstVideoInfo info;
-  if (buffer == nullptr || !gst_video_info_from_caps(&info, gst_sample_get_caps(sample))) return;
-  // What was shown when paused comes once more when it plays on.
-  if (last_ && gst_sample_get_buffer(last_->sample.get()) == buffer) return;
-  frame->number = frames_++;
-  frame->arrived_us = arrived_us_;  // no queue lies between: it is this frame's
-  frame->pts = GST_BUFFER_PTS_IS_VALID(buffer) ? GST_BUFFER_PTS(buffer) : 0;
-  frame->width = GST_VIDEO_INFO_WIDTH(&info);
-  frame->height = GST_VIDEO_INFO_HEIGHT(&info);
-  if (GST_VIDEO_INFO_FPS_N(&info) > 0) {
-    gst_util_fraction_to_double(
-        GST_VIDEO_INFO_FPS_N(&info), GST_VIDEO_INFO_FPS_D(&info), &frame->rate);
-  }
-  const Ref<gchar> json(gst_buffer_ellipses_to_json(
-      buffer, frame->number, static_cast<guint>(frame->width), static_cast<guint>(frame->height)));
-  frame->line = std::string(json.get()) + "\n";
-  last_ = frame;
-  handlers_.on_frame(std::move(frame));
 }
 
 /* The source, in the main loop */
@@ -325,7 +267,7 @@ gboolean LivePipeline::on_glance(gpointer data) {
 
 // A network camera may fall silent without a word.
 void LivePipeline::watch_arrivals() {
-  const guint64 frames = frames_;
+  const guint64 frames = tap_.frames();
   const bool has_arrived = frames != std::exchange(glanced_frames_, frames);
   if (has_arrived) {
     if (!trouble_.empty()) handlers_.on_trouble("");

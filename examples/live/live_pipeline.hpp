@@ -3,11 +3,10 @@
 #include <gst/app/app.h>
 #include <gst/gst.h>
 
-#include <atomic>
 #include <functional>
 #include <string>
 
-#include "examples/live/frame.hpp"
+#include "examples/live/frame_tap.hpp"
 #include "examples/live/source_spec.hpp"
 
 namespace live {
@@ -17,17 +16,16 @@ enum class PlayState { kStarting, kPlaying, kPaused, kEnded, kReconnecting, kFai
 [[nodiscard]] const char* nick_of(PlayState state);
 
 /// Source, ellipsetrack and a sink that hands over each frame. Nothing behind that sink holds the
-/// pipeline up: a FrameSink only takes references.
+/// pipeline up: the FrameTap only takes references.
 ///
 /// The tracker stays one and the same, with its settings, when the source is replaced or comes back
 /// after it dropped. All functions are for the main loop's thread.
 class LivePipeline {
  public:
-  using FrameSink = std::function<void(FramePtr)>;
   using Notice = std::function<void(const std::string&)>;
 
   struct Handlers {
-    FrameSink on_frame;                ///< In the streaming thread: must not wait.
+    FrameTap::FrameSink on_frame;      ///< In the streaming thread: must not wait.
     Notice on_trouble;                 ///< What is wrong with the source, or that it is back.
     std::function<void()> on_failure;  ///< The source cannot be used and will not come back.
   };
@@ -54,21 +52,17 @@ class LivePipeline {
   [[nodiscard]] PlayState state() const { return state_; }
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   [[nodiscard]] guint64 reconnections() const { return reconnections_; }
-  [[nodiscard]] guint64 frames() const { return frames_; }
+  [[nodiscard]] guint64 frames() const { return tap_.frames(); }
   [[nodiscard]] bool is_seekable() const;
   /// [ns]; GST_CLOCK_TIME_NONE where it is not known.
   [[nodiscard]] GstClockTime position() const;
   [[nodiscard]] GstClockTime duration() const;
 
  private:
-  static GstPadProbeReturn on_arrival(GstPad* pad, GstPadProbeInfo* info, gpointer data);
-  static GstFlowReturn on_sample(GstAppSink* sink, gpointer data);
-  static GstFlowReturn on_preroll(GstAppSink* sink, gpointer data);
   static gboolean on_message(GstBus* bus, GstMessage* message, gpointer data);
   static gboolean on_glance(gpointer data);
   static gboolean on_retry(gpointer data);
 
-  void take(GstSample* sample);
   void start();
   void stop();
   void end_of_stream();
@@ -82,6 +76,7 @@ class LivePipeline {
   GstElement* pipeline_;
   GstElement* tracker_;
   GstElement* sink_;
+  FrameTap tap_;
   GstElement* source_ = nullptr;
   guint bus_watch_ = 0;
   guint glance_ = 0;
@@ -92,11 +87,6 @@ class LivePipeline {
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;
-
-  std::atomic<guint64> frames_{0};
-  // The streaming thread's.
-  FramePtr last_;
-  gint64 arrived_us_ = 0;
 };
 
 }  // namespace live
