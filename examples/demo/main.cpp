@@ -73,8 +73,10 @@ std::string picture_source(const std::string& pattern) {
          (is_png ? "pngdec" : "jpegdec");
 }
 
+// (ANY), because libav's decoders offer separate fields too: a feature that plain video/x-raw
+// leaves out, and a decoder is taken only where all that it offers is wanted.
 std::string uri_source(const std::string& uri) {
-  return "uridecodebin uri=" + quoted(uri) + " caps=video/x-raw expose-all-streams=false";
+  return "uridecodebin uri=" + quoted(uri) + " caps=\"video/x-raw(ANY)\" expose-all-streams=false";
 }
 
 std::string source_for(const Options& options) {

@@ -55,6 +55,19 @@ TEST_F(Programs, DemoWritesVideoTextAndContactSheet) {
   EXPECT_TRUE(fs::exists(again / "contact_sheet.png"));
 }
 
+// As cameras and telephones write it.
+TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
+  const std::string video = (folder_ / "video.mp4").string();
+  ASSERT_EQ(programs::run("gst-launch-1.0 -q ellipsetestsrc num-buffers=20 ! videoconvert ! "
+                          "x264enc ! mp4mux name=mux ! filesink location=" +
+                          video + " audiotestsrc num-buffers=40 ! audioconvert ! avenc_aac ! mux.")
+                .status,
+            0);
+  const Outcome demo = run("ellipse-demo", video + " --out " + (folder_ / "out").string());
+  EXPECT_EQ(demo.status, 0) << demo.text;
+  EXPECT_NE(demo.text.find("frames                      20"), std::string::npos) << demo.text;
+}
+
 TEST_F(Programs, DemoSaysInOneLineWhatIsWrong) {
   const fs::path text_file = folder_ / "text.mp4";
   std::ofstream(text_file) << "this is no video\n";

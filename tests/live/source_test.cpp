@@ -46,6 +46,18 @@ std::string make_pictures(const TemporaryFolder& folder, int frames) {
   return pictures;
 }
 
+// As cameras and telephones write it: H.264 with sound.
+std::string make_mp4(const TemporaryFolder& folder, int frames) {
+  const std::string file = folder.file("video.mp4");
+  EXPECT_EQ(support::run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                                  " ! video/x-raw,width=320,height=180 ! videoconvert ! x264enc ! "
+                                  "mp4mux name=mux ! filesink location=" +
+                                  file +
+                                  " audiotestsrc num-buffers=40 ! audioconvert ! avenc_aac ! mux."),
+            "");
+  return file;
+}
+
 std::string trouble_with(const std::string& source) {
   try {
     (void)live::parse_source(source);
@@ -190,6 +202,14 @@ TEST(LiveSource, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
   EXPECT_TRUE(wait_until([&] { return number_in(client, "pts_ns") > shown; }));
   const std::string head = "X-PTS: " + std::to_string(number_in(client, "pts_ns")) + "\r\n";
   EXPECT_NE(text.find(head), text.rfind(head)) << head;
+}
+
+TEST(LiveSource, AnMp4WithSoundIsPlayedToItsEnd) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_mp4(folder, 20)});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  EXPECT_EQ(client.stat("frames"), 20.0);
 }
 
 TEST(LiveSource, AFileIsPlayedAgainWhereAsked) {
