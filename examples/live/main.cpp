@@ -46,6 +46,8 @@ void tell_addresses(const live::Options& options,
 int run(live::Options options) {
   options.token = token_for(options);
   const MainLoop loop(g_main_loop_new(nullptr, FALSE), g_main_loop_unref);
+  // Before the session: its streams end while there is somebody to end them.
+  live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
   bool has_failed = false;
   live::Session session(options, [&] {
     // Who changes the source while it runs sees what was wrong, and can choose another.
@@ -56,7 +58,6 @@ int run(live::Options options) {
   if (!options.preset.empty()) {
     live::load_preset(session.pipeline().tracker(), options.preset);
   }
-  live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
   live::add_api(server, session, options);
   session.open(options.source);
   tell_addresses(options, server, session);

@@ -116,10 +116,18 @@ bool widens(GstElement* tracker, const Change& change) {
   return is_upper ? after > before : after < before;
 }
 
-bool is_empty_rect(const GValue* value) {
+// A region without a width, a direction without a length.
+bool is_unset(const GParamSpec* spec, const GValue* value) {
   constexpr guint kWidth = 2;
-  return gst_value_array_get_size(value) <= kWidth ||
-         g_value_get_int(gst_value_array_get_value(value, kWidth)) == 0;
+  if (is_rect(spec)) {
+    return gst_value_array_get_size(value) <= kWidth ||
+           g_value_get_int(gst_value_array_get_value(value, kWidth)) == 0;
+  }
+  if (!is_vector(spec)) return false;
+  for (guint i = 0; i < gst_value_array_get_size(value); ++i) {
+    if (g_value_get_double(gst_value_array_get_value(value, i)) != 0.0) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -155,7 +163,7 @@ std::string Properties::launch_settings() const {
     Value value(spec);
     g_object_get_property(G_OBJECT(tracker_), spec->name, value.get());
     if (g_param_value_defaults(spec, value.get())) continue;
-    if (is_rect(spec) && is_empty_rect(value.get())) continue;
+    if (is_unset(spec, value.get())) continue;
     const std::string text = word_of(spec, value.get());
     if (text.empty()) continue;
     const std::string setting = std::string(" ") + spec->name + "=" + text;

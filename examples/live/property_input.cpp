@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "examples/live/json_writer.hpp"
 #include "examples/live/property_json.hpp"
@@ -41,20 +42,41 @@ std::string text_of(const GParamSpec* spec, JsonNode* node) {
   return json_node_get_string(node);
 }
 
-void read_rect(const GParamSpec* spec, JsonNode* node, GValue* value) {
-  constexpr guint kNumbers = 4;
+// The numbers of an array; all 0 where it is empty, as a default is.
+std::vector<double> numbers_of(const GParamSpec* spec,
+                               JsonNode* node,
+                               std::size_t count,
+                               const char* form) {
+  std::vector<double> numbers(count);
   JsonArray* array = JSON_NODE_HOLDS_ARRAY(node) ? json_node_get_array(node) : nullptr;
-  if (array == nullptr || json_array_get_length(array) != kNumbers) {
-    refuse(spec, "takes [x, y, width, height]");
+  if (array != nullptr && json_array_get_length(array) == 0) return numbers;
+  if (array == nullptr || json_array_get_length(array) != count) {
+    refuse(spec, std::string("takes ") + form);
   }
-  for (guint i = 0; i < kNumbers; ++i) {
+  for (guint i = 0; i < count; ++i) {
     JsonNode* element = json_array_get_element(array, i);
-    if (!JSON_NODE_HOLDS_VALUE(element)) refuse(spec, "takes four whole numbers");
-    const double number = whole_number_of(spec, element);
+    if (!JSON_NODE_HOLDS_VALUE(element)) refuse(spec, std::string("takes ") + form);
+    numbers[i] = number_of(spec, element);
+  }
+  return numbers;
+}
+
+void read_rect(const GParamSpec* spec, JsonNode* node, GValue* value) {
+  for (const double number : numbers_of(spec, node, 4, "[x, y, width, height]")) {
+    if (number != std::floor(number)) refuse(spec, "takes four whole numbers");
     if (std::abs(number) > 1e6) refuse(spec, "is far outside of any frame");
     GValue each = G_VALUE_INIT;
     g_value_init(&each, G_TYPE_INT);
     g_value_set_int(&each, static_cast<gint>(number));
+    gst_value_array_append_and_take_value(value, &each);
+  }
+}
+
+void read_vector(const GParamSpec* spec, JsonNode* node, GValue* value) {
+  for (const double number : numbers_of(spec, node, 3, "[x, y, z]")) {
+    GValue each = G_VALUE_INIT;
+    g_value_init(&each, G_TYPE_DOUBLE);
+    g_value_set_double(&each, number);
     gst_value_array_append_and_take_value(value, &each);
   }
 }
@@ -77,6 +99,7 @@ void read_enum(GParamSpec* spec, JsonNode* node, GValue* value) {
 
 void read_value(GParamSpec* spec, JsonNode* node, GValue* value) {
   if (is_rect(spec)) return read_rect(spec, node, value);
+  if (is_vector(spec)) return read_vector(spec, node, value);
   if (!JSON_NODE_HOLDS_VALUE(node)) refuse(spec, "takes a single value");
   if (G_IS_PARAM_SPEC_ENUM(spec)) return read_enum(spec, node, value);
   if (G_IS_PARAM_SPEC_BOOLEAN(spec)) {

@@ -9,6 +9,7 @@ namespace {
 
 std::string type_of(const GParamSpec* spec) {
   if (is_rect(spec)) return "rect";
+  if (is_vector(spec)) return "vector";
   if (G_IS_PARAM_SPEC_ENUM(spec)) return "enum";
   if (G_IS_PARAM_SPEC_FLAGS(spec)) return "flags";
   switch (G_PARAM_SPEC_VALUE_TYPE(spec)) {
@@ -49,13 +50,19 @@ std::string enum_nick(const GValue* value) {
   return found != nullptr ? found->value_nick : "";
 }
 
-void write_value(JsonWriter& json, const GParamSpec* spec, const GValue* value) {
-  if (is_rect(spec)) {
-    json.begin_array();
-    for (guint i = 0; i < gst_value_array_get_size(value); ++i) {
-      json.value(g_value_get_int(gst_value_array_get_value(value, i)));
-    }
-    json.end_array();
+void write_array(JsonWriter& json, const GValue* value) {
+  json.begin_array();
+  for (guint i = 0; i < gst_value_array_get_size(value); ++i) {
+    const GValue* number = gst_value_array_get_value(value, i);
+    G_VALUE_HOLDS_INT(number) ? json.value(g_value_get_int(number))
+                              : json.value(g_value_get_double(number));
+  }
+  json.end_array();
+}
+
+void write_value(JsonWriter& json, const GValue* value) {
+  if (GST_VALUE_HOLDS_ARRAY(value)) {
+    write_array(json, value);
   } else if (G_VALUE_HOLDS_BOOLEAN(value)) {
     json.value(g_value_get_boolean(value) != FALSE);
   } else if (G_VALUE_HOLDS_INT(value)) {
@@ -105,7 +112,13 @@ void write_nicks(JsonWriter& json, const Values* values, guint count) {
 }  // namespace
 
 bool is_rect(const GParamSpec* spec) {
-  return G_PARAM_SPEC_VALUE_TYPE(spec) == GST_TYPE_ARRAY;
+  return GST_IS_PARAM_SPEC_ARRAY_LIST(spec) &&
+         G_IS_PARAM_SPEC_INT(GST_PARAM_SPEC_ARRAY_LIST(spec)->element_spec);
+}
+
+bool is_vector(const GParamSpec* spec) {
+  return GST_IS_PARAM_SPEC_ARRAY_LIST(spec) &&
+         G_IS_PARAM_SPEC_DOUBLE(GST_PARAM_SPEC_ARRAY_LIST(spec)->element_spec);
 }
 
 void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec) {
@@ -129,21 +142,21 @@ void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec) {
     write_nicks(json, type->values, type->n_values);
   }
   json.key("default");
-  write_value(json, spec, g_param_spec_get_default_value(spec));
+  write_value(json, g_param_spec_get_default_value(spec));
   GValue value = G_VALUE_INIT;
   g_value_init(&value, G_PARAM_SPEC_VALUE_TYPE(spec));
   g_object_get_property(G_OBJECT(object), spec->name, &value);
   json.key("value");
-  write_value(json, spec, &value);
+  write_value(json, &value);
   g_value_unset(&value);
   json.end_object();
 }
 
 std::string word_of(const GParamSpec* spec, const GValue* value) {
-  if (is_rect(spec)) {
+  if (is_rect(spec) || is_vector(spec)) {
     JsonWriter numbers;
-    write_value(numbers, spec, value);
-    std::string word = numbers.text();  // [x,y,width,height]
+    write_array(numbers, value);
+    std::string word = numbers.text();  // [x,y,width,height], [x,y,z]
     word.front() = '<';
     word.back() = '>';
     return word;

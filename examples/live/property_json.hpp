@@ -11,6 +11,9 @@ namespace live {
 /// Whether a property is a region: an array of four whole numbers.
 [[nodiscard]] bool is_rect(const GParamSpec* spec);
 
+/// Whether a property is a direction: an array of three numbers.
+[[nodiscard]] bool is_vector(const GParamSpec* spec);
+
 /// Writes an object that tells all that a control needs: name, nick, blurb, type, range, default,
 /// value, unit, group.
 void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec);

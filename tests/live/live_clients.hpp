@@ -113,6 +113,20 @@ class Client {
   Ref<SoupSession> session_;
 };
 
+/// One of what api/properties tells, or null.
+inline JsonObject* property(const Answer& answer, const std::string& name) {
+  JsonArray* all = json_node_get_array(answer.json());
+  for (guint i = 0; i < json_array_get_length(all); ++i) {
+    JsonObject* each = json_array_get_object_element(all, i);
+    if (name == json_object_get_string_member(each, "name")) return each;
+  }
+  return nullptr;
+}
+
+inline double value_of(const Client& client, const std::string& name) {
+  return json_object_get_double_member(property(client.get("api/properties"), name), "value");
+}
+
 /// Reads an endless answer until it has what is looked for so many times, or until nothing comes.
 inline std::string read_stream(const std::string& url, const std::string& part, int times) {
   const Ref<SoupSession> session(soup_session_new_with_options("timeout", 20, nullptr));

@@ -10,7 +10,7 @@
 namespace support {
 
 /// Starts a program that the kernel ends together with the thread that calls this: it is not left
-/// behind where the tests are killed.
+/// behind where the tests are killed. What GLib thinks critical in it ends it too.
 /// @return null where it cannot be started; the caller's otherwise.
 inline GSubprocess* start_child(const std::vector<std::string>& arguments,
                                 GSubprocessFlags flags,
@@ -19,6 +19,7 @@ inline GSubprocess* start_child(const std::vector<std::string>& arguments,
   for (const std::string& each : arguments) argv.push_back(each.c_str());
   argv.push_back(nullptr);
   GSubprocessLauncher* launcher = g_subprocess_launcher_new(flags);
+  g_subprocess_launcher_setenv(launcher, "G_DEBUG", "fatal-criticals", TRUE);
   // Between fork and exec: nothing but a system call.
   g_subprocess_launcher_set_child_setup(
       launcher, [](gpointer) { prctl(PR_SET_PDEATHSIG, SIGKILL); }, nullptr, nullptr);

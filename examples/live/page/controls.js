@@ -6,6 +6,7 @@ const kSteps = 1000;
 const kFarMax = 1e6;   // a slider does not go as far as what nobody wants
 const kFarTime = 1e8;  // [ns]
 const kRectParts = ["x", "y", "width", "height"];
+const kVectorParts = ["x", "y", "z"];
 
 function make(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
@@ -150,18 +151,19 @@ function flagsControl(property, change) {
   return { head: [], body: [group], set };
 }
 
-function rectControl(property, change) {
-  const fields = kRectParts.map((part) => make("input", {
-    type: "number", step: 1, title: part, placeholder: part, "aria-label": `${property.name}, ${part}`,
+// A field for each number of an array. What is not set has none: all 0.
+const arrayControl = (parts, step, read) => (property, change) => {
+  const fields = parts.map((part) => make("input", {
+    type: "number", step, title: part, placeholder: part, "aria-label": `${property.name}, ${part}`,
   }));
   for (const field of fields) {
-    field.onchange = () => change(fields.map((each) => Math.round(each.valueAsNumber || 0)));
+    field.onchange = () => change(fields.map((each) => read(each.valueAsNumber || 0)));
   }
   const set = showWhenLeft(fields, (value) => fields.forEach((field, i) => {
     field.value = value[i] ?? 0;
   }));
-  return { head: [], body: [make("div", { className: "rect" }, ...fields)], set };
-}
+  return { head: [], body: [make("div", { className: "numbers" }, ...fields)], set };
+};
 
 // 0xAARRGGBB. The alpha stays as it is.
 function colorControl(property, change) {
@@ -189,7 +191,8 @@ export function makeControl(property, change) {
     bool: boolControl,
     enum: enumControl,
     flags: flagsControl,
-    rect: rectControl,
+    rect: arrayControl(kRectParts, 1, Math.round),
+    vector: arrayControl(kVectorParts, "any", Number),
     int: numberControl,
     uint: numberControl,
     uint64: numberControl,

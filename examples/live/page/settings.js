@@ -147,9 +147,10 @@ export class Settings {
     entry.node.classList.toggle("changed", !this.#isDefault(entry.property, value));
   }
 
-  // Flags and regions have more than one spelling of their default.
+  // Flags, regions and directions have more than one spelling of their default.
   #isDefault({ type, default: usual }, value) {
     if (type === "rect") return usual.length === 0 ? !value[2] : isSame(value, usual);
+    if (type === "vector") return value.every((number, i) => number === (usual[i] ?? 0));
     if (type === "flags") return isSame(value, usual) || (value === "none" && usual === "Nothing");
     return isSame(value, usual);
   }

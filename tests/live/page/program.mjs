@@ -11,7 +11,8 @@ import { chromium } from "playwright-core";
  */
 export async function startProgram(...args) {
   const command = ["--pdeathsig", "KILL", process.env.ELLIPSE_LIVE, "--port", "0", ...args];
-  const child = spawn("setpriv", command);
+  const env = { ...process.env, G_DEBUG: "fatal-criticals" };
+  const child = spawn("setpriv", command, { env });
   let output = "";
   child.stderr.on("data", (data) => { output += data; });
   const url = await new Promise((resolve, reject) => {
