@@ -6,6 +6,7 @@ import { Labels } from "./labels.js";
 import { Playback } from "./playback.js";
 import { Plots } from "./plots.js";
 import { setUpPresets } from "./presets.js";
+import { Region } from "./region.js";
 import { Screen } from "./screen.js";
 import { Settings } from "./settings.js";
 import { Stages } from "./stages.js";
@@ -18,6 +19,7 @@ const status = new Status();
 const screen = new Screen(at("screen"), at("layers"));
 const playback = new Playback(screen.canvas, status.say);
 const settings = new Settings(at("settings"), at("filter"), at("reset-all"));
+const region = new Region(screen, settings, status.say);
 const plots = new Plots(at("plots"));
 const views = {
   stages: new Stages(screen, playback, settings, status.say),
@@ -33,6 +35,7 @@ const openTab = setUpTabs((name) => {
   view?.stop();
   view = views[name] ?? null;
   at("layers").hidden = view !== null;
+  region.isOn = view === null;
   view?.start();
 });
 
@@ -50,7 +53,10 @@ watchFrames({
   },
   onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live: trying again"),
 });
-settings.onChange = () => view?.refresh();
+settings.onChange = () => {
+  screen.draw();
+  view?.refresh();
+};
 playback.onChange = (source) => status.setTrouble(source.error);
 views.stages.onSetting = (name) => {
   openTab("tune");

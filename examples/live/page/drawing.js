@@ -12,6 +12,7 @@ const kLooks = {
   predicted: { color: color("predicted"), dash: [2, 5] },
   candidate: { color: color("candidate"), dash: [] },
   refused: { color: color("lost"), dash: [] },
+  chosen: { color: color("accent"), dash: [] },
   truth: { color: "#ffffff", dash: [1, 4] },
 };
 
@@ -76,15 +77,16 @@ export function drawEllipse(context, e, look, layers) {
   context.restore();
 }
 
-/** @param roi  [x, y, width, height] in whole pixels. */
+/** @param roi  [x, y, width, height] in whole pixels. What a person has chosen is a firm line. */
 export function drawRegion(context, [x, y, width, height], look) {
+  const isChosen = look === "chosen";
   const unit = context.lineWidth / 2;
   context.save();
-  context.globalAlpha = 0.7;
-  context.lineWidth = unit;
+  context.globalAlpha = isChosen ? 1 : 0.7;
+  context.lineWidth = isChosen ? 2 * unit : unit;
   context.beginPath();
   context.rect(x - 0.5, y - 0.5, width, height);
-  outline(context, kLooks[look].color, [4 * unit, 4 * unit]);
+  outline(context, kLooks[look].color, isChosen ? [] : [4 * unit, 4 * unit]);
   context.restore();
 }
 

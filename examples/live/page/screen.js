@@ -18,6 +18,8 @@ export class Screen {
   frame = null;
   /** Draws instead of the frame's own drawing, where it is set: (context, frame) => void. */
   view = null;
+  /** Draws over the frame's own drawing: (context) => void. */
+  overlay = () => {};
 
   constructor(canvas, layerList) {
     this.canvas = canvas;
@@ -44,7 +46,10 @@ export class Screen {
       this.view(context, this.frame);
     } else {
       drawPicture(context, bitmap, bitmap.width, bitmap.height);
-      if (!this.isClear) drawTargets(context, line, this.layers);
+      if (!this.isClear) {
+        drawTargets(context, line, this.layers);
+        this.overlay(context);
+      }
     }
     this.canvas.dataset.pts = pts;
     this.canvas.dataset.shown = this.shown;

@@ -38,8 +38,8 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
   // Whatever the last test has left.
   beforeEach(async () => {
     const properties = await live.program.ask("GET", "/api/properties");
-    const numbers = properties.filter(({ type }) => type !== "rect" && type !== "flags");
-    await live.program.ask("PUT", "/api/properties", Object.fromEntries(numbers.map((p) => [p.name, p.default])));
+    const others = properties.filter(({ type }) => type !== "flags");
+    await live.program.ask("PUT", "/api/properties", Object.fromEntries(others.map((p) => [p.name, p.default])));
   });
 
   it("is shown frame after frame, with its figures", async () => {
@@ -114,6 +114,66 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     await page.waitForFunction(() => /axis/.test(document.querySelector("[data-setting=min-axis] .error").textContent));
     await field.blur();
     await page.waitForFunction(() => document.querySelector("[data-setting=min-axis] input[type=number]").value === "5");
+    await page.close();
+  });
+
+  it("is searched only where a region is dragged on it", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    const drag = async (from, to, beforeEnd = () => {}) => {
+      const { x, y, width } = await page.locator("#screen").boundingBox();
+      const at = ([u, v]) => [x + (u + 0.5) * width / 640, y + (v + 0.5) * width / 640];
+      await page.mouse.move(...at(from));
+      await page.mouse.down();
+      await page.mouse.move(...at(to), { steps: 4 });
+      await beforeEnd();
+      await page.mouse.up();
+    };
+    const propertiesNow = async () => {
+      const all = await live.program.ask("GET", "/api/properties");
+      return Object.fromEntries(all.map(({ name, value }) => [name, value]));
+    };
+    await drag([120, 90], [20, 30]);  // far from the pad
+    await stateIs(page, "lost");
+    let { roi, "roi-source": source } = await propertiesNow();
+    assert.equal(source, "property");
+    [20, 30, 100, 60].forEach((wanted, i) => assert.ok(Math.abs(roi[i] - wanted) <= 2, `${roi}`));
+    const fields = setting(page, "roi").locator("input");
+    assert.equal(await fields.nth(2).inputValue(), String(roi[2]));
+    await page.keyboard.press("Escape");
+    await stateIs(page, "tracked");
+    assert.equal((await propertiesNow())["roi-source"], "none");
+
+    await drag([120, 90], [20, 30], () => page.keyboard.press("Escape"));  // given up
+    await page.locator("#screen").click();
+    assert.equal((await propertiesNow())["roi-source"], "none");
+
+    await drag([300, 100], [900, 900]);  // no farther than the frame
+    await page.waitForSelector("[data-setting=roi].changed", { state: "attached" });
+    ({ roi, "roi-source": source } = await propertiesNow());
+    assert.deepEqual([roi[0] + roi[2], roi[1] + roi[3]], [640, 360]);
+    await page.locator("#screen").dblclick();
+    await page.waitForSelector("[data-setting=roi]:not(.changed)", { state: "attached" });
+    assert.equal((await propertiesNow())["roi-source"], "none");
+    assert.deepEqual(page.troubles, []);
+    await page.close();
+  });
+
+  it("is searched only where the fields say, by keys alone", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.evaluate(() => document.querySelector("[data-setting=roi]").closest("details").open = true);
+    await setting(page, "roi").locator("input").first().focus();
+    for (const number of ["10", "20", "80", "60"]) {
+      await page.keyboard.type(number);
+      await page.keyboard.press("Tab");
+    }
+    await setting(page, "roi-source").locator("input[value=none]").focus();
+    await page.keyboard.press("ArrowRight");
+    await stateIs(page, "lost");
+    await page.focus("#screen");
+    await page.keyboard.press("Escape");
+    await stateIs(page, "tracked");
     await page.close();
   });
 

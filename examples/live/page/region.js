@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// The region that is searched, drawn on the picture by a mouse or a pen; a finger scrolls the page.
+// Without either, the fields of roi and roi-source do the same.
+import { drawRegion } from "./drawing.js";
+
+const kLeastPx = 8;  // of the screen: what is shorter is a click
+const kNone = [0, 0, 0, 0];
+
+export class Region {
+  /** Whether the picture is free for it: no other view uses the pointer. */
+  isOn = true;
+  #start = null;  // {x, y} of the frame, where a drag has begun
+  #dragged = null;  // [x, y, width, height], while it is drawn
+
+  constructor(screen, settings, say) {
+    Object.assign(this, { screen, settings, say });
+    const { canvas } = screen;
+    canvas.addEventListener("pointerdown", (event) => this.#begin(event));
+    canvas.addEventListener("pointermove", (event) => this.#drag(event));
+    canvas.addEventListener("pointerup", () => this.#end());
+    canvas.addEventListener("pointercancel", () => this.#giveUp());
+    canvas.addEventListener("dblclick", () => this.#clear());
+    canvas.addEventListener("keydown", ({ key }) => {
+      if (key !== "Escape") return;
+      if (this.#start) this.#giveUp();
+      else this.#clear();
+    });
+    screen.overlay = (context) => this.#draw(context);
+  }
+
+  #begin(event) {
+    const isPen = event.pointerType !== "touch" && event.button === 0;
+    if (!this.isOn || !isPen || !this.screen.frame) return;
+    this.#start = this.screen.placeOf(event);
+    this.screen.canvas.setPointerCapture(event.pointerId);
+  }
+
+  #drag(event) {
+    if (!this.#start) return;
+    const { bitmap } = this.screen.frame;
+    const end = this.screen.placeOf(event);
+    const px = bitmap.width / this.screen.canvas.clientWidth;
+    const isLong = Math.max(Math.abs(end.x - this.#start.x), Math.abs(end.y - this.#start.y)) > kLeastPx * px;
+    if (isLong || this.#dragged) this.#dragged = rectOf(this.#start, end, bitmap);
+    this.screen.draw();
+  }
+
+  #end() {
+    const roi = this.#dragged;
+    this.#giveUp();
+    if (!roi) return;
+    this.settings.set({ roi, "roi-source": "property" });
+    this.screen.draw();
+    this.say(`Searched in ${roi[2]} × ${roi[3]} px; Escape or a double click: everywhere`);
+  }
+
+  #giveUp() {
+    this.#start = this.#dragged = null;
+    this.screen.draw();
+  }
+
+  #clear() {
+    if (!this.isOn || !this.#chosen()) return;
+    this.settings.set({ roi: kNone, "roi-source": "none" });
+    this.screen.draw();
+    this.say("Searched everywhere");
+  }
+
+  /** The region in force, or null. */
+  #chosen() {
+    const { roi, "roi-source": source } = this.settings.values();
+    return source === "property" && roi[2] > 0 ? roi : null;
+  }
+
+  #draw(context) {
+    const roi = this.#dragged ?? (this.screen.layers.region && this.#chosen());
+    if (roi) drawRegion(context, roi, "chosen");
+  }
+}
+
+// The whole pixels between two places, inside the frame.
+function rectOf(a, b, { width, height }) {
+  const span = (one, other, size) => {
+    const low = Math.max(0, Math.floor(Math.min(one, other) + 0.5));
+    const high = Math.min(size, Math.ceil(Math.max(one, other) + 0.5));
+    const from = Math.min(low, size - 1);
+    return [from, Math.max(1, high - from)];
+  };
+  const [x, w] = span(a.x, b.x, width);
+  const [y, h] = span(a.y, b.y, height);
+  return [x, y, w, h];
+}
