@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cstdio>
 #include <memory>
@@ -21,6 +22,7 @@ constexpr int kFrames = 3600;  // two minutes
 
 struct Pace {
   double frames_per_second = 0.0;
+  double median_ms = 0.0;  // of an analysis, over the last third of the frames
   double p99_ms = 0.0;
   double skipped = 0.0;
 };
@@ -39,6 +41,7 @@ Pace run(const Client& client) {
   const support::Answer answer = client.poll("api/stats");
   JsonObject* tracker = json_object_get_object_member(answer.object(), "tracker");
   return {frames / seconds,
+          1e-6 * json_object_get_double_member(tracker, "processing_time_median"),
           1e-6 * json_object_get_double_member(tracker, "processing_time_p99"),
           json_object_get_double_member(tracker, "skipped")};
 }
@@ -46,6 +49,8 @@ Pace run(const Client& client) {
 TEST(LiveLongLoad, FiftyViewersAndFiveOfThemStalledDoNotSlowThePipeline) {
   const LiveProgram program({});
   const Client client(program.url());
+  // Fifty clients are on machines of their own: here they take the time that the program leaves.
+  ASSERT_EQ(setpriority(PRIO_PROCESS, 0, 19), 0);
   const Pace alone = run(client);
   std::vector<std::unique_ptr<SocketClient>> viewers;
   for (int i = 0; i < kViewers; ++i) {
@@ -57,11 +62,13 @@ TEST(LiveLongLoad, FiftyViewersAndFiveOfThemStalledDoNotSlowThePipeline) {
   std::size_t pictures = 0;
   for (const auto& viewer : viewers) pictures += viewer->watched();
   std::printf(
-      "alone   %.3f frames/s, p99 %.3f ms\nwatched %.3f frames/s, p99 %.3f ms, "
-      "%.2f pictures per frame and viewer\n",
+      "alone   %.3f frames/s, median %.3f ms, p99 %.3f ms\n"
+      "watched %.3f frames/s, median %.3f ms, p99 %.3f ms, %.2f pictures per frame and viewer\n",
       alone.frames_per_second,
+      alone.median_ms,
       alone.p99_ms,
       watched.frames_per_second,
+      watched.median_ms,
       watched.p99_ms,
       static_cast<double>(pictures) / (kFrames * (kViewers - kStalled)));
   EXPECT_GT(watched.frames_per_second, 0.95 * alone.frames_per_second);
