@@ -12,6 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSeenInARow = 4;           // pictures until it is believed
+constexpr double kEnoughToBegin = 0.6;   // of its outline in view
 constexpr double kLost_s = 1.0;          // unseen while nothing hurries
 constexpr double kInSight_s = 2.0;       // since it was seen: better known than radio tells
 constexpr double kSpiralGrowth = 0.5;    // of the search's circles [m/s]
@@ -58,8 +59,11 @@ void Controller::take_in(const Observation& seen) {
                  seen.time_s - last_seen_s_ < kInSight_s);
 }
 
+// While the target is searched, a part of an outline at the picture's border tells its place too
+// badly to begin with.
 void Controller::look(const Observation& seen) {
-  if (!seen.pad) {
+  const bool is_glimpse = phase_ == Phase::kSearch && seen.visible_fraction < kEnoughToBegin;
+  if (!seen.pad || is_glimpse) {
     seen_in_a_row_ = 0;
     refused_in_a_row_ = 0;
     return;

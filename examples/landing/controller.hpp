@@ -54,6 +54,7 @@ struct Observation {
   Motion own;                          ///< Its autopilot's estimate.
   std::optional<Eigen::Vector3d> pad;  ///< From the body's origin, in the world's axes [m].
   double error = 0.0;                  ///< Standard deviation of that, as the picture tells [m].
+  double visible_fraction = 1.0;       ///< Share of the pad's outline that the picture shows.
   std::optional<Radio> radio;
 };
 

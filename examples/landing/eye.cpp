@@ -78,6 +78,7 @@ Look Eye::look(const Eigen::Vector3d& gravity,
     look.position = {meta->position_x, meta->position_y, meta->position_z};
     const gdouble* covariance = meta->position_covariance;  // xx, xy, xz, yy, yz, zz
     look.error = std::sqrt(covariance[0] + covariance[3] + covariance[5]);
+    look.visible_fraction = meta->visible_fraction;
   }
   return look;
 }

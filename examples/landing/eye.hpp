@@ -24,6 +24,7 @@ struct Look {
   bool has_target = false;
   std::optional<Eigen::Vector3d> position;  ///< Of its centre in the camera's frame [m].
   double error = 0.0;                       ///< Standard deviation of that [m].
+  double visible_fraction = 0.0;            ///< Share of the outline that the picture shows.
   Sample sample;                            ///< The picture with its metadata.
 };
 

@@ -133,6 +133,7 @@ class Run {
     if (look.position) {
       seen.pad = pad_from_body(flight_.rig, seen.own, *look.position);
       seen.error = look.error;
+      seen.visible_fraction = look.visible_fraction;
     }
     under_way_.push_back(seen);
 

@@ -15,6 +15,7 @@ constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
 constexpr double kUprightJerk = 1e-5;  // the platform drives on level ground
 constexpr double kGate = 25.0;         // squared innovation by its variance
 constexpr double kHeightError = 0.5;   // of the platform below the vehicle [m]
+constexpr double kHeightDrift = 0.1;   // of dead reckoning, upwards and downwards [m/s]
 constexpr double kMostSpeed = 6.0;     // of any platform [m/s]
 
 }  // namespace
@@ -28,7 +29,7 @@ TargetFilter::TargetFilter(double time_s,
       axes_{level_axis(position.x(), velocity.x(), position_error, velocity_error),
             level_axis(position.y(), velocity.y(), position_error, velocity_error),
             Axis{{position.z(), 0.0, 0.0},
-                 Vector3d(kHeightError, 0.02, 0.01).cwiseAbs2().asDiagonal(),
+                 Vector3d(kHeightError, kHeightDrift, 0.01).cwiseAbs2().asDiagonal(),
                  kUprightJerk}} {}
 
 TargetFilter::Axis TargetFilter::level_axis(double position,
@@ -100,6 +101,7 @@ void TargetFilter::hear(double time_s,
                         double velocity_error,
                         bool is_in_sight) {
   move_to(time_s);
+  if (!is_in_sight) forget_climb();
   const double variance = position_error * position_error;
   for (Eigen::Index i = 0; i < 2; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
@@ -110,6 +112,14 @@ void TargetFilter::hear(double time_s,
       correct(axis, 1, velocity[i], velocity_error * velocity_error);
     }
   }
+}
+
+// The ground does not climb; what was seen to drift may drift otherwise by now.
+void TargetFilter::forget_climb() {
+  Axis& upright = axes_[2];
+  const double variance = std::max(upright.covariance(0, 0), kHeightError * kHeightError);
+  upright.mean.tail<2>().setZero();
+  upright.covariance = Vector3d(std::sqrt(variance), kHeightDrift, 0.01).cwiseAbs2().asDiagonal();
 }
 
 TargetFilter::State TargetFilter::at(double time_s) const {

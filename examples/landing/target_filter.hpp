@@ -56,6 +56,7 @@ class TargetFilter {
   [[nodiscard]] static double surprise(const Axis& axis, double position, double variance);
   static void correct(Axis& axis, Eigen::Index part, double value, double variance);
   void move_to(double time_s);
+  void forget_climb();
   [[nodiscard]] static Axis moved(const Axis& axis, double by_s);
 
   double time_s_;

@@ -152,6 +152,19 @@ TEST(TargetFilter, BelievesTheRadioWhereWhatWasSeenIsFarFromIt) {
   EXPECT_NEAR(filter.at(2.0).position.x(), 1.0, 1e-9);
 }
 
+// A few pictures took the pad to climb, and then it was gone: a minute later it is taken again
+// where it is, though dead reckoning has risen by some metres.
+TEST(TargetFilter, DoesNotBelieveAClimbForLong) {
+  TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1);
+  for (int i = 0; i < 15; ++i) {
+    const double time_s = i / 30.0;
+    EXPECT_TRUE(filter.see(time_s, {0.0, 0.0, -0.3 * time_s}, 0.05)) << i;
+  }
+  for (int i = 1; i <= 60; ++i) filter.hear(i, {0.0, 0.0}, {0.0, 0.0}, 1.8, 0.4, i < 3);
+  EXPECT_GT(filter.at(60.0).position.z(), -1.5);
+  EXPECT_TRUE(filter.see(60.1, {0.2, 0.1, 3.0}, 0.05));
+}
+
 // A vehicle that follows its commands at once, over a pad that stands still.
 class Hover {
  public:
@@ -161,13 +174,14 @@ class Hover {
                         TargetFilter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1));
   }
 
-  void fly_for(double duration_s, bool is_seen) {
+  void fly_for(double duration_s, bool is_seen, double visible_fraction = 1.0) {
     const int frames = static_cast<int>(std::lround(30.0 * duration_s));
     for (int i = 0; i < frames; ++i, ++frame_) {
       Observation seen;
       seen.time_s = frame_ / 30.0;
       seen.own = own_;
       if (is_seen) seen.pad = -own_.position;
+      seen.visible_fraction = visible_fraction;
       last_ = controller_->update(seen.time_s, own_, seen);
       own_.velocity = last_.velocity;
       own_.position += last_.velocity / 30.0;
@@ -197,6 +211,16 @@ TEST(Controller, GoesThroughItsPhasesAndDown) {
   EXPECT_EQ(hover.phase(), Phase::kTouchDown);
   EXPECT_LT(hover.position().head<2>().norm(), 0.05);
   EXPECT_EQ(hover.climbs(), 0);
+}
+
+TEST(Controller, DoesNotBeginWithAGlimpse) {
+  Hover hover({4.0, -3.0, 8.0});
+  hover.fly_for(0.5, true, 0.4);
+  EXPECT_EQ(hover.phase(), Phase::kSearch);
+  hover.fly_for(0.5, true, 0.8);
+  EXPECT_EQ(hover.phase(), Phase::kApproach);
+  hover.fly_for(3.0, true, 0.4);  // what is known is followed to the border
+  EXPECT_NE(hover.phase(), Phase::kSearch);
 }
 
 TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {
