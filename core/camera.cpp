@@ -54,6 +54,54 @@ double radial_place(const Camera& camera, double theta) {
   return r * rational_factor(camera.distortion, r * r).value;
 }
 
+// A linear way to a place at focal length 1, or back.
+struct Axis {
+  float scale;
+  float offset;
+};
+
+struct Bending {
+  std::array<float, 8> distortion;
+  float largest_squared;
+  float focal_ratio;  // fx / fy
+  Axis to_x, to_y, from_x, from_y;
+};
+
+template <LensModel kModel>
+ELLIPSE_INLINE void bend_all(const Bending& by, const CurvePlaces& places) {
+  for (std::size_t k = 0; k < places.count; ++k) {
+    const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
+    const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
+    const float nx = places.nx[k];
+    const float ny = places.ny[k];
+    const Distorted<float> at = kModel == LensModel::kFisheye ? kannala_brandt(by.distortion, x, y)
+                                                              : brown_conrady(by.distortion, x, y);
+    const float x_by_y = at.x_by_y * by.focal_ratio;
+    const float y_by_x = at.y_by_x / by.focal_ratio;
+    // A curve's normal goes with the inverse transposed.
+    const float across_x = at.y_by_y * nx - y_by_x * ny;
+    const float across_y = at.x_by_x * ny - x_by_y * nx;
+    const float along = std::sqrt(across_x * across_x + across_y * across_y);
+    const bool is_shown = x * x + y * y <= by.largest_squared;
+    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurvePlaces::kNowhere;
+    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurvePlaces::kNowhere;
+    places.nx[k] = across_x / along;
+    places.ny[k] = across_y / along;
+    places.px_per_ideal_along[k] = along;
+    places.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
+  }
+}
+
+void bend_baseline(LensModel model, const Bending& by, const CurvePlaces& places) {
+  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
+                               : bend_all<LensModel::kBrownConrady>(by, places);
+}
+
+ELLIPSE_AVX2 void bend_avx2(LensModel model, const Bending& by, const CurvePlaces& places) {
+  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
+                               : bend_all<LensModel::kBrownConrady>(by, places);
+}
+
 void check(bool is_right, const char* what) {
   if (!is_right) throw std::invalid_argument(what);
 }
@@ -171,58 +219,6 @@ std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) cons
   point.slope(1, 0) *= focal_.y() * inverse_focal_.x();
   return point;
 }
-
-namespace {
-
-// A linear way to a place at focal length 1, or back.
-struct Axis {
-  float scale;
-  float offset;
-};
-
-struct Bending {
-  std::array<float, 8> distortion;
-  float largest_squared;
-  float focal_ratio;  // fx / fy
-  Axis to_x, to_y, from_x, from_y;
-};
-
-template <LensModel kModel>
-ELLIPSE_INLINE void bend_all(const Bending& by, const CurvePlaces& places) {
-  for (std::size_t k = 0; k < places.count; ++k) {
-    const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
-    const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
-    const float nx = places.nx[k];
-    const float ny = places.ny[k];
-    const Distorted<float> at = kModel == LensModel::kFisheye ? kannala_brandt(by.distortion, x, y)
-                                                              : brown_conrady(by.distortion, x, y);
-    const float x_by_y = at.x_by_y * by.focal_ratio;
-    const float y_by_x = at.y_by_x / by.focal_ratio;
-    // A curve's normal goes with the inverse transposed.
-    const float across_x = at.y_by_y * nx - y_by_x * ny;
-    const float across_y = at.x_by_x * ny - x_by_y * nx;
-    const float along = std::sqrt(across_x * across_x + across_y * across_y);
-    const bool is_shown = x * x + y * y <= by.largest_squared;
-    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurvePlaces::kNowhere;
-    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurvePlaces::kNowhere;
-    places.nx[k] = across_x / along;
-    places.ny[k] = across_y / along;
-    places.px_per_ideal_along[k] = along;
-    places.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
-  }
-}
-
-void bend_baseline(LensModel model, const Bending& by, const CurvePlaces& places) {
-  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
-                               : bend_all<LensModel::kBrownConrady>(by, places);
-}
-
-ELLIPSE_AVX2 void bend_avx2(LensModel model, const Bending& by, const CurvePlaces& places) {
-  model == LensModel::kFisheye ? bend_all<LensModel::kFisheye>(by, places)
-                               : bend_all<LensModel::kBrownConrady>(by, places);
-}
-
-}  // namespace
 
 void Lens::bend(const Vector2d& origin_px, double scale, const CurvePlaces& places) const {
   Bending by{};

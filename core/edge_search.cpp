@@ -6,16 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/visible_part.hpp"
+
 namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kCircleSteps = 128;  // by which the visible part of a circle is told
-constexpr int kFineSteps = 4;      // in one of these, where little of a circle is visible
-constexpr double kMarginPx = 3.0;  // from the border
-constexpr double kFarPx = 1e6;
-constexpr int kBorderSteps = 8;         // of each side of the picture, by which a bent one is told
-constexpr int kHalvings = 6;            // by which the rest of a line is told
+constexpr int kCircleSteps = 128;       // by which the visible part of a circle is told
+constexpr int kFineSteps = 4;           // in one of these, where little of a circle is visible
 constexpr double kLeastContrast = 4.0;  // [grey levels]
 constexpr double kContrastShare = 0.25;
 constexpr int kMostSteps = 24;  // to each side of the expected place
@@ -35,94 +33,6 @@ const Eigen::Vector2d& direction(std::size_t fine_step) {
   }();
   return kTurn[fine_step];
 }
-
-// A rectangle of the ideal plane, without what lies near its border.
-struct IdealRect {
-  double left;
-  double top;
-  double right;
-  double bottom;
-};
-
-// All of it is inside the picture. Where the lens bends the picture's border, it is the part that
-// no side cuts.
-IdealRect inner_rect(const LensView& lens, const ImageView& luma) {
-  const double right = luma.width - 1 - kMarginPx;
-  const double bottom = luma.height - 1 - kMarginPx;
-  IdealRect rect{kMarginPx, kMarginPx, right, bottom};
-  if (!lens.is_bent()) return rect;
-  rect = {-kFarPx, -kFarPx, kFarPx, kFarPx};
-  for (int i = 0; i <= kBorderSteps; ++i) {
-    const double at = static_cast<double>(i) / kBorderSteps;
-    const double x = std::lerp(kMarginPx, right, at);
-    const double y = std::lerp(kMarginPx, bottom, at);
-    // What the lens maps from nowhere is NaN, which no comparison takes.
-    rect.left = std::max(rect.left, lens.near_ideal({kMarginPx, y}).x());
-    rect.right = std::min(rect.right, lens.near_ideal({right, y}).x());
-    rect.top = std::max(rect.top, lens.near_ideal({x, kMarginPx}).y());
-    rect.bottom = std::min(rect.bottom, lens.near_ideal({x, bottom}).y());
-  }
-  return rect;
-}
-
-// The part of the pad inside the picture: where a . (x, y, 1) >= 0 for all four borders, and where
-// the lens lets more of it in.
-class VisiblePart {
- public:
-  VisiblePart(const PadView& view, const ImageView& luma) : view_(view), luma_(luma) {
-    const IdealRect rect = inner_rect(view.lens, luma);
-    const Eigen::Matrix3d& h = view.ideal_from_pad;
-    borders_.row(0) = h.row(0) - rect.left * h.row(2);
-    borders_.row(1) = rect.right * h.row(2) - h.row(0);
-    borders_.row(2) = h.row(1) - rect.top * h.row(2);
-    borders_.row(3) = rect.bottom * h.row(2) - h.row(1);
-  }
-
-  [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
-    const bool is_within =
-        ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
-    return is_within || (view_.lens.is_bent() && is_let_in(place));
-  }
-
-  // The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
-  [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
-    Interval part{0.0, 1.0};
-    for (int i = 0; i < 4; ++i) {
-      const double begin = borders_.row(i).head<2>().dot(from) + borders_(i, 2);
-      const double end = borders_.row(i).head<2>().dot(to) + borders_(i, 2);
-      if (begin < 0.0 && end < 0.0) return {0.0, 0.0};
-      if (begin < 0.0) part.begin = std::max(part.begin, begin / (begin - end));
-      if (end < 0.0) part.end = std::min(part.end, begin / (begin - end));
-    }
-    if (!view_.lens.is_bent() || !(part.begin < part.end)) return part;
-    return {farthest(from, to, part.begin, 0.0), farthest(from, to, part.end, 1.0)};
-  }
-
- private:
-  [[nodiscard]] bool is_let_in(const Eigen::Vector2d& place) const {
-    const auto seen = view_.at(place);
-    return seen && seen->point.x() >= kMarginPx && seen->point.y() >= kMarginPx &&
-           seen->point.x() <= luma_.width - 1 - kMarginPx &&
-           seen->point.y() <= luma_.height - 1 - kMarginPx;
-  }
-
-  // From a place of a line that is inside towards one of its ends, as far as the lens shows it.
-  [[nodiscard]] double farthest(const Eigen::Vector2d& from,
-                                const Eigen::Vector2d& to,
-                                double inside,
-                                double end) const {
-    if (inside == end || has(from + end * (to - from))) return end;
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = 0.5 * (inside + end);
-      (has(from + middle * (to - from)) ? inside : end) = middle;
-    }
-    return inside;
-  }
-
-  const PadView& view_;
-  const ImageView& luma_;
-  Eigen::Matrix<double, 4, 3> borders_;
-};
 
 // The levels of some pixels across an edge.
 struct Profile {
