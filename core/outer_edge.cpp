@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/outer_edge.hpp"
 
+#include <Eigen/LU>
+#include <cmath>
 #include <limits>
 
 #include "core/photometric_refinement.hpp"
@@ -16,6 +18,7 @@ constexpr double kCrestOfStep = 48.0;   // of GradientMap's gradient, per grey l
 constexpr double kLeastSupport = 0.5;   // share of the perimeter with a crest
 constexpr int kPlaces = 48;             // half of what the detector takes: each frame pays
 constexpr double kThinRingPx = 6.0;
+constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
 constexpr double kReachOfNextEdgePx = 2.0;  // its blur
 constexpr double kNearPx = 1.0;
 constexpr double kNearRelative = 0.03;
@@ -24,6 +27,13 @@ constexpr const char* kNicks[] = {"none", "edges", "photometric"};
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
+}
+
+// What all places of an edge err by alike [radii], their number does not make less.
+RingMatrix widened(const RingMatrix& information, double sigma) {
+  RingMatrix covariance = information.inverse();
+  covariance.diagonal().array() += sigma * sigma;
+  return covariance.inverse();
 }
 
 // The crests of both edges of a thin ring are drawn apart.
@@ -48,6 +58,9 @@ std::optional<FittedEllipse> on_crests(const ImageView& luma,
       refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces, view.lens);
   if (!next || next->support < kLeastSupport) return exact;
   exact.ellipse = without_repulsion({edge->ellipse, next->ellipse}).outer;
+  const double sigma_px = kRepulsionShare * max_difference_px(exact.ellipse, edge->ellipse);
+  const double radius_px = std::sqrt(outer.semi_major * outer.semi_minor);
+  exact.uncertainty.information = widened(exact.uncertainty.information, sigma_px / radius_px);
   return exact;
 }
 
