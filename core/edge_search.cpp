@@ -22,7 +22,7 @@ constexpr int kLongestProfile = 2 * (kMostSteps + kMostBox) + 3;
 
 // Directions all around.
 const Eigen::Vector2d& direction(std::size_t fine_step) {
-  constexpr std::size_t kDirections = kCircleSteps * kFineSteps;
+  constexpr std::size_t kDirections = EdgeSearch::kCircleSteps * kFineSteps;
   static const auto kTurn = [] {
     std::array<Eigen::Vector2d, kDirections> turn;
     for (std::size_t i = 0; i < kDirections; ++i) {
@@ -86,75 +86,94 @@ void EdgeSearch::add(const Eigen::Matrix3d& view,
   sample.feature = feature;
 }
 
+struct EdgeSearch::Placement {
+  const PadView& view;
+  VisiblePart visible;
+  double px_per_radius;
+  double spacing_px = 0.0;
+
+  [[nodiscard]] double step_px(const PadCircle& circle) const {
+    return 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
+  }
+  [[nodiscard]] double length_px(const PadLine& line, const Interval& part) const {
+    return part.length() * (line.to - line.from).norm() * px_per_radius;
+  }
+};
+
 void EdgeSearch::place(const PadModel& model,
                        const PadView& view,
                        const ImageView& luma,
                        int samples) {
   samples_.clear();
   samples_.reserve(kMostSamples);
-  const VisiblePart visible(view, luma);
-  const double px_per_radius = view.radius_px();
-  std::array<std::array<bool, kCircleSteps>, 8> seen{};
+  Placement placement{view, VisiblePart(view, luma), view.radius_px()};
+  std::array<SeenSteps, kMostCircles> seen;
   double total_px = 0.0;
   const std::size_t circles = std::min(model.circles.size(), seen.size());
   narrowest_ = 1e9;
   for (std::size_t c = 0; c < circles; ++c) {
-    const double radius = model.circles[c].radius;
-    int count = 0;
+    const PadCircle& circle = model.circles[c];
     for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      seen[c][i] = visible.has(radius * direction(kFineSteps * i));
-      count += seen[c][i] ? 1 : 0;
+      seen[c][i] = placement.visible.has(circle.radius * direction(kFineSteps * i));
     }
-    if (c == 0) visible_fraction_ = static_cast<double>(count) / kCircleSteps;
-    if (c > 0) {
-      narrowest_ = std::min(narrowest_, std::abs(model.circles[c - 1].radius - radius));
-    }
-    total_px += 2.0 * std::numbers::pi * radius * px_per_radius * count / kCircleSteps;
+    const auto count = static_cast<double>(seen[c].count());
+    total_px += count * placement.step_px(circle);
+    if (c == 0) visible_fraction_ = count / kCircleSteps;
+    if (c == 0) continue;
+    narrowest_ = std::min(narrowest_, std::abs(model.circles[c - 1].radius - circle.radius));
   }
   for (const PadLine& line : model.lines) {
-    total_px +=
-        visible.clip(line.from, line.to).length() * (line.to - line.from).norm() * px_per_radius;
+    total_px += placement.length_px(line, placement.visible.clip(line.from, line.to));
   }
   if (!(total_px > 0.0)) return;
 
-  const double spacing_px = std::max(2.0, total_px / samples);
+  placement.spacing_px = std::max(2.0, total_px / samples);
   for (std::size_t c = 0; c < circles; ++c) {
-    const PadCircle& circle = model.circles[c];
-    const double step_px = 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
-    const double sign = circle.is_bright_outside ? 1.0 : -1.0;
-    const int fine = spacing_px < step_px ? kFineSteps : 1;
-    double since_px = 0.5 * spacing_px;
-    for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      if (!seen[c][i]) continue;
-      for (int k = 0; k < fine; ++k) {
-        since_px += step_px / fine;
-        if (since_px < spacing_px) continue;
-        const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
-        if (k > 0 && !visible.has(circle.radius * outwards)) continue;
-        since_px = std::min(since_px - spacing_px, spacing_px);
-        add(view.ideal_from_pad,
-            circle.radius * outwards,
-            sign * outwards,
-            circle.contrast,
-            int(c));
-      }
-    }
+    place_on_circle(placement, model.circles[c], seen[c], static_cast<int>(c));
   }
   for (std::size_t l = 0; l < model.lines.size(); ++l) {
-    const PadLine& line = model.lines[l];
-    const Interval part = visible.clip(line.from, line.to);
-    const double length_px = part.length() * (line.to - line.from).norm() * px_per_radius;
-    const int count = static_cast<int>(length_px / spacing_px);
-    for (int i = 0; i < count; ++i) {
-      const double at = part.begin + part.length() * (i + 0.5) / count;
-      add(view.ideal_from_pad,
-          line.from + at * (line.to - line.from),
-          line.to_bright,
-          line.contrast,
-          static_cast<int>(circles + l));
-    }
+    place_on_line(placement, model.lines[l], static_cast<int>(circles + l));
   }
   if (view.lens.is_bent()) bend(view.lens);
+}
+
+void EdgeSearch::place_on_circle(const Placement& placement,
+                                 const PadCircle& circle,
+                                 const SeenSteps& seen,
+                                 int feature) {
+  const double step_px = placement.step_px(circle);
+  const double spacing_px = placement.spacing_px;
+  const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+  const int fine = spacing_px < step_px ? static_cast<int>(kFineSteps) : 1;
+  double since_px = 0.5 * spacing_px;
+  for (std::size_t i = 0; i < kCircleSteps; ++i) {
+    if (!seen[i]) continue;
+    for (int k = 0; k < fine; ++k) {
+      since_px += step_px / fine;
+      if (since_px < spacing_px) continue;
+      const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
+      if (k > 0 && !placement.visible.has(circle.radius * outwards)) continue;
+      since_px = std::min(since_px - spacing_px, spacing_px);
+      add(placement.view.ideal_from_pad,
+          circle.radius * outwards,
+          sign * outwards,
+          circle.contrast,
+          feature);
+    }
+  }
+}
+
+void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, int feature) {
+  const Interval part = placement.visible.clip(line.from, line.to);
+  const int count = static_cast<int>(placement.length_px(line, part) / placement.spacing_px);
+  for (int i = 0; i < count; ++i) {
+    const double at = part.begin + part.length() * (i + 0.5) / count;
+    add(placement.view.ideal_from_pad,
+        line.from + at * (line.to - line.from),
+        line.to_bright,
+        line.contrast,
+        feature);
+  }
 }
 
 // All samples from the ideal plane to the picture.
@@ -237,7 +256,7 @@ void EdgeSearch::look_along(const ImageView& luma,
                               static_cast<int>(line) * (axis == 0 ? luma.stride : 1) +
                               first * stride;
   Profile profile;
-  profile.count = static_cast<std::size_t>(last - first + 1);
+  profile.count = static_cast<std::size_t>(last - first) + 1;
   profile.box = static_cast<std::size_t>(box);
   profile.first = static_cast<float>(first);
   profile.step_px = static_cast<float>(step_px);

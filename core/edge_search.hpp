@@ -1,6 +1,8 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <array>
+#include <bitset>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -50,8 +52,18 @@ class EdgeSearch {
   [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
 
   static constexpr int kMostSamples = 256;
+  static constexpr std::size_t kCircleSteps = 128;  ///< By which a circle's visible part is told.
 
  private:
+  static constexpr std::size_t kMostCircles = 8;
+  using SeenSteps = std::bitset<kCircleSteps>;
+  struct Placement;
+
+  void place_on_circle(const Placement& placement,
+                       const PadCircle& circle,
+                       const SeenSteps& seen,
+                       int feature);
+  void place_on_line(const Placement& placement, const PadLine& line, int feature);
   void add(const Eigen::Matrix3d& view,
            const Eigen::Vector2d& place,
            const Eigen::Vector2d& to_bright,

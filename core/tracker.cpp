@@ -149,7 +149,7 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t
 // detector is asked what it would choose.
 std::optional<Target> Tracker::look_at_all(const PixelView& frame,
                                            const std::optional<Target>& followed) {
-  const std::optional<Target> chosen = search_target(frame);
+  std::optional<Target> chosen = search_target(frame);
   if (settings_.tracking != TrackingMode::kEdges) return chosen;
   frames_since_look_ = 0;
   next_look_ = kLookInterval;
