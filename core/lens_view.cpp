@@ -34,17 +34,19 @@ void for_each_point(const Ellipse& e, std::size_t count, const Use& use) {
   }
 }
 
-// Through the points of an ellipse, each taken to where `map` puts it.
+// Through the points of an ellipse, each taken to where `map` puts it; some of them may be nowhere.
 template <class Map>
-std::optional<Ellipse> mapped(const Ellipse& e, const Map& map) {
+std::optional<Ellipse> mapped(const Ellipse& e, std::size_t least_points, const Map& map) {
   std::optional<Moments> moments;
+  std::size_t count = 0;
   for_each_point(e, kFitPoints, [&](std::size_t, const Vector2d& from) {
     const std::optional<Vector2d> point = map(from);
     if (!point) return;
     if (!moments) moments.emplace(*point);
     moments->add(*point);
+    ++count;
   });
-  return moments ? fit_ellipse(*moments) : std::nullopt;
+  return moments && count >= least_points ? fit_ellipse(*moments) : std::nullopt;
 }
 
 }  // namespace
@@ -117,7 +119,7 @@ void bent_outline(const LensView& lens, const Ellipse& ideal, std::span<Vector2d
 
 std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal) {
   if (!lens.is_bent()) return ideal;
-  return mapped(ideal, [&](const Vector2d& point) {
+  return mapped(ideal, kFitPoints, [&](const Vector2d& point) {
     const auto place = lens.picture_from_ideal(point);
     return place ? std::optional(place->picture_px) : std::nullopt;
   });
@@ -125,7 +127,9 @@ std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal) {
 
 std::optional<Ellipse> unbent(const LensView& lens, const Ellipse& in_picture) {
   if (!lens.is_bent()) return in_picture;
-  return mapped(in_picture, [&](const Vector2d& point) { return lens.ideal_from_picture(point); });
+  return mapped(in_picture, kFitPoints / 4, [&](const Vector2d& point) {
+    return lens.ideal_from_picture(point);
+  });
 }
 
 }  // namespace ellipse

@@ -62,10 +62,11 @@ class LensView {
 void bent_outline(const LensView& lens, const Ellipse& ideal, std::span<Eigen::Vector2d> points_px);
 
 /// The ellipse that looks most like what the lens makes of this one, by direct least squares.
-/// nullopt where the lens does not show enough of it. Allocates nothing.
+/// nullopt where the lens does not show all of it. Allocates nothing.
 [[nodiscard]] std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal);
 
 /// The inverse: the ellipse of the ideal plane that the lens bends into what looks like this one.
+/// nullopt where less than a quarter of it is such as the lens makes. Allocates nothing.
 [[nodiscard]] std::optional<Ellipse> unbent(const LensView& lens, const Ellipse& in_picture);
 
 }  // namespace ellipse

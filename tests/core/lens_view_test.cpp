@@ -128,6 +128,11 @@ TEST_P(EachLensView, WhatIsBentIsUnbent) {
   EXPECT_GT(max_difference_px(*seen, small), 0.2);
 }
 
+TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
+  const LensView view(lens_);
+  EXPECT_FALSE(bent(view, {320.0, 180.0, 5e4, 50.0, 0.0}));
+}
+
 TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
   const LensView view(lens_);
   // Its picture is outside of the frame, though the ideal plane's first row goes through it.
