@@ -12,8 +12,7 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kCircleSteps = 128;       // by which the visible part of a circle is told
-constexpr int kFineSteps = 4;           // in one of these, where little of a circle is visible
+constexpr std::size_t kFineSteps = 4;   // in one of the circle's, where little of it is visible
 constexpr double kLeastContrast = 4.0;  // [grey levels]
 constexpr double kContrastShare = 0.25;
 constexpr int kMostSteps = 24;  // to each side of the expected place
