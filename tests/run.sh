@@ -80,7 +80,7 @@ case "${1:-}" in
     # With them gcc warns of values that it cannot follow, inside the standard library.
     build build-sanitize -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
       -Dcpp_args=-Wno-maybe-uninitialized
-    run build-sanitize --no-suite long
+    run build-sanitize --timeout-multiplier 3 --no-suite long
     ;;
   --sanitize=thread)
     # GLib, GStreamer and OpenCV are not instrumented: what they do by themselves is not judged, and
