@@ -58,7 +58,7 @@ TEST_F(Programs, DemoWritesVideoTextAndContactSheet) {
 // As cameras and telephones write it.
 TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
   const std::string video = (folder_ / "video.mp4").string();
-  ASSERT_EQ(programs::run("gst-launch-1.0 -q ellipsetestsrc num-buffers=20 ! videoconvert ! "
+  ASSERT_EQ(programs::run("gst-launch-1.0 -q videotestsrc num-buffers=20 ! videoconvert ! "
                           "x264enc ! mp4mux name=mux ! filesink location=" +
                           video + " audiotestsrc num-buffers=40 ! audioconvert ! avenc_aac ! mux.")
                 .status,

@@ -23,17 +23,17 @@ std::string garbage(std::mt19937& random) {
   static const char* const kStarts[] = {"GET / HTTP/1.1\r\n",
                                         "PUT /api/properties HTTP/1.1\r\nHost: 127.0.0.1\r\n",
                                         "POST /api/seek HTTP/1.1\r\nContent-Length: -5\r\n",
-                                        "GET /ws/video HTTP/1.1\r\nHost: localhost\r\nUpgrade: "
-                                        "websocket\r\nConnection: Upgrade\r\n"
-                                        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-                                        "Sec-WebSocket-Version: 13\r\n\r\n",
+                                        ("GET /ws/video HTTP/1.1\r\nHost: localhost\r\nUpgrade: "
+                                         "websocket\r\nConnection: Upgrade\r\n"
+                                         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                                         "Sec-WebSocket-Version: 13\r\n\r\n"),
                                         "GET /%zz HTTP/9.9\r\n",
                                         "\r\n\r\n",
                                         "OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
                                         "GET http://[::1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
                                         "CONNECT localhost:1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
-                                        "POST /api/analyze HTTP/1.1\r\nHost: localhost\r\n"
-                                        "Transfer-Encoding: chunked\r\n\r\nffffffff\r\n"};
+                                        ("POST /api/analyze HTTP/1.1\r\nHost: localhost\r\n"
+                                         "Transfer-Encoding: chunked\r\n\r\nffffffff\r\n")};
   std::string text = kStarts[random() % std::size(kStarts)];
   const std::size_t size = random() % 300;
   for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(random() % 256);
