@@ -66,7 +66,11 @@ TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
   const long before = resident_kib(program);
   send_garbage(program, random, 1000);
   ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
+#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
   EXPECT_LT(resident_kib(program) - before, 1024);
+#else
+  (void)before;
+#endif
   EXPECT_EQ(program.stop(), 0);
 }
 
