@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/camera_file.hpp"
+#include "tests/support/cameras.hpp"
 
 namespace ellipse {
 namespace {
@@ -26,18 +27,6 @@ Camera wide() {
   Camera camera = Camera::with_hfov(1.012, 640, 360);
   camera.fy = 1.01 * camera.fx;
   camera.distortion = {-0.22, 0.05, 0.001, -0.0007, -0.004, 0.01, 0.002, -0.001};
-  return camera;
-}
-
-Camera fisheye() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 360;
-  camera.fx = camera.fy = 305.0;
-  camera.cx = 321.0;
-  camera.cy = 178.5;
-  camera.lens = LensModel::kFisheye;
-  camera.distortion = {-0.02, 0.004, -0.002, 0.0003};
   return camera;
 }
 
@@ -68,7 +57,7 @@ std::vector<Vector2d> grid(double margin_px) {
 }
 
 class EachLens : public testing::TestWithParam<Camera> {};
-INSTANTIATE_TEST_SUITE_P(Lens, EachLens, testing::Values(wide(), fisheye()));
+INSTANTIATE_TEST_SUITE_P(Lens, EachLens, testing::Values(wide(), support::fisheye()));
 
 TEST_P(EachLens, DistortsAsOpenCvDoes) {
   const Lens lens(GetParam());

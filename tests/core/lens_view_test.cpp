@@ -13,6 +13,7 @@
 #include "core/edge_search.hpp"
 #include "core/lens_model.hpp"
 #include "core/pad_view.hpp"
+#include "tests/support/cameras.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -28,23 +29,11 @@ Camera barrel() {
   return camera;
 }
 
-Camera fisheye() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 360;
-  camera.fx = camera.fy = 305.0;
-  camera.cx = 321.0;
-  camera.cy = 178.5;
-  camera.lens = LensModel::kFisheye;
-  camera.distortion = {-0.02, 0.004, -0.002, 0.0003};
-  return camera;
-}
-
 class EachLensView : public testing::TestWithParam<Camera> {
  protected:
   const Lens lens_{GetParam()};
 };
-INSTANTIATE_TEST_SUITE_P(LensView, EachLensView, testing::Values(barrel(), fisheye()));
+INSTANTIATE_TEST_SUITE_P(LensView, EachLensView, testing::Values(barrel(), support::fisheye()));
 
 TEST_P(EachLensView, TableIsNearTheInverse) {
   const LensView view(lens_);

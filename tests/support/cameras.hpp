@@ -1,0 +1,20 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include "core/camera.hpp"
+
+namespace support {
+
+/// A fisheye of some 115 degrees, not quite in the picture's middle.
+inline ellipse::Camera fisheye() {
+  ellipse::Camera camera;
+  camera.width = 640;
+  camera.height = 360;
+  camera.fx = camera.fy = 305.0;
+  camera.cx = 321.0;
+  camera.cy = 178.5;
+  camera.lens = ellipse::LensModel::kFisheye;
+  camera.distortion = {-0.02, 0.004, -0.002, 0.0003};
+  return camera;
+}
+
+}  // namespace support
