@@ -3,8 +3,10 @@
 // What no client sends.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -57,19 +59,23 @@ void send_garbage(const LiveProgram& program, std::mt19937& random, int times) {
   }
 }
 
+// The memory that grew in the round where it grew least: how many connections are open at once, and
+// so what the allocator holds, differs from round to round, while a leak shows in every one.
 TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
   LiveProgram program({});
   const Client client(program.url());
   std::mt19937 random(7);
-  send_garbage(program, random, 1000);  // as many connections as there may be
-  ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
-  const long before = resident_kib(program);
-  send_garbage(program, random, 1000);
-  ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
+  long least_growth_kib = std::numeric_limits<long>::max();
+  long before = 0;
+  for (int round = 0; round < 5; ++round) {
+    send_garbage(program, random, 1000);
+    ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }, 40));
+    const long now = resident_kib(program);
+    if (round > 0) least_growth_kib = std::min(least_growth_kib, now - before);
+    before = now;
+  }
 #ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
-  EXPECT_LT(resident_kib(program) - before, 1024);
-#else
-  (void)before;
+  EXPECT_LT(least_growth_kib, 256) << "in a round of 1000 requests";
 #endif
   EXPECT_EQ(program.stop(), 0);
 }
