@@ -92,7 +92,8 @@ static void gst_ellipse_track_get_property(GObject* object,
   auto* self = GST_ELLIPSE_TRACK(object);
   GST_OBJECT_LOCK(self);
   if (id == PROP_TARGET) {
-    g_value_set_boxed(value, self->shared->target);
+    const auto& target = self->shared->target;
+    if (target) g_value_take_boxed(value, gst_ellipse_meta_to_structure(&*target));
   } else if (id == PROP_STATS) {
     g_value_take_boxed(value, self->shared->stats.to_structure());
   } else if (id >= PROP_FIRST_SETTING) {

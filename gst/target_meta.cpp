@@ -8,34 +8,18 @@
 #include "gst/ellipse/gstellipsesearchmeta.h"
 #include "gst/meta_outline.hpp"
 
-const gchar* state_nick(const std::optional<ellipse::Target>& target) {
-  if (!target) return "lost";
-  switch (target->state) {
-    case ellipse::TargetState::kDetected:
-      return "detected";
-    case ellipse::TargetState::kTracked:
-      return "tracked";
-    case ellipse::TargetState::kPredicted:
-      return "predicted";
-  }
-  return "lost";
-}
-
 static GstEllipseMeta* attach(GstBuffer* buffer,
                               GstEllipseRole role,
                               const ellipse::Ellipse& e,
                               const GstVideoInfo& info) {
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, role);
-  const gint width = GST_VIDEO_INFO_WIDTH(&info);
-  const gint height = GST_VIDEO_INFO_HEIGHT(&info);
   meta->cx = e.cx;
   meta->cy = e.cy;
   meta->semi_major = e.semi_major;
   meta->semi_minor = e.semi_minor;
   meta->angle_rad = e.angle_rad;
-  meta->visible_fraction = ellipse::visible_fraction(e, width, height);
-  meta->frame_width = static_cast<guint>(width);
-  meta->frame_height = static_cast<guint>(height);
+  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
+  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
   meta->pts = GST_BUFFER_PTS(buffer);
   return meta;
 }
@@ -97,6 +81,8 @@ static void attach_candidate_metas(GstBuffer* buffer,
     GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
     meta->contour_overlap = candidate.contour_overlap;
     meta->ellipse_overlap = candidate.ellipse_overlap;
+    meta->visible_fraction = ellipse::visible_fraction(
+        lens, candidate.ellipse, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
     write_outline(meta, lens);
   }
 }

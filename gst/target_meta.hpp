@@ -9,9 +9,6 @@
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/track_properties.hpp"
 
-/// "detected", "tracked", "predicted"; "lost" where there is no target.
-[[nodiscard]] const gchar* state_nick(const std::optional<ellipse::Target>& target);
-
 /// Attaches what was found in a frame to its buffer: that it was searched; the target; where the
 /// properties ask for it, the target's upright box inside the frame as the standard metadata for a
 /// region of interest, with the target's structure as its parameter, and all other ellipses with

@@ -4,7 +4,6 @@
 #include <exception>
 
 #include "gst/blend.hpp"
-#include "gst/ellipse/gstellipsemeta.h"
 #include "gst/search_bounds.hpp"
 #include "gst/target_meta.hpp"
 #include "gst/track_report.hpp"
@@ -16,10 +15,13 @@ static constexpr guint64 kLatencyInterval = 32;
 static void emit_change(GstEllipseTrack* self,
                         const std::optional<ellipse::Target>& before,
                         const std::optional<ellipse::Target>& now,
-                        GstStructure* details) {
+                        const GstEllipseMeta* meta) {
   const bool is_same_target = before && now && before->id == now->id;
   if (before && !is_same_target) g_signal_emit_by_name(self, "target-lost");
-  if (now && !is_same_target) g_signal_emit_by_name(self, "target-acquired", details);
+  if (!now || is_same_target) return;
+  GstStructure* details = gst_ellipse_meta_to_structure(meta);
+  g_signal_emit_by_name(self, "target-acquired", details);
+  gst_structure_free(details);
 }
 
 // @return The metadata of the target, owned by the buffer; nullptr where there is none.
@@ -35,22 +37,20 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                             properties,
                                             GST_VIDEO_FILTER(self)->in_info,
                                             processing_time);
-  GstStructure* details = meta != nullptr ? gst_ellipse_meta_to_structure(meta) : nullptr;
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target = target;
 
   GST_OBJECT_LOCK(self);
   self->shared->stats.add_analysed(target, processing_time);
-  gst_clear_structure(&self->shared->target);
-  if (details != nullptr) self->shared->target = gst_structure_copy(details);
+  self->shared->target.reset();
+  if (meta != nullptr) self->shared->target = *meta;
   GST_OBJECT_UNLOCK(self);
 
   if (properties.messages == MESSAGES_EVERY_FRAME ||
       (properties.messages == MESSAGES_ON_CHANGE && has_changed(before, target))) {
-    post_target_message(GST_ELEMENT(self), times, target, details);
+    post_target_message(GST_ELEMENT(self), times, meta);
   }
-  emit_change(self, before, target, details);
-  gst_clear_structure(&details);
+  emit_change(self, before, target, meta);
   return meta;
 }
 
@@ -77,11 +77,11 @@ static void forget_target(GstEllipseTrack* self,
   self->stream->last_target.reset();
   GST_OBJECT_LOCK(self);
   self->shared->stats.forget_target();
-  gst_clear_structure(&self->shared->target);
+  self->shared->target.reset();
   GST_OBJECT_UNLOCK(self);
   if (!before) return;
   if (properties.messages != MESSAGES_NONE) {
-    post_target_message(GST_ELEMENT(self), times, std::nullopt, nullptr);
+    post_target_message(GST_ELEMENT(self), times, nullptr);
   }
   emit_change(self, before, std::nullopt, nullptr);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/tracker.hpp"
+#include "gst/ellipse/gstellipsemeta.h"
 #include "gst/gstellipsetrack.h"
 #include "gst/lateness.hpp"
 #include "gst/load_watch.hpp"
@@ -30,15 +31,10 @@ struct TrackShared {
   std::optional<TrackProperties> preset;  ///< While one is being loaded.
   TrackStats stats;
   Lateness lateness;
-  GstStructure* target = nullptr;
+  std::optional<GstEllipseMeta> target;  ///< In the last analysed frame.
   GstClockTime told_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;
-
-  TrackShared() = default;
-  ~TrackShared() { gst_clear_structure(&target); }
-  TrackShared(const TrackShared&) = delete;
-  TrackShared& operator=(const TrackShared&) = delete;
 };
 
 struct _GstEllipseTrack {

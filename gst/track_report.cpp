@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track_report.hpp"
 
-#include "gst/target_meta.hpp"
-
 static void post(GstElement* element, const FrameTimes& times, GstStructure* structure) {
   // clang-format off
   gst_structure_set(
@@ -31,14 +29,11 @@ bool has_changed(const std::optional<ellipse::Target>& before,
          (now && (before->id != now->id || before->state != now->state));
 }
 
-void post_target_message(GstElement* element,
-                         const FrameTimes& times,
-                         const std::optional<ellipse::Target>& target,
-                         const GstStructure* details) {
-  GstStructure* structure =
-      details != nullptr ? gst_structure_copy(details) : gst_structure_new_empty("ellipse");
-  gst_structure_set(structure, "state", G_TYPE_STRING, state_nick(target), nullptr);
-  post(element, times, structure);
+void post_target_message(GstElement* element, const FrameTimes& times, const GstEllipseMeta* meta) {
+  post(element,
+       times,
+       meta != nullptr ? gst_ellipse_meta_to_structure(meta)
+                       : gst_structure_new("ellipse", "state", G_TYPE_STRING, "lost", nullptr));
 }
 
 void post_load_message(GstElement* element,

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/tracker.hpp"
+#include "gst/ellipse/gstellipsemeta.h"
 #include "gst/load_watch.hpp"
 
 /// The times of a frame [ns], each NONE where it is not known.
@@ -24,11 +25,8 @@ struct FrameTimes {
                                const std::optional<ellipse::Target>& now);
 
 /// Posts the element message "ellipse".
-/// @param details  The target's structure; NULL where there is none. (transfer none)
-void post_target_message(GstElement* element,
-                         const FrameTimes& times,
-                         const std::optional<ellipse::Target>& target,
-                         const GstStructure* details);
+/// @param meta  The target's; nullptr where there is none, whose state is "lost".
+void post_target_message(GstElement* element, const FrameTimes& times, const GstEllipseMeta* meta);
 
 /// Posts the element message "ellipse-load": what is done about analyses that take too long.
 /// @param processing_time  That of the last frame [ns].

@@ -3,9 +3,99 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <variant>
 
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/ellipse/gstellipsesearchmeta.h"
+
+// A field of the structure; the quarks of all names are looked up once, not at each frame.
+class Field {
+ public:
+  template <class Number>
+  Field(const gchar* name, Number GstEllipseMeta::*member)
+      : name_(g_quark_from_static_string(name)), member_(member) {}
+
+  void set(GstStructure* structure, const GstEllipseMeta* meta) const {
+    GValue value = G_VALUE_INIT;
+    std::visit([&](auto member) { init(&value, meta->*member); }, member_);
+    gst_structure_id_take_value(structure, name_, &value);
+  }
+
+ private:
+  static void init(GValue* value, gdouble number) {
+    g_value_init(value, G_TYPE_DOUBLE);
+    g_value_set_double(value, number);
+  }
+  static void init(GValue* value, gint number) {
+    g_value_init(value, G_TYPE_INT);
+    g_value_set_int(value, number);
+  }
+  static void init(GValue* value, guint number) {
+    g_value_init(value, G_TYPE_UINT);
+    g_value_set_uint(value, number);
+  }
+  static void init(GValue* value, guint64 number) {
+    g_value_init(value, G_TYPE_UINT64);
+    g_value_set_uint64(value, number);
+  }
+
+  GQuark name_;
+  std::variant<gdouble GstEllipseMeta::*,
+               gint GstEllipseMeta::*,
+               guint GstEllipseMeta::*,
+               guint64 GstEllipseMeta::*>
+      member_;
+};
+
+#define FIELD(name) Field(#name, &GstEllipseMeta::name)
+
+static void add_ellipse(GstStructure* structure, const GstEllipseMeta* meta) {
+  static const Field kFields[] = {FIELD(id),
+                                  FIELD(cx),
+                                  FIELD(cy),
+                                  FIELD(semi_major),
+                                  FIELD(semi_minor),
+                                  FIELD(angle_rad),
+                                  FIELD(contour_overlap),
+                                  FIELD(ellipse_overlap),
+                                  FIELD(visible_fraction),
+                                  FIELD(scale),
+                                  FIELD(roi_x),
+                                  FIELD(roi_y),
+                                  FIELD(roi_width),
+                                  FIELD(roi_height),
+                                  FIELD(frame_width),
+                                  FIELD(frame_height),
+                                  FIELD(pts),
+                                  FIELD(processing_time)};
+  for (const Field& field : kFields) field.set(structure, meta);
+}
+
+static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
+  static const Field kFields[] = {FIELD(bearing_x),
+                                  FIELD(bearing_y),
+                                  FIELD(bearing_z),
+                                  FIELD(angle_x),
+                                  FIELD(angle_y),
+                                  FIELD(centre_x),
+                                  FIELD(centre_y),
+                                  FIELD(normal_x),
+                                  FIELD(normal_y),
+                                  FIELD(normal_z),
+                                  FIELD(other_normal_x),
+                                  FIELD(other_normal_y),
+                                  FIELD(other_normal_z),
+                                  FIELD(certainty)};
+  for (const Field& field : kFields) field.set(structure, meta);
+}
+
+// A name that lives as long as the program.
+static void set_name(GstStructure* structure, GQuark field, const gchar* name) {
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, G_TYPE_STRING);
+  g_value_set_static_string(&value, name);
+  gst_structure_id_take_value(structure, field, &value);
+}
 
 static void set_numbers(GstStructure* structure,
                         const gchar* name,
@@ -22,38 +112,14 @@ static void set_numbers(GstStructure* structure,
   gst_structure_take_value(structure, name, &list);
 }
 
-static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
-  // clang-format off
-  gst_structure_set(structure,
-                    "bearing_x", G_TYPE_DOUBLE, meta->bearing_x,
-                    "bearing_y", G_TYPE_DOUBLE, meta->bearing_y,
-                    "bearing_z", G_TYPE_DOUBLE, meta->bearing_z,
-                    "angle_x", G_TYPE_DOUBLE, meta->angle_x,
-                    "angle_y", G_TYPE_DOUBLE, meta->angle_y,
-                    "centre_x", G_TYPE_DOUBLE, meta->centre_x,
-                    "centre_y", G_TYPE_DOUBLE, meta->centre_y,
-                    "normal_x", G_TYPE_DOUBLE, meta->normal_x,
-                    "normal_y", G_TYPE_DOUBLE, meta->normal_y,
-                    "normal_z", G_TYPE_DOUBLE, meta->normal_z,
-                    "other_normal_x", G_TYPE_DOUBLE, meta->other_normal_x,
-                    "other_normal_y", G_TYPE_DOUBLE, meta->other_normal_y,
-                    "other_normal_z", G_TYPE_DOUBLE, meta->other_normal_z,
-                    "certainty", G_TYPE_DOUBLE, meta->certainty,
-                    nullptr);
-  // clang-format on
-}
-
 static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
-  // clang-format off
-  gst_structure_set(structure,
-                    "position_x", G_TYPE_DOUBLE, meta->position_x,
-                    "position_y", G_TYPE_DOUBLE, meta->position_y,
-                    "position_z", G_TYPE_DOUBLE, meta->position_z,
-                    "other_position_x", G_TYPE_DOUBLE, meta->other_position_x,
-                    "other_position_y", G_TYPE_DOUBLE, meta->other_position_y,
-                    "other_position_z", G_TYPE_DOUBLE, meta->other_position_z,
-                    nullptr);
-  // clang-format on
+  static const Field kFields[] = {FIELD(position_x),
+                                  FIELD(position_y),
+                                  FIELD(position_z),
+                                  FIELD(other_position_x),
+                                  FIELD(other_position_y),
+                                  FIELD(other_position_z)};
+  for (const Field& field : kFields) field.set(structure, meta);
   set_numbers(structure,
               "position_covariance",
               meta->position_covariance,
@@ -74,30 +140,13 @@ static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
  */
 GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);
-  // clang-format off
-  GstStructure* structure = gst_structure_new("ellipse",
-                           "role", G_TYPE_STRING, gst_ellipse_meta_get_role_name(meta),
-                           "state", G_TYPE_STRING, gst_ellipse_meta_get_state_name(meta),
-                           "id", G_TYPE_UINT64, meta->id,
-                           "cx", G_TYPE_DOUBLE, meta->cx,
-                           "cy", G_TYPE_DOUBLE, meta->cy,
-                           "semi_major", G_TYPE_DOUBLE, meta->semi_major,
-                           "semi_minor", G_TYPE_DOUBLE, meta->semi_minor,
-                           "angle_rad", G_TYPE_DOUBLE, meta->angle_rad,
-                           "contour_overlap", G_TYPE_DOUBLE, meta->contour_overlap,
-                           "ellipse_overlap", G_TYPE_DOUBLE, meta->ellipse_overlap,
-                           "visible_fraction", G_TYPE_DOUBLE, meta->visible_fraction,
-                           "scale", G_TYPE_UINT, meta->scale,
-                           "roi_x", G_TYPE_INT, meta->roi_x,
-                           "roi_y", G_TYPE_INT, meta->roi_y,
-                           "roi_width", G_TYPE_UINT, meta->roi_width,
-                           "roi_height", G_TYPE_UINT, meta->roi_height,
-                           "frame_width", G_TYPE_UINT, meta->frame_width,
-                           "frame_height", G_TYPE_UINT, meta->frame_height,
-                           "pts", GST_TYPE_CLOCK_TIME, meta->pts,
-                           "processing_time", GST_TYPE_CLOCK_TIME, meta->processing_time,
-                           nullptr);
-  // clang-format on
+  static const GQuark kRole = g_quark_from_static_string("role");
+  static const GQuark kState = g_quark_from_static_string("state");
+  static const GQuark kName = g_quark_from_static_string("ellipse");
+  GstStructure* structure = gst_structure_new_id_empty(kName);
+  set_name(structure, kRole, gst_ellipse_meta_get_role_name(meta));
+  set_name(structure, kState, gst_ellipse_meta_get_state_name(meta));
+  add_ellipse(structure, meta);
   if (meta->has_pose) add_pose(structure, meta);
   if (meta->has_position) add_position(structure, meta);
   const guint points = std::min<guint>(meta->n_outline, G_N_ELEMENTS(meta->outline) / 2);

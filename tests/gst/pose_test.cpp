@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -220,6 +221,29 @@ TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
     const Vector2d point(meta->outline[2 * i], meta->outline[2 * i + 1]);
     EXPECT_LT(std::abs(ellipse::sampson_distance(seen, point)), 0.5) << i;
   }
+}
+
+// What the picture shows of them, not what the ideal plane does: unbent, the disc in the corner is
+// cut by the frame.
+TEST_F(PoseElement, TellsWhatIsSeenOfCandidatesInThePicture) {
+  const TemporaryFolder folder;
+  g_object_set(element_.get(),
+               "camera-file",
+               camera_file(folder, "-0.22, 0.03, 0., 0., 0.").c_str(),
+               "candidates",
+               TRUE,
+               nullptr);
+  support::Picture picture(640, 360, 90);
+  cv::Mat luma(360, 640, CV_8UC1, picture.pixels.data());
+  cv::circle(luma, {320, 180}, 60, 230, cv::FILLED, cv::LINE_AA);
+  cv::circle(luma, {590, 40}, 30, 230, cv::FILLED, cv::LINE_AA);
+  const Owned<GstBuffer> buffer(
+      gst_harness_push_and_pull(harness_.get(), gray_buffer_of(picture).release()));
+  const GstEllipseMeta* corner =
+      gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
+  ASSERT_NE(corner, nullptr);
+  EXPECT_GT(corner->cx + corner->semi_major, 640.0);
+  EXPECT_EQ(corner->visible_fraction, 1.0);
 }
 
 TEST(PoseMeta, FollowsAScaler) {
