@@ -184,8 +184,9 @@ void ArcSplitter::split_chain(const GradientMap& map,
 void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width) {
   float sum = 0.0F;
   std::size_t count = 0;
-  for (std::size_t i = begin; i < std::min(end, begin + half_width); ++i, ++count)
+  for (std::size_t i = begin; i < std::min(end, begin + half_width); ++i, ++count) {
     sum += angles_[i];
+  }
   for (std::size_t i = begin; i < end; ++i) {
     if (i + half_width < end) {
       sum += angles_[i + half_width];

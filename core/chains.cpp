@@ -128,8 +128,9 @@ void ChainTracer::add_chain(std::int32_t seed,
   out = along.run(seed, out);
   const auto length = static_cast<std::size_t>(out - begin);
   if (length < kLeastLength) {
-    for (const std::int32_t* pixel = begin; pixel != out; ++pixel)
+    for (const std::int32_t* pixel = begin; pixel != out; ++pixel) {
       crests[*pixel] ^= crest::kChained;
+    }
     return;
   }
   count_ += length;

@@ -82,8 +82,9 @@ void DetectionTrace::place_in_frame(const Rect& region, int scale, const LensVie
     pass.scale *= scale;
   }
   for (TracedCandidate& candidate : candidates_) {
-    if (candidate.ellipse)
+    if (candidate.ellipse) {
       candidate.ellipse = bent(lens, to_frame(*candidate.ellipse, region, scale));
+    }
     candidate.verdict = magnified(candidate.verdict, scale);
   }
 }

@@ -84,7 +84,7 @@ class DetectionTrace {
   /// Does nothing for candidate -1.
   void choose(int candidate);
   /// All that is said in pixels of the picture becomes pixels of the frame that it is a region of,
-  /// reduced by `scale`.
+  /// reduced by `scale`; ellipses, found in the ideal plane, are bent as the frame shows them.
   void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
 
  private:

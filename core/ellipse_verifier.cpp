@@ -243,8 +243,9 @@ EllipseVerifier::Smoothness EllipseVerifier::smoothness(int samples,
       const EdgeHit& near = hits[static_cast<std::size_t>(other)];
       const Eigen::Vector2f tangent(-hit.normal.y(), hit.normal.x());
       const double t = tangent.dot(near.foot - hit.foot);
-      if (std::abs(near.offset.distance_px - hit.offset.distance_px) > 1.0 + 0.35 * std::abs(t))
+      if (std::abs(near.offset.distance_px - hit.offset.distance_px) > 1.0 + 0.35 * std::abs(t)) {
         continue;
+      }
       n += 1.0;
       t1 += t;
       t2 += t * t;

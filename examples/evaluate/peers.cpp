@@ -160,8 +160,9 @@ class CannyFitPeer final : public Peer {
                                      box.size.width / 2.0,
                                      box.size.height / 2.0,
                                      box.angle * kRadiansPerDegree);
-      if (!e || !limits.admit_axes_of(*e) || mean_distance_px(contour, *e) > kMostDistancePx)
+      if (!e || !limits.admit_axes_of(*e) || mean_distance_px(contour, *e) > kMostDistancePx) {
         continue;
+      }
       add({*e, 0.0, 0.0, static_cast<double>(contour.size())});
     }
   }

@@ -86,8 +86,9 @@ void write_files(std::vector<Sequence>& sequences, const fs::path& folder) {
     if (!is_rendered(sequence)) continue;
     for (Frame& frame : sequence.frames) frame.image = folder / "images" / frame.name;
   }
-  if (interrupted)
+  if (interrupted) {
     throw std::runtime_error("interrupted while frames were written to " + folder.string());
+  }
 }
 
 // A folder of its own that is gone in the end.

@@ -53,8 +53,9 @@ std::vector<std::string> range(const std::vector<std::string>& parts, const std:
   if (steps >= static_cast<double>(kMostValues)) fail(all, "more than 200 values");
   std::vector<std::string> values;
   // Nine digits, so that 0.3 + 5 x 0.05 is 0.55.
-  for (int i = 0; i <= static_cast<int>(steps); ++i)
+  for (int i = 0; i <= static_cast<int>(steps); ++i) {
     values.push_back(format("%.9g", from + i * step));
+  }
   return values;
 }
 

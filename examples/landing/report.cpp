@@ -187,8 +187,9 @@ void write_report(const std::vector<Landing>& landings,
   write_table(out, unseen_table(landings));
   out << "\n## Where they touched down\n\n![](touchdown.svg)\n\n![](errors.svg)\n"
       << "\n## The first of them\n\n![](flight.svg)\n";
-  if (!out.flush())
+  if (!out.flush()) {
     throw std::runtime_error((folder / "report.md").string() + ": cannot be written");
+  }
 }
 
 }  // namespace landing

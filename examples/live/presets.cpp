@@ -89,8 +89,9 @@ void load_preset(GstElement* tracker, const std::string& name) {
 
 void delete_preset(GstElement* tracker, const std::string& name) {
   check_exists(tracker, name);
-  if (!is_own(tracker, name))
+  if (!is_own(tracker, name)) {
     throw std::invalid_argument("the preset \"" + name + "\" is not yours");
+  }
   if (!gst_preset_delete_preset(GST_PRESET(tracker), name.c_str())) {
     throw std::runtime_error("the preset \"" + name + "\" cannot be deleted");
   }

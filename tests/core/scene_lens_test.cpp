@@ -112,8 +112,9 @@ EdgeErrors edge_errors(const Scene& scene, const Picture& picture, const Ellipse
       const double seen_px = scene.sensor.blur_px * sigmas_of(share);
       const double error_px = std::abs(seen_px - distance_px(lens, truth, pixel));
       errors.all.push_back(error_px);
-      if ((pixel - middle).norm() > 2.0 / 3.0 * middle.norm())
+      if ((pixel - middle).norm() > 2.0 / 3.0 * middle.norm()) {
         errors.at_corners.push_back(error_px);
+      }
     }
   }
   return errors;
