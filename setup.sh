@@ -34,7 +34,7 @@ if [ "${1:-}" != "--without-tests" ]; then
     gstreamer1.0-plugins-bad gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
-    valgrind gcovr clang
+    valgrind gcovr clang clang-tidy
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
     python3-yaml  # reads what 06_ros_yaml.py writes

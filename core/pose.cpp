@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kStretchNoise = 2.0;
+constexpr double kStretchNoise = 2.3;
 constexpr double kTiltOfNoise = 8.0;
 constexpr double kMemory = 0.9;         // of the odds, from frame to frame
 constexpr double kMostOdds = 12.0;      // logarithm

@@ -65,7 +65,8 @@ guint8 mixed(guint8 sample, const Mix& mix, const Sum& sum, int pixels) {
                      mix.green * static_cast<float>(sum.green) +
                      mix.blue * static_cast<float>(sum.blue);
   const float level = under + (over + (mix.offset - under) * alpha) / static_cast<float>(pixels);
-  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);  // lround would be a call
+  // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
 }
 
 // The samples of one component, each of which a block of pixels shares.

@@ -90,7 +90,8 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
       const Vector2d d = Vector2d(x, y) - from;
       const double distance = (d - std::clamp(d.dot(along), 0.0, length) * along).norm();
       const double share = std::clamp(reach - distance, 0.0, most_share);
-      cover(x, y, static_cast<std::uint8_t>(255.0 * share + 0.5));  // lround would be a call
+      // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+      cover(x, y, static_cast<std::uint8_t>(255.0 * share + 0.5));
     }
   }
 }

@@ -53,7 +53,7 @@ class Outline {
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] guint size() const { return size_; }
   [[nodiscard]] Vector2d at(guint i) const {
-    const guint k = i % size_;
+    const gsize k = i % size_;
     return {meta_.outline[2 * k], meta_.outline[2 * k + 1]};
   }
   [[nodiscard]] bool has(guint i) const { return is_near(at(i).x()) && is_near(at(i).y()); }

@@ -93,7 +93,7 @@ static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
   const Eigen::Vector2d half = ellipse::half_extent(e);
   if (meta.n_outline == 0) return {e.center() - half, e.center() + half};
   Eigen::AlignedBox2d box;
-  for (guint i = 0; i < meta.n_outline; ++i) {
+  for (gsize i = 0; i < meta.n_outline; ++i) {
     const Eigen::Vector2d point(meta.outline[2 * i], meta.outline[2 * i + 1]);
     if (point.allFinite()) box.extend(point);
   }

@@ -88,7 +88,7 @@ static void forget_target(GstEllipseTrack* self,
 
 static TrackProperties take_properties(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
-  const TrackProperties properties = self->shared->properties;
+  TrackProperties properties = self->shared->properties;
   const bool reset_is_due = self->shared->reset_is_due;
   self->shared->reset_is_due = false;
   GST_OBJECT_UNLOCK(self);

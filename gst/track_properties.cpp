@@ -106,89 +106,58 @@ const ellipse::SettingInfo* number_info(guint which) {
   return is_number ? &infos[which - PROP_FIRST_NUMBER] : nullptr;
 }
 
-}  // namespace
+constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                   GST_PARAM_MUTABLE_PLAYING);
 
-void TrackProperties::install(GObjectClass* object_class, guint first_id) {
-  const TrackProperties initial;
-  const auto playing = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                GST_PARAM_MUTABLE_PLAYING);
-  const auto install = [object_class](guint id, GParamSpec* spec) {
-    g_object_class_install_property(object_class, id, spec);
-  };
-  install(first_id + PROP_DETECTOR,
+class Installer {
+ public:
+  Installer(GObjectClass* object_class, guint first_id)
+      : object_class_(object_class), first_id_(first_id) {}
+
+  void operator()(guint which, GParamSpec* spec) const {
+    g_object_class_install_property(object_class_, first_id_ + which, spec);
+  }
+
+ private:
+  GObjectClass* object_class_;
+  guint first_id_;
+};
+
+void install_methods(const Installer& install, const TrackProperties& initial) {
+  install(PROP_DETECTOR,
           g_param_spec_enum("detector",
                             "Detector",
                             "How ellipses are found in a picture",
                             gst_ellipse_detector_get_type(),
                             static_cast<gint>(initial.tracker.detector),
-                            playing));
-  install(first_id + PROP_TRACKING,
+                            kPlaying));
+  install(PROP_TRACKING,
           g_param_spec_enum("tracking",
                             "Tracking",
                             "How the target is followed from frame to frame",
                             gst_ellipse_tracking_get_type(),
                             static_cast<gint>(initial.tracker.tracking),
-                            playing));
+                            kPlaying));
   install(
-      first_id + PROP_REFINE,
+      PROP_REFINE,
       g_param_spec_enum("refine",
                         "Refine",
                         "How exact the ellipse is made of a target that is followed by its edges",
                         gst_ellipse_refinement_get_type(),
                         static_cast<gint>(initial.tracker.refine),
-                        playing));
-  install(first_id + PROP_INTERVAL,
+                        kPlaying));
+}
+
+void install_load(const Installer& install, const TrackProperties& initial) {
+  install(PROP_INTERVAL,
           g_param_spec_uint("interval",
                             "Interval",
                             "Analyse every n-th frame; the others pass as they are",
                             1,
                             G_MAXUINT,
                             initial.interval,
-                            playing));
-  install(first_id + PROP_MESSAGES,
-          g_param_spec_enum("messages",
-                            "Messages",
-                            "When an element message \"ellipse\" is posted on the bus",
-                            gst_ellipse_messages_get_type(),
-                            initial.messages,
-                            playing));
-  install(first_id + PROP_ATTACH_ROI_META,
-          g_param_spec_boolean("attach-roi-meta",
-                               "Attach ROI meta",
-                               "Also attach the target's box as GstVideoRegionOfInterestMeta",
-                               initial.attach_roi_meta ? TRUE : FALSE,
-                               playing));
-  install(first_id + PROP_CANDIDATES,
-          g_param_spec_boolean("candidates",
-                               "Candidates",
-                               "Also attach all other ellipses of the frame, as \"candidate\"; the "
-                               "detector then looks at every frame",
-                               initial.tracker.wants_candidates ? TRUE : FALSE,
-                               playing));
-  install(first_id + PROP_ROI_SOURCE,
-          g_param_spec_enum("roi-source",
-                            "ROI source",
-                            "Who says where in a frame is searched",
-                            gst_ellipse_roi_source_get_type(),
-                            initial.roi_source,
-                            playing));
-  install(
-      first_id + PROP_ROI,
-      gst_param_spec_array(
-          "roi",
-          "ROI",
-          "The region that roi-source=property searches, as <x, y, width, "
-          "height> in px of the frame",
-          g_param_spec_int(
-              "number", "Number", "x, y, width or height in px", G_MININT, G_MAXINT, 0, playing),
-          playing));
-  install(first_id + PROP_ROI_TYPE,
-          g_param_spec_string("roi-type",
-                              "ROI type",
-                              "The regions that roi-source=meta counts; empty = of any type",
-                              "",
-                              playing));
-  install(first_id + PROP_MAX_PROCESSING_TIME,
+                            kPlaying));
+  install(PROP_MAX_PROCESSING_TIME,
           g_param_spec_uint64("max-processing-time",
                               "Maximum processing time",
                               "Time for a frame in ns: beyond it the search gets coarser, then "
@@ -196,15 +165,67 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
                               0,
                               G_MAXUINT64,
                               initial.max_processing_time,
-                              playing));
-  install(first_id + PROP_CAMERA_FILE,
+                              kPlaying));
+}
+
+void install_reports(const Installer& install, const TrackProperties& initial) {
+  install(PROP_MESSAGES,
+          g_param_spec_enum("messages",
+                            "Messages",
+                            "When an element message \"ellipse\" is posted on the bus",
+                            gst_ellipse_messages_get_type(),
+                            initial.messages,
+                            kPlaying));
+  install(PROP_ATTACH_ROI_META,
+          g_param_spec_boolean("attach-roi-meta",
+                               "Attach ROI meta",
+                               "Also attach the target's box as GstVideoRegionOfInterestMeta",
+                               initial.attach_roi_meta ? TRUE : FALSE,
+                               kPlaying));
+  install(PROP_CANDIDATES,
+          g_param_spec_boolean("candidates",
+                               "Candidates",
+                               "Also attach all other ellipses of the frame, as \"candidate\"; the "
+                               "detector then looks at every frame",
+                               initial.tracker.wants_candidates ? TRUE : FALSE,
+                               kPlaying));
+}
+
+void install_region(const Installer& install, const TrackProperties& initial) {
+  install(PROP_ROI_SOURCE,
+          g_param_spec_enum("roi-source",
+                            "ROI source",
+                            "Who says where in a frame is searched",
+                            gst_ellipse_roi_source_get_type(),
+                            initial.roi_source,
+                            kPlaying));
+  install(
+      PROP_ROI,
+      gst_param_spec_array(
+          "roi",
+          "ROI",
+          "The region that roi-source=property searches, as <x, y, width, "
+          "height> in px of the frame",
+          g_param_spec_int(
+              "number", "Number", "x, y, width or height in px", G_MININT, G_MAXINT, 0, kPlaying),
+          kPlaying));
+  install(PROP_ROI_TYPE,
+          g_param_spec_string("roi-type",
+                              "ROI type",
+                              "The regions that roi-source=meta counts; empty = of any type",
+                              "",
+                              kPlaying));
+}
+
+void install_camera(const Installer& install) {
+  install(PROP_CAMERA_FILE,
           g_param_spec_string("camera-file",
                               "Camera file",
                               "Calibration of the camera, from OpenCV or ROS; goes before fx and "
                               "hfov; empty = none",
                               "",
-                              playing));
-  install(first_id + PROP_GRAVITY,
+                              kPlaying));
+  install(PROP_GRAVITY,
           gst_param_spec_array("gravity",
                                "Gravity",
                                "Down in the camera's frame, as <x, y, z>: tells how a level target "
@@ -215,12 +236,24 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
                                                    -G_MAXDOUBLE,
                                                    G_MAXDOUBLE,
                                                    0.0,
-                                                   playing),
-                               playing));
+                                                   kPlaying),
+                               kPlaying));
+}
+
+}  // namespace
+
+void TrackProperties::install(GObjectClass* object_class, guint first_id) {
+  const TrackProperties initial;
+  const Installer install(object_class, first_id);
+  install_methods(install, initial);
+  install_load(install, initial);
+  install_reports(install, initial);
+  install_region(install, initial);
+  install_camera(install);
   install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
-  guint id = first_id + PROP_FIRST_NUMBER;
+  guint which = PROP_FIRST_NUMBER;
   for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
-    install(id++, param_spec_of(info));
+    install(which++, param_spec_of(info));
   }
 
   const auto mark = [](GType type) {

@@ -2,6 +2,7 @@
 #include "gst/track_stats.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 void TrackStats::add_skipped(Skip reason) {
@@ -37,7 +38,7 @@ GstClockTime TrackStats::quantile(double q) const {
   std::array<GstClockTime, kWindow> sorted = times_;
   const std::size_t count = std::min<std::size_t>(analysed_, kWindow);
   if (count == 0) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(count - 1) + 0.5);
+  const std::ptrdiff_t rank = std::lround(q * static_cast<double>(count - 1));
   std::nth_element(
       sorted.begin(), sorted.begin() + rank, sorted.begin() + static_cast<std::ptrdiff_t>(count));
   return sorted[static_cast<std::size_t>(rank)];

@@ -5,7 +5,7 @@
 #   ./tests/run.sh --sanitize          all under AddressSanitizer and UBSan
 #   ./tests/run.sh --sanitize=thread   pipelines under ThreadSanitizer
 #   ./tests/run.sh --coverage          all, and the lines of core/ and gst/ that they reach: 90 %
-#   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin
+#   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin; lint
 # Closes with what failed, and a line "N passed, N failed, N skipped".
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
@@ -105,7 +105,9 @@ case "${1:-}" in
     export CC=clang CXX=clang++  # of a folder that is not set up yet
     check build build-clang
     unset CC CXX
+    run build-clang core gst
     check build build-core -Dplugin=disabled
+    check run-clang-tidy -quiet -p "$project/build" "^$project/(core|gst)/.*\.cpp$"
     run build-core --no-suite long
     run build --suite long --verbose
     ;;

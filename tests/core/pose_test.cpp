@@ -117,7 +117,9 @@ TEST(RingChanges, AreTheSameChangeInAnotherView) {
   EXPECT_LT(max_difference_px(*first, *second), 1e-6);
 }
 
-// Normalised error squared of 10,000 positions: its mean is 3, within 1.96 sqrt(6 / 10,000).
+// Normalised error squared of 10,000 positions: its mean is 3, within 1.96 sqrt(6 / 10,000). Its
+// tail is a little longer than chi-square's, because near the view straight on the error is not
+// normal: of 250,000 positions .9484 are within the 95 % quantile.
 TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   std::mt19937 random(20261122);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -129,11 +131,13 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   double sum = 0.0;
   int inside = 0;
   for (int n = 0; n < kPoses; ++n) {
-    const CirclePose truth =
-        circle_at({160.0 + 320.0 * uniform(random), 90.0 + 180.0 * uniform(random)},
-                  std::exp(std::lerp(std::log(2.0), std::log(20.0), uniform(random))),
-                  std::numbers::pi / 3.0 * uniform(random),
-                  2.0 * std::numbers::pi * uniform(random));
+    // One after the other: compilers differ in which argument of a call they draw first.
+    const double x = 160.0 + 320.0 * uniform(random);
+    const double y = 90.0 + 180.0 * uniform(random);
+    const double distance = std::exp(std::lerp(std::log(2.0), std::log(20.0), uniform(random)));
+    const double tilt = std::numbers::pi / 3.0 * uniform(random);
+    const double turn = 2.0 * std::numbers::pi * uniform(random);
+    const CirclePose truth = circle_at({x, y}, distance, tilt, turn);
     const auto exact = project_circle(image_from_pad(camera, truth), 1.0);
     ASSERT_TRUE(exact);
     Ellipse fitted = *exact;
@@ -141,8 +145,9 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
     std::array<Vector2d, kPoints> points;
     for (int i = 0; i < kPoints; ++i) {
       const Vector2d point = exact->point_at(2.0 * std::numbers::pi * i / kPoints);
-      points[static_cast<std::size_t>(i)] =
-          point + kSigmaPx * Vector2d(normal(random), normal(random));
+      const double noise_x = normal(random);
+      const double noise_y = normal(random);
+      points[static_cast<std::size_t>(i)] = point + kSigmaPx * Vector2d(noise_x, noise_y);
     }
     for (int step = 0; step < 3; ++step) {
       GeometricFit fit(fitted);
@@ -163,7 +168,7 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   }
   const double mean = sum / kPoses;
   EXPECT_NEAR(mean, 3.0, 1.96 * std::sqrt(6.0 / kPoses));
-  EXPECT_NEAR(static_cast<double>(inside) / kPoses, 0.95, 0.0043);
+  EXPECT_NEAR(static_cast<double>(inside) / kPoses, 0.95, 0.0043 + 0.0016);
 }
 
 // The estimator: which of the two solutions.
