@@ -11,8 +11,6 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrameNs = 1e9 / 30.0;   // by which the edge tracker counts time
-constexpr double kLongestGap = 30.0;      // of these
 constexpr int kLookInterval = 8;          // frames between the detector's looks while following
 constexpr int kNextLook = 2;              // the same, after one that did not find the target
 constexpr int kMostTrust = 4;             // one for each look that finds the target, and
@@ -81,14 +79,14 @@ std::optional<Target> Tracker::process(const PixelView& frame,
                                        std::int64_t pts_ns,
                                        const SearchScope& scope) {
   take_in(frame, scope);
+  const double elapsed = clock_.advance_to(pts_ns);
   if (searchable_.empty()) return std::nullopt;
   std::optional<Target> target;
-  if (edge_tracker_.is_locked()) target = follow_edges(frame, pts_ns);
+  if (edge_tracker_.is_locked()) target = follow_edges(frame, elapsed);
   const bool is_seen = target && target->state == TargetState::kTracked;
   const int next_look = settings_.wants_candidates ? 1 : next_look_;
   if (!is_seen || ++frames_since_look_ >= next_look) target = look_at_all(frame, target);
   if (target) target->pts_ns = pts_ns;
-  last_pts_ns_ = pts_ns;
   prepare_next_frame(target);
   if (target && lens_) locate(*target);
   return target;
@@ -117,18 +115,15 @@ LensView Tracker::lens() const {
 }
 
 // From its edges alone: nothing else of the frame is read.
-std::optional<Target> Tracker::follow_edges(const PixelView& frame, std::int64_t pts_ns) {
-  // Streams without time stamps are taken for even ones.
-  const double elapsed = static_cast<double>(pts_ns - last_pts_ns_) / kFrameNs;
-  const double frames = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
+std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elapsed) {
   search_region_ =
-      intersect(edge_tracker_.region_after(frames, frame.width, frame.height), searchable_);
+      intersect(edge_tracker_.region_after(elapsed, frame.width, frame.height), searchable_);
   candidates_.clear();
   const LumaWindow window{luma_reader_.read(frame, search_region_),
                           Eigen::Vector2d(search_region_.x, search_region_.y),
                           Eigen::Vector2d(frame.width, frame.height),
                           lens()};
-  const auto track = edge_tracker_.track(window, frames);
+  const auto track = edge_tracker_.track(window, elapsed);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(lens(), track->ellipse, frame.width, frame.height);
   const bool is_likely = visible >= kLeastPredicted && track->coverage >= kLeastCoverage;
@@ -309,6 +304,7 @@ void Tracker::reset() {
   scale_ = 1;
   roi_ = {};
   search_region_ = {};
+  clock_ = {};
   candidates_.clear();
   edge_tracker_.release();
   pose_estimator_.forget();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/edge_tracker.hpp"
+#include "core/frame_clock.hpp"
 #include "core/luma.hpp"
 #include "core/pose.hpp"
 #include "core/scale.hpp"
@@ -57,7 +58,7 @@ class Tracker {
   void configure(const TrackerSettings& settings);
 
   /// @param frame   Borrowed for the call only. A change of its size starts over.
-  /// @param pts_ns  Its time stamp; copied into the target.
+  /// @param pts_ns  Its time stamp, negative where it has none; copied into the target.
   /// @return The target, or nullopt where none was found.
   [[nodiscard]] std::optional<Target> process(const PixelView& frame, std::int64_t pts_ns);
 
@@ -86,7 +87,7 @@ class Tracker {
   [[nodiscard]] LensView lens() const;
 
  private:
-  [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, std::int64_t pts_ns);
+  [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, double elapsed);
   [[nodiscard]] std::optional<Target> look_at_all(const PixelView& frame,
                                                   const std::optional<Target>& followed);
   [[nodiscard]] bool is_doubtful(const Target& target) const;
@@ -103,6 +104,7 @@ class Tracker {
   std::unique_ptr<Detector> detector_;
   DetectionTrace* trace_ = nullptr;
   std::vector<Detection> candidates_;
+  FrameClock clock_;
   LumaReader luma_reader_;
   Scaler scaler_;
   EdgeTracker edge_tracker_;
@@ -116,7 +118,6 @@ class Tracker {
   Rect searchable_;  // of this frame
   Ellipse last_ellipse_;
   std::uint64_t last_id_ = 0;
-  std::int64_t last_pts_ns_ = 0;
   int scale_ = 1;
   int finest_scale_ = 1;
   int frames_since_look_ = 0;  // of the detector, while following by edges

@@ -26,6 +26,7 @@ constexpr int kHeight = 180;
 struct Frame {
   int number;
   Picture picture;
+  bool has_time = true;
 };
 
 // @param is_missing  Frames that never arrive.
@@ -52,7 +53,8 @@ const std::vector<Frame>& film(const std::string& scene) {
 Owned<GstBuffer> buffer_of(const Frame& frame) {
   auto buffer = support::gray_buffer_of(frame.picture);
   GST_BUFFER_PTS(buffer.get()) =
-      gst_util_uint64_scale(static_cast<guint64>(frame.number), GST_SECOND, 30);
+      frame.has_time ? gst_util_uint64_scale(static_cast<guint64>(frame.number), GST_SECOND, 30)
+                     : GST_CLOCK_TIME_NONE;
   return buffer;
 }
 
@@ -151,6 +153,22 @@ TEST(Gaps, FiveLostFramesDoNotLoseTheTarget) {
       EXPECT_EQ(verdicts[i].state, GST_ELLIPSE_STATE_TRACKED) << scene << frames[i].number;
     }
     EXPECT_EQ(shown(frames, "", kInThreadsOfTheirOwn), verdicts) << scene;
+  }
+}
+
+// As behind decoders that leave out a time stamp now and then.
+TEST(Gaps, LostTimeStampsLoseNothing) {
+  for (const char* scene : {"approach", "touchdown", "dash"}) {
+    std::vector<Frame> frames = film(scene, 150, [](int) { return false; });
+    const std::vector<Verdict> whole = shown(frames);
+    for (Frame& frame : frames) frame.has_time = frame.number % 7 != 3;
+    const std::vector<Verdict> verdicts = shown(frames);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_EQ(verdicts[i].id, whole[i].id) << scene << i;
+      EXPECT_EQ(verdicts[i].state, whole[i].state) << scene << i;
+      EXPECT_NEAR(verdicts[i].cx(), whole[i].cx(), 0.01) << scene << i;
+      EXPECT_NEAR(verdicts[i].cy(), whole[i].cy(), 0.01) << scene << i;
+    }
   }
 }
 

@@ -20,6 +20,8 @@ struct Verdict {
   std::array<std::uint64_t, 8> bits{};  ///< Of the metadata's doubles.
   std::array<std::int64_t, 5> search{};
 
+  [[nodiscard]] double cx() const { return std::bit_cast<double>(bits[0]); }
+  [[nodiscard]] double cy() const { return std::bit_cast<double>(bits[1]); }
   bool operator==(const Verdict&) const = default;
 };
 
