@@ -19,6 +19,8 @@
 #include "gst/gstellipsetrack.h"
 
 #include <exception>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "gst/track_frame.hpp"
@@ -49,11 +51,51 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
 
 /* Properties */
 
+// Before a pipeline plays nobody hears its messages.
 static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
   if (refusal.empty()) return;
-  g_warning("%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
+  GST_WARNING_OBJECT(self, "setting refused: %s", refusal.c_str());
+  if (GST_STATE(self) == GST_STATE_NULL) {
+    g_warning(
+        "%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
+  }
   GST_ELEMENT_WARNING(
       self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
+}
+
+// @return Why a change is refused; empty where it is not.
+static std::string changed(TrackShared& shared, const PropertyChange& change) {
+  try {
+    TrackProperties wanted = shared.preset.value_or(shared.properties);
+    change.apply_to(wanted);
+    if (shared.preset) {
+      shared.preset = wanted;
+    } else {
+      wanted.tracker.validate();
+      shared.properties = wanted;
+    }
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
+  GstControlBinding* binding = gst_object_get_control_binding(GST_OBJECT(self), pspec->name);
+  if (binding == nullptr) return false;
+  gst_object_unref(binding);
+  return true;
+}
+
+// What a controller sets at every frame is refused aloud once, until it is taken again.
+static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
+  const bool is_repeated = is_controlled(self, pspec);
+  GST_OBJECT_LOCK(self);
+  std::set<std::string>& refused = self->shared->refused;
+  const bool is_news = is_refused ? refused.insert(pspec->name).second : false;
+  if (!is_refused) refused.erase(pspec->name);
+  GST_OBJECT_UNLOCK(self);
+  return is_repeated && !is_news;
 }
 
 // Refuses what does not fit together, names it, and keeps the old value.
@@ -67,22 +109,15 @@ static void gst_ellipse_track_set_property(GObject* object,
     return;
   }
   std::string refusal;
-  GST_OBJECT_LOCK(self);
-  TrackShared& shared = *self->shared;
   try {
-    TrackProperties wanted = shared.preset.value_or(shared.properties);
-    wanted.set(id - PROP_FIRST_SETTING, value);
-    if (shared.preset) {
-      shared.preset = wanted;
-    } else {
-      wanted.tracker.validate();
-      shared.properties = wanted;
-    }
+    const PropertyChange change(id - PROP_FIRST_SETTING, value);
+    GST_OBJECT_LOCK(self);
+    refusal = changed(*self->shared, change);
+    GST_OBJECT_UNLOCK(self);
   } catch (const std::exception& error) {
     refusal = error.what();
   }
-  GST_OBJECT_UNLOCK(self);
-  tell_refusal(self, refusal);
+  if (!is_told_already(self, pspec, !refusal.empty())) tell_refusal(self, refusal);
 }
 
 static void gst_ellipse_track_get_property(GObject* object,
@@ -90,18 +125,22 @@ static void gst_ellipse_track_get_property(GObject* object,
                                            GValue* value,
                                            GParamSpec* pspec) {
   auto* self = GST_ELLIPSE_TRACK(object);
+  if (id < PROP_TARGET) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
   GST_OBJECT_LOCK(self);
+  const std::optional<GstEllipseMeta> target = self->shared->target;
+  const TrackStats stats = self->shared->stats;
+  const TrackProperties properties = self->shared->properties;
+  GST_OBJECT_UNLOCK(self);
   if (id == PROP_TARGET) {
-    const auto& target = self->shared->target;
     if (target) g_value_take_boxed(value, gst_ellipse_meta_to_structure(&*target));
   } else if (id == PROP_STATS) {
-    g_value_take_boxed(value, self->shared->stats.to_structure());
-  } else if (id >= PROP_FIRST_SETTING) {
-    self->shared->properties.get(id - PROP_FIRST_SETTING, value);
+    g_value_take_boxed(value, stats.to_structure());
   } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    properties.get(id - PROP_FIRST_SETTING, value);
   }
-  GST_OBJECT_UNLOCK(self);
 }
 
 static gboolean (*load_one_by_one)(GstPreset* preset, const gchar* name);
@@ -240,13 +279,19 @@ static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
   return api == GST_VIDEO_CROP_META_API_TYPE;
 }
 
-// Two fields are two moments: where something moves, its edges are combs.
+// Two fields are two moments: where something moves, its edges are combs. Mixed streams have such
+// frames among others.
 static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
                                            GstCaps* /*in_caps*/,
                                            GstVideoInfo* in_info,
                                            GstCaps* /*out_caps*/,
                                            GstVideoInfo* /*out_info*/) {
-  if (GST_VIDEO_INFO_INTERLACE_MODE(in_info) == GST_VIDEO_INTERLACE_MODE_INTERLEAVED) {
+  GST_DEBUG_OBJECT(filter,
+                   "%s %d x %d",
+                   GST_VIDEO_INFO_NAME(in_info),
+                   GST_VIDEO_INFO_WIDTH(in_info),
+                   GST_VIDEO_INFO_HEIGHT(in_info));
+  if (GST_VIDEO_INFO_IS_INTERLACED(in_info)) {
     GST_ELEMENT_WARNING(filter,
                         STREAM,
                         FORMAT,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track_frame.hpp"
 
+#include <bit>
 #include <exception>
+#include <string>
 
 #include "gst/blend.hpp"
 #include "gst/search_bounds.hpp"
@@ -9,8 +11,23 @@
 #include "gst/track_report.hpp"
 #include "gst/video_view.hpp"
 
-// Analysed frames between two looks at what they add to the latency.
+// Frames between two looks at what they add to the latency; at the beginning fewer.
 static constexpr guint64 kLatencyInterval = 32;
+
+// Whatever C++ throws ends here. @return Whether nothing was thrown.
+template <class Body>
+static bool succeeds(GstEllipseTrack* self, const char* failure, const Body& body) {
+  std::string why = "unknown exception";
+  try {
+    body();
+    return true;
+  } catch (const std::exception& error) {
+    why = error.what();
+  } catch (...) {
+  }
+  GST_ELEMENT_WARNING(self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("it passes"));
+  return false;
+}
 
 static void emit_change(GstEllipseTrack* self,
                         const std::optional<ellipse::Target>& before,
@@ -57,14 +74,19 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
 // Whoever plays a live pipeline asks for the latency again, where what was told does not hold.
 static void tell_latency(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
+  const guint64 frame = self->stream->frame;
+  if (frame % kLatencyInterval != 0 && !(frame < kLatencyInterval && std::has_single_bit(frame))) {
+    return;
+  }
   bool is_news = false;
   GST_OBJECT_LOCK(self);
-  if (shared.is_live && shared.stats.analysed() % kLatencyInterval == 0) {
-    const GstClockTime latency = shared.stats.latency();
-    is_news = latency > shared.told_latency || 4 * latency < shared.told_latency;
+  const GstClockTime latency = shared.stats.latency();
+  if (shared.is_live) {
+    is_news = latency > shared.told_latency || 2 * latency < shared.told_latency;
   }
   GST_OBJECT_UNLOCK(self);
   if (!is_news) return;
+  GST_DEBUG_OBJECT(self, "latency is now %" GST_TIME_FORMAT, GST_TIME_ARGS(latency));
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
@@ -110,6 +132,8 @@ static void watch_load(GstEllipseTrack* self,
                        GstClockTime limit) {
   LoadWatch& load = self->stream->load;
   if (!load.add(processing_time, limit)) return;
+  GST_DEBUG_OBJECT(
+      self, "scale %d, %d frames skipped in a row", load.scale(), load.skipped_in_a_row());
   post_load_message(GST_ELEMENT(self), times, load, processing_time, limit);
 }
 
@@ -127,6 +151,7 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
 }
 
 static void skip(GstEllipseTrack* self, Skip reason) {
+  GST_LOG_OBJECT(self, "passes without analysis: %s", nick_of(reason));
   GST_OBJECT_LOCK(self);
   self->shared->stats.add_skipped(reason);
   GST_OBJECT_UNLOCK(self);
@@ -140,6 +165,25 @@ static void draw(GstEllipseTrack* self,
   overlay.begin(GST_VIDEO_FRAME_WIDTH(&frame), GST_VIDEO_FRAME_HEIGHT(&frame));
   overlay.draw(meta, style);
   blend(overlay.canvas(), frame);
+}
+
+static void log_verdict(GstEllipseTrack* self,
+                        const GstEllipseMeta* meta,
+                        GstClockTime processing_time) {
+  if (meta == nullptr) {
+    GST_LOG_OBJECT(self, "nothing found, %" G_GUINT64_FORMAT " ns", processing_time);
+    return;
+  }
+  GST_LOG_OBJECT(self,
+                 "%s %" G_GUINT64_FORMAT " at %.2f, %.2f, axes %.2f, %.2f, %" G_GUINT64_FORMAT
+                 " ns",
+                 gst_ellipse_meta_get_state_name(meta),
+                 meta->id,
+                 meta->cx,
+                 meta->cy,
+                 meta->semi_major,
+                 meta->semi_minor,
+                 processing_time);
 }
 
 static void analyse(GstEllipseTrack* self,
@@ -163,12 +207,12 @@ static void analyse(GstEllipseTrack* self,
                                       {bounds, self->stream->load.scale()});
   const GstClockTime processing_time = gst_util_get_timestamp() - start;
   const GstEllipseMeta* meta = publish(self, buffer, times, properties, target, processing_time);
+  log_verdict(self, meta, processing_time);
   watch_load(self, times, processing_time, properties.max_processing_time);
-  tell_latency(self);
   if (draws && meta != nullptr) draw(self, mapped.frame(), *meta, properties.overlay);
 }
 
-void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
+static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
   auto* base = GST_BASE_TRANSFORM(self);
   const FrameTimes times = times_of(base, buffer);
   if (GST_CLOCK_TIME_IS_VALID(times.stream)) gst_object_sync_values(GST_OBJECT(self), times.stream);
@@ -178,23 +222,26 @@ void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
   if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
     if (*reason == Skip::kRegion) forget_target(self, properties, times);
     skip(self, *reason);
-    return;
-  }
-  try {
+  } else {
     analyse(self, buffer, times, properties, bounds);
-  } catch (const std::exception& error) {
-    GST_ELEMENT_WARNING(
-        self, STREAM, FAILED, ("A frame could not be analysed: %s", error.what()), ("it passes"));
-    skip(self, Skip::kFailed);
   }
 }
 
+void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
+  const auto body = [&] { pass_on(self, buffer); };
+  if (!succeeds(self, "A frame could not be analysed", body)) skip(self, Skip::kFailed);
+  tell_latency(self);
+}
+
 void forget_stream(GstEllipseTrack* self) {
-  GST_OBJECT_LOCK(self);
-  const TrackProperties properties = self->shared->properties;
-  self->shared->lateness = Lateness();
-  GST_OBJECT_UNLOCK(self);
-  forget_target(self, properties);
+  GST_DEBUG_OBJECT(self, "starts over");
+  succeeds(self, "The last stream could not be forgotten", [self] {
+    GST_OBJECT_LOCK(self);
+    const TrackProperties properties = self->shared->properties;
+    self->shared->lateness = Lateness();
+    GST_OBJECT_UNLOCK(self);
+    forget_target(self, properties);
+  });
   self->stream->load = LoadWatch();
   self->stream->frame = 0;
 }

@@ -3,6 +3,8 @@
 #include <gst/video/video.h>
 
 #include <optional>
+#include <set>
+#include <string>
 
 #include "core/tracker.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
@@ -35,6 +37,7 @@ struct TrackShared {
   GstClockTime told_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;
+  std::set<std::string> refused;  ///< Properties whose last new value was refused.
 };
 
 struct _GstEllipseTrack {

@@ -267,39 +267,49 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   mark(GST_TYPE_ELLIPSE_OVERLAY_FLAGS);
 }
 
-void TrackProperties::set(guint which, const GValue* value) {
-  if (const ellipse::SettingInfo* info = number_info(which)) {
+PropertyChange::PropertyChange(guint which, const GValue* value) : which_(which), value_(value) {
+  if (which != PROP_CAMERA_FILE || g_value_get_string(value) == nullptr) return;
+  camera_file_ = g_value_get_string(value);
+  if (!camera_file_.empty()) camera_ = ellipse::read_camera(camera_file_);
+}
+
+void PropertyChange::apply_to(TrackProperties& properties) const {
+  ellipse::TrackerSettings& tracker = properties.tracker;
+  const GValue* value = value_;
+  if (const ellipse::SettingInfo* info = number_info(which_)) {
     info->set(tracker, info->is_integer ? g_value_get_uint(value) : g_value_get_double(value));
   }
-  if (which == PROP_DETECTOR) {
+  if (which_ == PROP_DETECTOR) {
     tracker.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
   }
-  if (which == PROP_TRACKING) {
+  if (which_ == PROP_TRACKING) {
     tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
   }
-  if (which == PROP_REFINE) {
+  if (which_ == PROP_REFINE) {
     tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
   }
-  if (which == PROP_INTERVAL) interval = g_value_get_uint(value);
-  if (which == PROP_MESSAGES) messages = g_value_get_enum(value);
-  if (which == PROP_ATTACH_ROI_META) attach_roi_meta = g_value_get_boolean(value) != FALSE;
-  if (which == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
-  if (which == PROP_ROI_SOURCE) roi_source = g_value_get_enum(value);
-  if (which == PROP_ROI) roi = rect_from(value);
-  if (which == PROP_ROI_TYPE) {
+  if (which_ == PROP_INTERVAL) properties.interval = g_value_get_uint(value);
+  if (which_ == PROP_MESSAGES) properties.messages = g_value_get_enum(value);
+  if (which_ == PROP_ATTACH_ROI_META) {
+    properties.attach_roi_meta = g_value_get_boolean(value) != FALSE;
+  }
+  if (which_ == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
+  if (which_ == PROP_ROI_SOURCE) properties.roi_source = g_value_get_enum(value);
+  if (which_ == PROP_ROI) properties.roi = rect_from(value);
+  if (which_ == PROP_ROI_TYPE) {
     const gchar* type = g_value_get_string(value);
-    roi_type = type != nullptr && *type != '\0' ? g_quark_from_string(type) : 0;
+    properties.roi_type = type != nullptr && *type != '\0' ? g_quark_from_string(type) : 0;
   }
-  if (which == PROP_MAX_PROCESSING_TIME) max_processing_time = g_value_get_uint64(value);
-  if (which == PROP_CAMERA_FILE) {
-    const gchar* path = g_value_get_string(value);
-    const std::string file = path != nullptr ? path : "";
-    tracker.camera = file.empty() ? std::nullopt : std::optional(ellipse::read_camera(file));
-    camera_file = file;
+  if (which_ == PROP_MAX_PROCESSING_TIME) {
+    properties.max_processing_time = g_value_get_uint64(value);
   }
-  if (which == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
-  if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
-    set_overlay_property(overlay, which - PROP_OVERLAY, value);
+  if (which_ == PROP_CAMERA_FILE) {
+    tracker.camera = camera_;
+    properties.camera_file = camera_file_;
+  }
+  if (which_ == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
+  if (which_ >= PROP_OVERLAY && which_ <= PROP_LINE_WIDTH) {
+    set_overlay_property(properties.overlay, which_ - PROP_OVERLAY, value);
   }
 }
 

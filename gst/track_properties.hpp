@@ -2,6 +2,7 @@
 
 #include <gst/gst.h>
 
+#include <optional>
 #include <string>
 
 #include "core/tracker_settings.hpp"
@@ -26,8 +27,25 @@ struct TrackProperties {
   static void install(GObjectClass* object_class, guint first_id);
 
   /// @param which  The property's id minus first_id.
+  void get(guint which, GValue* value) const;
+};
+
+/// A new value of one property, read and yet to be set.
+class PropertyChange {
+ public:
+  /// @param which  The property's id minus that of the first.
+  /// @param value  Borrowed as long as this lives.
+  /// Reads the file that `camera-file` names: not to be made under a lock. Throws
+  /// std::invalid_argument where it cannot be read.
+  PropertyChange(guint which, const GValue* value);
+
   /// Does not check how the value fits the others: that is tracker.validate(). Throws
   /// std::invalid_argument and changes nothing, where the value has no meaning.
-  void set(guint which, const GValue* value);
-  void get(guint which, GValue* value) const;
+  void apply_to(TrackProperties& properties) const;
+
+ private:
+  guint which_;
+  const GValue* value_;
+  std::string camera_file_;
+  std::optional<ellipse::Camera> camera_;
 };

@@ -5,6 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+const gchar* nick_of(Skip reason) {
+  static constexpr const gchar* kNicks[] = {"interval", "late", "load", "region", "failed"};
+  return kNicks[static_cast<std::size_t>(reason)];
+}
+
 void TrackStats::add_skipped(Skip reason) {
   ++skipped_[static_cast<std::size_t>(reason)];
 }
@@ -34,18 +39,20 @@ void TrackStats::add_analysed(const std::optional<ellipse::Target>& target,
   }
 }
 
-GstClockTime TrackStats::quantile(double q) const {
+// @param left_out  So many of the longest do not count.
+GstClockTime TrackStats::quantile(double q, std::size_t left_out) const {
   std::array<GstClockTime, kWindow> sorted = times_;
   const std::size_t count = std::min<std::size_t>(analysed_, kWindow);
-  if (count == 0) return 0;
-  const std::ptrdiff_t rank = std::lround(q * static_cast<double>(count - 1));
+  if (count <= left_out) return 0;
+  const std::ptrdiff_t rank = std::min(std::lround(q * static_cast<double>(count - 1)),
+                                       static_cast<long>(count - 1 - left_out));
   std::nth_element(
       sorted.begin(), sorted.begin() + rank, sorted.begin() + static_cast<std::ptrdiff_t>(count));
   return sorted[static_cast<std::size_t>(rank)];
 }
 
 GstClockTime TrackStats::latency() const {
-  return (quantile(0.99) + GST_MSECOND - 1) / GST_MSECOND * GST_MSECOND;
+  return (quantile(0.99, 1) + GST_MSECOND - 1) / GST_MSECOND * GST_MSECOND;
 }
 
 GstStructure* TrackStats::to_structure() const {

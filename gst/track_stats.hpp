@@ -17,6 +17,9 @@ enum class Skip {
   kFailed,    ///< It could not be read or analysed.
 };
 
+/// Its name in the field "skipped-...".
+[[nodiscard]] const gchar* nick_of(Skip reason);
+
 /// Counts what becomes of the frames of a stream. Not thread-safe: the element's lock guards it.
 class TrackStats {
  public:
@@ -27,9 +30,9 @@ class TrackStats {
   void add_analysed(const std::optional<ellipse::Target>& target, GstClockTime processing_time);
 
   /// What the analysis adds to a live pipeline's latency [ns]: the 99th percentile of the
-  /// processing times, in whole ms from above, so that it seldom changes. 0 before the first frame.
+  /// processing times, but not the longest, for the first frame finds the caches cold; in whole ms
+  /// from above, so that it seldom changes. 0 before the second frame.
   [[nodiscard]] GstClockTime latency() const;
-  [[nodiscard]] guint64 analysed() const { return analysed_; }
 
   /// Counts, and times [ns] over the last kWindow analysed frames; docs/elements.md names the
   /// fields. (transfer full)
@@ -38,7 +41,7 @@ class TrackStats {
  private:
   static constexpr std::size_t kWindow = 1024;
 
-  [[nodiscard]] GstClockTime quantile(double q) const;
+  [[nodiscard]] GstClockTime quantile(double q, std::size_t left_out = 0) const;
 
   guint64 analysed_ = 0;
   std::array<guint64, 5> skipped_{};  // by Skip

@@ -95,7 +95,7 @@ static ellipse::Rect picture_inside(const GstVideoInfo& in, const GstVideoInfo& 
           in.width, in.height, GST_VIDEO_INFO_PAR_N(&in), GST_VIDEO_INFO_PAR_D(&in), &n, &d) &&
       gst_util_fraction_multiply(
           n, d, GST_VIDEO_INFO_PAR_D(&out), GST_VIDEO_INFO_PAR_N(&out), &n, &d);
-  if (!is_known) return {0, 0, width, height};
+  if (!is_known || n <= 0 || d <= 0) return {0, 0, width, height};
   const guint64 least_height = gst_util_uint64_scale_int(static_cast<guint64>(width), d, n);
   if (least_height <= static_cast<guint64>(height)) {
     const gint used = static_cast<gint>(least_height);
@@ -250,7 +250,8 @@ GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
  * @buffer: a buffer
  * @role: the role that is looked for
  *
- * The target of a frame, or the truth. Allocates nothing.
+ * The target of a frame, or the truth: behind several trackers in a row the first one's, whereas
+ * [func@GstEllipse.buffer_iterate_ellipse_meta] gives them all. Allocates nothing.
  *
  * Returns: (transfer none) (nullable): the first ellipse with that role, owned by the buffer;
  *   `NULL` where there is none

@@ -153,13 +153,12 @@ TEST(EllipseTrackFrames, MayBeReadOnly) {
 }
 
 TEST(EllipseTrackFrames, InterlacedOnesAreWarnedOf) {
-  for (const char* mode : {"progressive", "interleaved"}) {
+  for (const char* mode : {"progressive", "interleaved", "mixed", "fields"}) {
     Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));
     BusTap bus(element_of(harness));
     const std::string caps = caps_of("GRAY8", 320, 240) + ",interlace-mode=" + mode;
     gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
-    EXPECT_TRUE(push(harness, support::gray_buffer_of(ring_picture())));
-    EXPECT_EQ(static_cast<bool>(bus.pop(GST_MESSAGE_WARNING)), std::string(mode) == "interleaved");
+    EXPECT_EQ(static_cast<bool>(bus.pop(GST_MESSAGE_WARNING)), std::string(mode) != "progressive");
   }
 }
 

@@ -218,13 +218,40 @@ TEST(EllipseTrackLatency, IsUpstreamsAndWhatWasMeasured) {
   gst_harness_set_upstream_latency(harness.get(), 20 * GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(harness.get()), 20 * GST_MSECOND);
   BusTap bus(element);
-  for (int i = 0; i < 31; ++i) push(harness, gray_buffer_of(ring_picture()));
-  EXPECT_FALSE(bus.pop(GST_MESSAGE_LATENCY));
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_FALSE(bus.pop(GST_MESSAGE_LATENCY)) << "one frame tells nothing";
   push(harness, gray_buffer_of(ring_picture()));
   EXPECT_TRUE(bus.pop(GST_MESSAGE_LATENCY));
   const GstClockTime own = stat(element, "latency");
   EXPECT_GE(own, GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(harness.get()), 20 * GST_MSECOND + own);
+}
+
+// The fewer frames are analysed because they are late, the sooner it has to be told.
+TEST(EllipseTrackLatency, IsToldWhereFramesAreSkipped) {
+  const auto harness = tracker("messages=none interval=1000");
+  GstElement* element = element_of(harness);
+  gst_harness_set_upstream_latency(harness.get(), 0);
+  EXPECT_EQ(gst_harness_query_latency(harness.get()), 0U);
+  BusTap bus(element);
+  push(harness, gray_buffer_of(ring_picture()));
+  g_object_set(element, "interval", 2U, nullptr);
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(stat(element, "analysed"), 2U);
+  push(harness, gray_buffer_of(ring_picture()));
+  EXPECT_EQ(stat(element, "analysed"), 2U);
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_LATENCY));
+}
+
+TEST(TrackStats, LatencyIsNotThatOfTheFirstFrame) {
+  TrackStats stats;
+  stats.add_analysed(std::nullopt, 90 * GST_MSECOND);
+  EXPECT_EQ(stats.latency(), 0U);
+  stats.add_analysed(std::nullopt, 3 * GST_MSECOND);
+  EXPECT_EQ(stats.latency(), 3 * GST_MSECOND);
+  for (int i = 0; i < 500; ++i) stats.add_analysed(std::nullopt, (i % 5) * GST_MSECOND);
+  EXPECT_EQ(stats.latency(), 4 * GST_MSECOND);
 }
 
 TEST(EllipseTrackLatency, IsNoneWhereNothingIsLive) {

@@ -160,6 +160,35 @@ TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
   EXPECT_EQ(pattern, "OOOOOoo.");
 }
 
+// A user hears each refusal; a curve that leaves its range is told of once, until it comes back.
+TEST(EllipseTrackProperties, OfACurveAreRefusedAloudOnce) {
+  const auto harness = tracker("tracking=none");
+  GstElement* element = element_of(harness);
+  BusTap bus(element);
+  for (const double value : {800.0, 900.0}) g_object_set(element, "min-axis", value, nullptr);
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
+  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
+  g_object_set(element, "min-axis", 5.0, nullptr);
+  GstControlSource* source = gst_interpolation_control_source_new();
+  g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
+  gst_object_add_control_binding(
+      GST_OBJECT(element),
+      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "min-axis", source));
+  auto* curve = GST_TIMED_VALUE_CONTROL_SOURCE(source);
+  for (const auto& [at_s, value] : {std::pair(0, 600.0), {1, 800.0}, {2, 600.0}, {3, 800.0}}) {
+    gst_timed_value_control_source_set(curve, static_cast<GstClockTime>(at_s) * GST_SECOND, value);
+  }
+  gst_object_unref(source);
+  int warnings = 0;
+  for (guint64 i = 0; i <= 30; ++i) {
+    auto buffer = gray_buffer_of(ring_picture());
+    GST_BUFFER_PTS(buffer.get()) = 100 * i * GST_MSECOND;
+    push(harness, std::move(buffer));
+    while (bus.pop(GST_MESSAGE_WARNING)) ++warnings;
+  }
+  EXPECT_EQ(warnings, 2);
+}
+
 TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
   for (const char* before : {"min-axis=2 max-axis=3",
                              "max-axis=900 min-axis=800",

@@ -68,6 +68,38 @@ TEST(EllipseTrack, AttachesCandidatesWhereTheyAreAskedFor) {
   }
 }
 
+// GST_DEBUG=ellipsetrack:6
+TEST(EllipseTrack, LogsALineForEachFrame) {
+  GstDebugCategory* category = nullptr;
+  const auto harness = tracker("interval=2");
+  GST_DEBUG_CATEGORY_GET(category, "ellipsetrack");
+  ASSERT_NE(category, nullptr);
+  std::vector<std::string> lines;
+  const GstLogFunction note = [](GstDebugCategory* of,
+                                 GstDebugLevel level,
+                                 const gchar*,
+                                 const gchar*,
+                                 gint,
+                                 GObject*,
+                                 GstDebugMessage* message,
+                                 gpointer to) {
+    const bool is_ours = g_str_equal(gst_debug_category_get_name(of), "ellipsetrack") != FALSE;
+    if (!is_ours || level != GST_LEVEL_LOG) return;
+    static_cast<std::vector<std::string>*>(to)->push_back(gst_debug_message_get(message));
+  };
+  gst_debug_add_log_function(note, &lines, nullptr);
+  gst_debug_category_set_threshold(category, GST_LEVEL_LOG);
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(ring_picture()));
+  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  gst_debug_category_reset_threshold(category);
+  gst_debug_remove_log_function(note);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_TRUE(lines[0].starts_with("detected 1 at ")) << lines[0];
+  EXPECT_EQ(lines[1], "passes without analysis: interval");
+  EXPECT_TRUE(lines[2].starts_with("nothing found, ")) << lines[2];
+}
+
 TEST(EllipseTrack, DetectorCanChangeWhilePlaying) {
   const auto harness = tracker();
   ASSERT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
