@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "core/camera_file.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/core/persistence.hpp>
 #include <sstream>
@@ -17,14 +20,16 @@ namespace ellipse {
 namespace {
 
 constexpr std::size_t kLargestFile = 1 << 20;  // bytes
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr double kLeastFocal = 1.0;  // px: shorter ones are a slip of units
 
 // The keys that different programs use for the same thing.
 using Keys = std::initializer_list<const char*>;
 constexpr Keys kWidthKeys = {"image_width", "image_Width", "width"};
 constexpr Keys kHeightKeys = {"image_height", "image_Height", "height"};
-constexpr Keys kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K"};
+constexpr Keys kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "k"};
 constexpr Keys kDistortionKeys = {
-    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D"};
+    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "d"};
 constexpr Keys kModelKeys = {"distortion_model"};
 constexpr Keys kFisheyeKeys = {"fisheye_model"};
 
@@ -32,6 +37,12 @@ constexpr Keys kFisheyeKeys = {"fisheye_model"};
 class File {
  public:
   explicit File(const std::string& path) : path_(path) {
+    // Whoever opens a FIFO waits for its other end.
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      throw std::invalid_argument(path + ": is not a regular file");
+    }
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw std::invalid_argument(path + ": cannot be read");
     text_.resize(kLargestFile + 1);
@@ -41,6 +52,7 @@ class File {
     if (text_.find('\0') != std::string::npos) {
       throw std::invalid_argument(path + ": is no text");
     }
+    if (text_.rfind(kByteOrderMark, 0) == 0) text_.erase(0, kByteOrderMark.size());
     parse();
   }
 
@@ -68,25 +80,32 @@ class File {
     if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
     // OpenCV reads YAML under its own first line only, which those of ROS have not.
     const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
-    const std::string text = is_bare ? "%YAML:1.0\n---\n" + without_marks() : text_;
+    const std::string text = is_bare ? "%YAML:1.0\n---\n" + as_opencv_reads() : text_;
     const int added = is_bare ? 2 : 0;
     try {
       storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     } catch (const cv::Exception& error) {
       const std::string& told = error.func;  // there OpenCV's parsers say what is wrong
       throw std::invalid_argument(path_ + line_in(told, added) +
-                                  ": is no calibration: " + reason_in(told));
+                                  ": is no calibration: " + reason_in(error));
     }
     if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
+    if (!storage_.root().isMap()) {
+      throw std::invalid_argument(path_ + ": is no calibration: it has no keys");
+    }
   }
 
-  // A YAML file of others may begin with "---": kept as an empty line.
-  [[nodiscard]] std::string without_marks() const {
-    std::string text = text_;
-    for (std::size_t at = text.find("---"); at != std::string::npos; at = text.find("---", at)) {
-      const bool is_line = at == 0 || text[at - 1] == '\n';
-      if (is_line) text.replace(at, 3, "   ");
-      at += 3;
+  // Others' YAML may have "---" of its own: kept as an empty line. And lists whose dashes stand
+  // below the key's first letter, as `ros2 topic echo` prints them: indented.
+  [[nodiscard]] std::string as_opencv_reads() const {
+    std::istringstream lines(text_);
+    std::string text;
+    std::string line;
+    while (std::getline(lines, line)) {
+      if (line.rfind("---", 0) == 0) line.replace(0, 3, "   ");
+      if (line.rfind("- ", 0) == 0) text += "  ";
+      text += line;
+      text += '\n';
     }
     return text;
   }
@@ -100,9 +119,10 @@ class File {
     return line > 0 ? ":" + std::to_string(line) : std::string();
   }
 
-  [[nodiscard]] static std::string reason_in(const std::string& message) {
+  [[nodiscard]] static std::string reason_in(const cv::Exception& error) {
+    const std::string& message = error.func;
     const std::size_t close = message.find("): ");
-    return close == std::string::npos ? message : message.substr(close + 3);
+    return close == std::string::npos ? error.err : message.substr(close + 3);
   }
 
   // Of a key: a word at a line's begin, behind blanks, quotes or a bracket. 0 where it is not.
@@ -169,11 +189,18 @@ void read_matrix(const File& file, Camera& camera) {
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
     file.refuse(key, "is not of the form [fx 0 cx; 0 fy cy; 0 0 1]");
   }
-  if (!(k[0] > 0.0 && k[4] > 0.0)) file.refuse(key, "has a focal length that is not above 0");
+  if (!(k[0] >= kLeastFocal && k[4] >= kLeastFocal)) {
+    file.refuse(key, "has a focal length that is not at least 1 px");
+  }
   camera.fx = k[0];
   camera.fy = k[4];
   camera.cx = k[2];
   camera.cy = k[5];
+  try {
+    camera.validate();
+  } catch (const std::invalid_argument& error) {
+    file.refuse(key, std::string("is out of range: ").append(error.what()));
+  }
 }
 
 LensModel model_of(const File& file) {
@@ -188,6 +215,25 @@ LensModel model_of(const File& file) {
   }
   if (name == "equidistant" || name == "fisheye") return LensModel::kFisheye;
   file.refuse(key, "is none of: plumb_bob, rational_polynomial, equidistant, fisheye, none");
+}
+
+// Whether the lens shows the middle half of the picture, each direction once. Farther out many a
+// calibration's polynomial turns back, where no picture was taken for it.
+bool is_one_to_one(const Camera& camera) {
+  constexpr int kDirections = 16;
+  constexpr int kSteps = 4;
+  const Lens lens(camera);
+  const Eigen::Vector2d corner(camera.width / 2.0, camera.height / 2.0);
+  for (int i = 0; i < kDirections * kSteps; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kDirections;
+    const int step = 1 + i / kDirections;
+    const double radius = 0.5 * corner.norm() * step / kSteps;
+    const Eigen::Vector2d aside(radius * std::cos(angle), radius * std::sin(angle));
+    const auto ideal = lens.ideal_from_picture(corner + aside);
+    const auto there = ideal ? lens.picture_from_ideal(*ideal) : std::nullopt;
+    if (!there || !(there->slope.determinant() > 0.0)) return false;
+  }
+  return true;
 }
 
 void read_distortion(const File& file, Camera& camera) {
@@ -212,6 +258,9 @@ void read_distortion(const File& file, Camera& camera) {
     file.refuse(key, "has a thin prism or a tilted sensor, which are not modelled");
   }
   std::copy_n(k.begin(), std::min(known, k.size()), camera.distortion.begin());
+  if (camera.is_distorted() && !is_one_to_one(camera)) {
+    file.refuse(key, "is of no lens: the picture turns back within the middle half of it");
+  }
 }
 
 }  // namespace
@@ -223,7 +272,6 @@ Camera read_camera(const std::string& path) {
   camera.height = size(file, kHeightKeys);
   read_matrix(file, camera);
   read_distortion(file, camera);
-  camera.validate();
   return camera;
 }
 

@@ -4,6 +4,14 @@
 
 namespace support {
 
+/// A rational lens with a tangential part, 58 degrees wide; pixels that are not quite square.
+inline ellipse::Camera wide() {
+  ellipse::Camera camera = ellipse::Camera::with_hfov(1.012, 640, 360);
+  camera.fy = 1.01 * camera.fx;
+  camera.distortion = {-0.22, 0.05, 0.001, -0.0007, -0.004, 0.01, 0.002, -0.001};
+  return camera;
+}
+
 /// A fisheye of some 115 degrees, not quite in the picture's middle.
 inline ellipse::Camera fisheye() {
   ellipse::Camera camera;
