@@ -6,9 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -17,6 +21,7 @@
 
 namespace {
 
+namespace fs = std::filesystem;
 using landing::Course;
 using landing::Flight;
 using landing::Landing;
@@ -88,13 +93,41 @@ void fly_all(std::vector<Landing>& landings, int jobs) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Before hours of flying, not after them. Devices and pipes are opened when they are written.
+void check_can_be_written(const std::string& option, const fs::path& path, const fs::path& file) {
+  std::error_code ignored;
+  const bool is_new = !fs::exists(file, ignored);
+  if (!is_new && !fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored)) return;
+  if (!std::ofstream(file, std::ios::app)) {
+    throw std::runtime_error(option + " " + path.string() + ": cannot be written");
+  }
+  if (is_new) fs::remove(file, ignored);
+}
+
+void check_outputs(const Options& options) {
+  if (!options.video.empty()) check_can_be_written("--video", options.video, options.video);
+  if (options.report.empty()) return;
+  std::error_code ignored;  // what cannot be written in a folder that is not there
+  fs::create_directories(options.report, ignored);
+  check_can_be_written("--report", options.report, fs::path(options.report) / "report.md");
+}
+
+void make_video(const Flight& flight, const std::string& file) {
+  try {
+    landing::film(flight, file);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("--video " + file + ": " + error.what());
+  }
+}
+
 void run(const Options& options, const std::string& command) {
+  check_outputs(options);
   std::vector<Landing> landings = planned(options);
   fly_all(landings, options.jobs);
   print(std::cout, outcome_table(landings));
   print(std::cout, unseen_table(landings));
   if (!options.report.empty()) write_report(landings, command, options.report);
-  if (!options.video.empty()) landing::film(landings.front().flight, options.video);
+  if (!options.video.empty()) make_video(landings.front().flight, options.video);
 }
 
 }  // namespace

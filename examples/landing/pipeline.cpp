@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "examples/landing/pipeline.hpp"
 
+#include <gst/app/app.h>
+
 #include <stdexcept>
 
 namespace landing {
 namespace {
 
 constexpr GstClockTime kPatience = 60 * GST_SECOND;
+constexpr GstClockTime kPause = 2 * GST_MSECOND;  // between looks at a full queue
+constexpr guint64 kQueued = 4;
 
 [[noreturn]] void raise(GError* error) {
   const std::runtime_error failure(error->message);
   g_error_free(error);
   throw failure;
 }
+
+struct BufferDeleter {
+  void operator()(GstBuffer* buffer) const { gst_buffer_unref(buffer); }
+};
+using BufferHolder = std::unique_ptr<GstBuffer, BufferDeleter>;
 
 }  // namespace
 
@@ -32,21 +41,38 @@ Element Pipeline::element(const char* name) const {
 }
 
 void Pipeline::play() {
-  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  if (gst_element_set_state(pipeline_, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) fail();
+}
+
+// An appsrc that blocks would do so for ever once an element behind it has failed.
+void Pipeline::push(const Element& source, GstBuffer* buffer) {
+  BufferHolder held(buffer);
+  GstAppSrc* queue = GST_APP_SRC(source.get());
+  for (GstClockTime waited = 0; gst_app_src_get_current_level_buffers(queue) >= kQueued;
+       waited += kPause) {
+    if (has_ended(kPause)) throw std::runtime_error("the pipeline has ended");
+    if (waited > kPatience) throw std::runtime_error("the pipeline does not go on");
+  }
+  if (gst_app_src_push_buffer(queue, held.release()) != GST_FLOW_OK) fail();
 }
 
 void Pipeline::await_end() {
+  if (!has_ended(kPatience)) throw std::runtime_error("the pipeline does not end");
+}
+
+bool Pipeline::has_ended(GstClockTime patience) {
   GstBus* bus = gst_element_get_bus(pipeline_);
   GstMessage* message = gst_bus_timed_pop_filtered(
-      bus, kPatience, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+      bus, patience, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
   gst_object_unref(bus);
-  if (message == nullptr) throw std::runtime_error("the pipeline does not end");
+  if (message == nullptr) return false;
   GError* error = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
     gst_message_parse_error(message, &error, nullptr);
   }
   gst_message_unref(message);
   if (error != nullptr) raise(error);
+  return true;
 }
 
 void Pipeline::fail() {

@@ -24,7 +24,12 @@ class Pipeline {
   /// The element that the line gives this name.
   [[nodiscard]] Element element(const char* name) const;
 
+  /// Throws std::runtime_error where an element cannot start.
   void play();
+
+  /// Hands a buffer to an appsrc as soon as few are queued there. Takes the buffer.
+  /// Throws the std::runtime_error of what has stopped the pipeline.
+  void push(const Element& source, GstBuffer* buffer);
 
   /// Waits for the end of the stream. Throws std::runtime_error where it ends otherwise.
   void await_end();
@@ -33,6 +38,8 @@ class Pipeline {
   [[noreturn]] void fail();
 
  private:
+  [[nodiscard]] bool has_ended(GstClockTime patience);
+
   GstElement* pipeline_ = nullptr;
 };
 

@@ -18,11 +18,11 @@ constexpr int kViewHeight = 360;
 
 std::string line_of(const ellipse::Camera& camera, int rate) {
   return evaluate::format(
-      "appsrc name=view format=time block=true max-buffers=4 "
+      "appsrc name=view format=time "
       "caps=video/x-raw,format=GRAY8,width=%d,height=%d,framerate=%d/1 ! videoconvert ! "
       "videoscale ! video/x-raw,format=RGBx,width=%d,height=%d ! "
       "ellipseoverlay overlay=ellipse+centre ! mix.sink_0 "
-      "appsrc name=map format=time block=true max-buffers=4 "
+      "appsrc name=map format=time "
       "caps=video/x-raw,format=RGB,width=%d,height=%d,framerate=%d/1 ! videoconvert ! mix.sink_1 "
       "compositor name=mix sink_1::xpos=%d ! videoconvert ! jpegenc quality=75 ! matroskamux ! "
       "filesink name=file",
@@ -54,10 +54,8 @@ class Film {
     GstBuffer* drawn = gst_buffer_new_memdup(map.data, size);
     GST_BUFFER_PTS(drawn) = GST_BUFFER_PTS(seen);
     GST_BUFFER_DURATION(drawn) = GST_BUFFER_DURATION(seen);
-    const bool is_taken =
-        gst_app_src_push_buffer(GST_APP_SRC(map_.get()), drawn) == GST_FLOW_OK &&
-        gst_app_src_push_buffer(GST_APP_SRC(view_.get()), gst_buffer_ref(seen)) == GST_FLOW_OK;
-    if (!is_taken) pipeline_.fail();
+    pipeline_.push(map_, drawn);
+    pipeline_.push(view_, gst_buffer_ref(seen));
   }
 
   void finish() {

@@ -7,8 +7,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/homography.hpp"
+#include "examples/landing/pipeline.hpp"
 #include "examples/landing/report.hpp"
 
 namespace {
@@ -300,6 +302,25 @@ TEST(Report, CountsLandingsByMethodAndSpeed) {
   EXPECT_EQ(table.rows[0][2], "1");
   EXPECT_EQ(table.rows[0][3], "33.3");
   EXPECT_EQ(table.rows[0].back(), "1");
+}
+
+// No thread waits for a pipeline that cannot go on.
+TEST(LandingPipeline, SaysWhatCannotStart) {
+  landing::Pipeline pipeline("videotestsrc ! filesink location=/no/such/folder/file");
+  EXPECT_THROW(pipeline.play(), std::runtime_error);
+}
+
+TEST(LandingPipeline, SaysWhatHasStoppedItWhileItIsFed) {
+  landing::Pipeline pipeline(
+      "appsrc name=source ! filesink buffer-mode=unbuffered location=/dev/full");
+  const landing::Element source = pipeline.element("source");
+  pipeline.play();
+  const auto feed = [&] {
+    for (int i = 0; i < 100; ++i) {
+      pipeline.push(source, gst_buffer_new_allocate(nullptr, 4096, nullptr));
+    }
+  };
+  EXPECT_THROW(feed(), std::runtime_error);
 }
 
 }  // namespace

@@ -206,6 +206,31 @@ TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
   }
 }
 
+constexpr const char* kShortLanding = "ellipse-landing --runs 1 --speed 0 --width 160 ";
+
+// Where the program would wait for ever it is ended, with status 124.
+Outcome run_bounded(const std::string& arguments) {
+  return programs::run("timeout 120 " + std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" +
+                       arguments);
+}
+
+TEST_F(Programs, LandingSaysBeforeItFliesWhatItCannotWrite) {
+  for (const std::string& output : {"--video " + (folder_ / "no/x.mkv").string(),
+                                    "--video " + folder_.string(),
+                                    std::string("--report /proc/x")}) {
+    const Outcome landing = run_bounded(kShortLanding + output);
+    EXPECT_EQ(landing.status, 1) << landing.text;
+    EXPECT_EQ(landing.text, "ellipse-landing: " + output + ": cannot be written\n");
+  }
+}
+
+TEST_F(Programs, LandingEndsWhereTheDiskIsFull) {
+  const Outcome landing = run_bounded(std::string(kShortLanding) + "--video /dev/full");
+  EXPECT_EQ(landing.status, 1) << landing.text;
+  EXPECT_NE(landing.text.find("ellipse-landing: --video /dev/full: "), std::string::npos)
+      << landing.text;
+}
+
 TEST_F(Programs, ReadMetadataPrintsTargets) {
   const Outcome example = run("02_read_metadata", "");
   EXPECT_EQ(example.status, 0);
