@@ -11,7 +11,8 @@ import { MavLinkProtocolV2, common, minimal } from 'node-mavlink'
 import { landingTarget } from './message.js'
 
 const usage = `usage: landing_target.js [OPTION]...
-  --to HOST:PORT     where the autopilot, or a router before it, listens (127.0.0.1:14550)
+  --to HOST:PORT     where the autopilot, or a router before it, listens (127.0.0.1:14550);
+                     of IPv6 as [::1]:14550
   --system N         MAVLink system id, the vehicle's (1)
   --component N      MAVLink component id (191, an onboard computer)
   --hfov RAD         horizontal field of view: sizes, and angles where ellipsetrack has no camera
@@ -41,7 +42,8 @@ function optionsFrom(args) {
     if (!(value >= least && value <= most)) throw new Error(`--${name} ${values[name]}: not in ${least} to ${most}`)
     return value
   }
-  const [, host, port] = /^(.+):(\d+)$/.exec(values.to) ?? []
+  const [, address, name, port] = /^(?:\[([^\]]+)\]|([^:]+)):(\d+)$/.exec(values.to) ?? []
+  const host = address ?? name
   if (!host) throw new Error(`--to ${values.to}: expected HOST:PORT`)
   return {
     help: values.help,
@@ -58,12 +60,14 @@ function optionsFrom(args) {
 
 /** The link: numbers messages and sends each in a datagram of its own. */
 class Link {
-  #socket = dgram.createSocket('udp4')
+  #socket
   #sequence = 0
+  #unsent = 0
   #protocol
   #to
 
   constructor({ host, port, system, component }) {
+    this.#socket = dgram.createSocket(host.includes(':') ? 'udp6' : 'udp4')
     this.#protocol = new MavLinkProtocolV2(system, component)
     this.#to = [port, host]
   }
@@ -76,9 +80,23 @@ class Link {
     })
   }
 
+  /** A network that is away for a moment ends nothing: the next message is a newer one. */
+  async offer(message) {
+    try {
+      await this.send(message)
+    } catch (error) {
+      if (++this.#unsent === 1) warn(`${error.message}: going on`)
+    }
+  }
+
   close() {
     this.#socket.close()
+    if (this.#unsent > 0) warn(`messages not sent: ${this.#unsent}`)
   }
+}
+
+function warn(text) {
+  process.stderr.write(`landing_target.js: ${text}\n`)
 }
 
 function heartbeat() {
@@ -94,9 +112,10 @@ async function main() {
   const options = optionsFrom(process.argv.slice(2))
   if (options.help) return void process.stdout.write(usage)
   const link = new Link(options)
-  await link.send(heartbeat())
-  const beat = setInterval(() => void link.send(heartbeat()).catch(() => {}), 1000)
+  let beat
   try {
+    await link.send(heartbeat()) // one that cannot be sent says that --to is wrong
+    beat = setInterval(() => void link.offer(heartbeat()), 1000)
     let number = 0
     for await (const text of readline.createInterface({ input: process.stdin })) {
       ++number
@@ -106,7 +125,7 @@ async function main() {
       } catch (error) {
         throw new Error(`line ${number}: ${error.message}`)
       }
-      if (message) await link.send(message)
+      if (message) await link.offer(message)
     }
   } finally {
     clearInterval(beat)
@@ -115,6 +134,6 @@ async function main() {
 }
 
 main().catch((error) => {
-  process.stderr.write(`landing_target.js: ${error.message}\n`)
+  warn(error.message)
   process.exitCode = 1
 })

@@ -5,6 +5,9 @@ import assert from 'node:assert/strict'
 import { spawn } from 'node:child_process'
 import dgram from 'node:dgram'
 import { once } from 'node:events'
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs'
+import { networkInterfaces, tmpdir } from 'node:os'
+import { join } from 'node:path'
 import { PassThrough } from 'node:stream'
 import { before, test } from 'node:test'
 import { fileURLToPath } from 'node:url'
@@ -32,37 +35,45 @@ async function linesOf(properties) {
   return text.trimEnd().split('\n')
 }
 
-/** What the program sends for these lines, decoded. */
-async function sentFor(lines, ...options) {
-  const socket = dgram.createSocket('udp4')
-  socket.bind(0, '127.0.0.1')
+/** Runs the program over these lines to its end: its status, and what it has to say. */
+async function run(lines, options, nodeOptions = []) {
+  const child = spawn(process.execPath, [...nodeOptions, program, ...options], {
+    stdio: ['pipe', 'inherit', 'pipe'],
+    timeout: 60000, // where it would not end
+  })
+  child.stdin.on('error', () => {}) // it may give up before it has read everything
+  child.stdin.end(lines.map((line) => line + '\n').join(''))
+  const [complaint, [status]] = await Promise.all([textOf(child.stderr), once(child, 'close')])
+  return { complaint, status }
+}
+
+/** What the program sends to an address of this machine for these lines, decoded. */
+async function sentTo(address, lines, options, nodeOptions) {
+  const isIpv6 = address.includes(':')
+  const socket = dgram.createSocket(isIpv6 ? 'udp6' : 'udp4')
+  socket.bind(0, address)
   await once(socket, 'listening')
+  const { port } = socket.address()
   const stream = new PassThrough()
+  const parser = new MavLinkPacketParser()
   const packets = []
-  stream
-    .pipe(new MavLinkPacketSplitter())
-    .pipe(new MavLinkPacketParser())
-    .on('data', (packet) => packets.push(packet))
-  socket.on('message', (datagram) => stream.write(datagram))
-  const sender = spawn(
-    process.execPath,
-    [program, '--to', `127.0.0.1:${socket.address().port}`, ...options],
-    { stdio: ['pipe', 'inherit', 'pipe'] },
-  )
-  sender.stdin.on('error', () => {}) // it may give up before it has read everything
-  sender.stdin.end(lines.map((line) => line + '\n').join(''))
-  const [complaint, [status]] = await Promise.all([textOf(sender.stderr), once(sender, 'close')])
-  for (let quiet = 0, seen = -1; quiet < 5; quiet = seen === packets.length ? quiet + 1 : 0) {
-    seen = packets.length
-    await new Promise((resolve) => setTimeout(resolve, 20))
-  }
+  stream.pipe(new MavLinkPacketSplitter()).pipe(parser)
+  parser.on('data', (packet) => packets.push(packet))
+  const marker = 'all that was sent has arrived' // on the loopback datagrams keep their order
+  socket.on('message', (datagram) => (String(datagram) === marker ? stream.end() : stream.write(datagram)))
+  const to = isIpv6 ? `[${address}]:${port}` : `${address}:${port}`
+  const ended = await run(lines, ['--to', to, ...options], nodeOptions)
+  socket.send(marker, port, address)
+  await once(parser, 'end')
   socket.close()
   const messages = packets.map((packet) => ({
     header: packet.header,
     data: packet.protocol.data(packet.payload, registry[packet.header.msgid]),
   }))
-  return { complaint, status, messages, targets: messages.filter((m) => m.data instanceof common.LandingTarget) }
+  return { ...ended, messages, targets: messages.filter((m) => m.data instanceof common.LandingTarget) }
 }
+
+const sentFor = (lines, ...options) => sentTo('127.0.0.1', lines, options)
 
 const truthOf = (line) => line.targets.find((one) => one.role === 'truth')
 const targetOf = (line) => line.targets.find((one) => one.role === 'target')
@@ -193,4 +204,42 @@ test('a line that is none, or tells no direction, is named', async () => {
   assert.match(blind.complaint, /line 1: no bearing: give ellipsetrack a camera, or --hfov/)
   const port = await sentFor([], '--to', 'nowhere')
   assert.match(port.complaint, /--to nowhere: expected HOST:PORT/)
+})
+
+test('an address that nothing can be sent to ends it', async () => {
+  for (const to of ['no.such.host.invalid:14550', '255.255.255.255:14550', '127.0.0.1:99999']) {
+    const { status, complaint } = await run(withPose, ['--to', to])
+    assert.equal(status, 1, to)
+    assert.match(complaint, /^landing_target\.js: .+\n$/, to)
+  }
+})
+
+const hasIpv6 = Object.values(networkInterfaces()).some((all) => all.some((one) => one.address === '::1'))
+test('an address of IPv6', { skip: !hasIpv6 && 'this machine has no ::1' }, async () => {
+  const { status, targets } = await sentTo('::1', withPose, [])
+  assert.equal(status, 0)
+  assert.equal(targets.length, frames)
+})
+
+test('a network that is away for a moment ends nothing', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'landing-target-'))
+  const preload = join(folder, 'preload.cjs')
+  writeFileSync(
+    preload,
+    `const { Socket } = require('node:dgram')
+     const send = Socket.prototype.send
+     let number = 0
+     Socket.prototype.send = function (packet, port, host, done) {
+       const isAway = ++number > 10 && number <= 15
+       return isAway ? done(new Error('send ENETUNREACH')) : send.call(this, packet, port, host, done)
+     }`,
+  )
+  const { status, complaint, messages } = await sentTo('127.0.0.1', withPose, [], ['--require', preload])
+  rmSync(folder, { recursive: true })
+  assert.equal(status, 0)
+  assert.equal(
+    complaint,
+    'landing_target.js: send ENETUNREACH: going on\nlanding_target.js: messages not sent: 5\n',
+  )
+  assert.ok(messages.length >= 1 + frames - 5) // and heartbeats, by the second
 })
