@@ -2,6 +2,7 @@
 #include <gst/controller/controller.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -204,6 +205,32 @@ TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
     EXPECT_EQ(value_of<int>(element, "tracking"), 1) << before;
     EXPECT_FALSE(bus.pop(GST_MESSAGE_WARNING)) << before;
   }
+}
+
+// Of what finds the target nothing stays as it was.
+TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
+  const auto harness = tracker(
+      "max-target-size=300 min-target-size=200 roi-expansion=5 refine=photometric ring-ratio=0.5 "
+      "edge-high=40 edge-low=30 interval=3 max-axis-ratio=2 min-contour-size=9 "
+      "track-contour-overlap=0.1 track-ellipse-overlap=0.1 detect-ellipse-overlap=0.1");
+  GstElement* element = element_of(harness);
+  ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Keipour 2021"));
+  const std::map<const char*, double> expected = {{"min-target-size", 40.0},
+                                                  {"max-target-size", 120.0},
+                                                  {"roi-expansion", 2.0},
+                                                  {"ring-ratio", 0.0},
+                                                  {"edge-low", 0.0},
+                                                  {"edge-high", 0.0},
+                                                  {"max-axis-ratio", 5.0},
+                                                  {"track-contour-overlap", 0.7},
+                                                  {"track-ellipse-overlap", 0.3},
+                                                  {"detect-ellipse-overlap", 0.95}};
+  for (const auto& [name, value] : expected)
+    EXPECT_EQ(value_of<double>(element, name), value) << name;
+  EXPECT_EQ(value_of<int>(element, "detector"), 0);
+  EXPECT_EQ(value_of<int>(element, "refine"), 0);
+  EXPECT_EQ(value_of<guint>(element, "interval"), 1U);
+  EXPECT_EQ(value_of<guint>(element, "min-contour-size"), 50U);
 }
 
 TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
