@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace evaluate {
 namespace {
 
@@ -17,17 +19,11 @@ namespace fs = std::filesystem;
 
 class CommandPeer : public testing::Test {
  protected:
-  void SetUp() override {
-    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    script_ = fs::temp_directory_path() / ("ellipse-peer-" + std::string(test->name()) + ".sh");
-  }
-  void TearDown() override { fs::remove(script_); }
-
   std::map<std::string, PeerAnswer> run(const std::string& text, std::vector<fs::path> images) {
     std::ofstream(script_) << text;
     return run_command_peer(command(), images);
   }
-  [[nodiscard]] std::string command() const { return "/bin/sh '" + script_.string() + "' x"; }
+  [[nodiscard]] std::string command() const { return "/bin/sh '" + script_ + "' x"; }
 
   // What it says where the script's answer is no good; it names the command.
   std::string error(const std::string& text) {
@@ -45,7 +41,9 @@ class CommandPeer : public testing::Test {
     EXPECT_NE(what.find(part), std::string::npos) << what;
   }
 
-  fs::path script_;
+ private:
+  const support::TemporaryFolder folder_;
+  const std::string script_ = folder_.file("peer.sh");
 };
 
 const std::string kAnswerEach =

@@ -26,6 +26,7 @@
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace evaluate {
 namespace {
@@ -269,8 +270,9 @@ TEST(Scenes, KeepTheTruthOfAPadThatIsLargerThanThePicture) {
 
 TEST(PictureReader, NamesWhatItCannotRead) {
   gst_init(nullptr, nullptr);
-  const fs::path bad = fs::temp_directory_path() / "ellipse-bad.jpg";
-  const fs::path good = fs::temp_directory_path() / "ellipse-good.jpg";
+  const support::TemporaryFolder folder;
+  const fs::path bad = folder.file("bad.jpg");
+  const fs::path good = folder.file("good.jpg");
   std::ofstream(bad) << "no picture";
   cv::imwrite(good.string(), cv::Mat(32, 48, CV_8U, cv::Scalar(77)));
   PictureReader reader;
@@ -282,16 +284,13 @@ TEST(PictureReader, NamesWhatItCannotRead) {
       EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
     }
   }
-  const std::string cut = (fs::temp_directory_path() / "ellipse-cut.jpg").string();
-  fs::copy_file(good, cut, fs::copy_options::overwrite_existing);
+  const std::string cut = folder.file("cut.jpg");
+  fs::copy_file(good, cut);
   fs::resize_file(cut, fs::file_size(good) * 2 / 3);
   EXPECT_THROW((void)reader.read(cut), std::runtime_error);
-  fs::remove(cut);
   const cv::Mat picture = reader.read(good);  // also after an error
   EXPECT_EQ(picture.cols, 48);
   EXPECT_NEAR(picture.at<std::uint8_t>(5, 5), 77, 1);
-  fs::remove(bad);
-  fs::remove(good);
 }
 
 }  // namespace

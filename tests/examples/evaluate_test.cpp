@@ -24,6 +24,7 @@
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace evaluate {
 namespace {
@@ -215,7 +216,8 @@ TEST_F(HandMade, TablesShowTheCountsAndTimes) {
 }
 
 TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
-  const fs::path folder = fs::temp_directory_path() / "ellipse-report-test";
+  const support::TemporaryFolder temporary;
+  const fs::path folder = temporary.file("report");
   const Evaluation evaluation = run(Rule::kIou, 5);
   write_report(evaluation, "the <command>", {"a & b is missing"}, folder);
   std::ifstream in(folder / "index.html");
@@ -230,7 +232,6 @@ TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // nothing is fetched
-  fs::remove_all(folder);
 }
 
 TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {

@@ -33,12 +33,15 @@ TEST(Valgrind, DISABLED_LeavesABlock) {
 }
 
 TEST(Valgrind, DISABLED_ShortPipelines) {
+  constexpr GstClockTime kUnderValgrind = 300 * GST_SECOND;
   for (const char* settings : {"overlay=ellipse+axes+centre+roi+label candidates=true",
                                "detector=contours tracking=redetect"}) {
     EXPECT_EQ(support::run_pipeline(
                   "ellipsetestsrc num-buffers=8 ! video/x-raw,format=I420,width=160,height=120 ! "
                   "ellipsetrack " +
-                  std::string(settings) + " ! ellipseoverlay ! ellipsejson ! fakesink"),
+                      std::string(settings) + " ! ellipseoverlay ! ellipsejson ! fakesink",
+                  {},
+                  kUnderValgrind),
               "");
   }
 }

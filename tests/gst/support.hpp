@@ -16,6 +16,7 @@
 
 #include "gst/ellipse/gstellipsemeta.h"
 #include "tests/support/picture.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace support {
 
@@ -29,6 +30,9 @@ struct Unref {
 };
 template <class T>
 using Owned = std::unique_ptr<T, Unref>;
+
+/// With a pipeline that should end by itself.
+inline constexpr GstClockTime kPatience = 60 * GST_SECOND;
 
 /// The formats of the pads of ellipsetrack and ellipseoverlay: luma in a plane of its own, then
 /// packed YUV and RGB.
@@ -202,10 +206,10 @@ class Pipeline {
     gst_object_unref(bus);
   }
   /// @return The error's text, empty where it came to EOS.
-  [[nodiscard]] std::string wait_for_end() {
+  [[nodiscard]] std::string wait_for_end(GstClockTime patience = kPatience) {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     const Owned<GstMessage> message(gst_bus_timed_pop_filtered(
-        bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+        bus, patience, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     gst_object_unref(bus);
     if (!message) return "timed out";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
@@ -227,12 +231,13 @@ class Pipeline {
 
 /// Runs a pipeline until EOS or an error. @return the error's text, empty where it came to EOS.
 inline std::string run_pipeline(const std::string& description,
-                                const std::function<void(GstElement*)>& prepare = {}) {
+                                const std::function<void(GstElement*)>& prepare = {},
+                                GstClockTime patience = kPatience) {
   Pipeline pipeline(description);
   if (!pipeline.failure().empty()) return pipeline.failure();
   if (prepare) prepare(pipeline.get());
   pipeline.play();
-  return pipeline.wait_for_end();
+  return pipeline.wait_for_end(patience);
 }
 
 /// All of a file; empty where there is none.
@@ -261,26 +266,5 @@ inline JsonObject* object_of(const Owned<JsonParser>& line) {
   JsonNode* root = json_parser_get_root(line.get());
   return root != nullptr ? json_node_get_object(root) : nullptr;
 }
-
-/// A file name in a folder of its own, gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    gchar* path = g_dir_make_tmp("gst-ellipse-XXXXXX", nullptr);
-    path_ = path;
-    g_free(path);
-  }
-  ~TemporaryFolder() {
-    const std::string command = "rm -rf '" + path_ + "'";
-    if (std::system(command.c_str()) != 0) std::perror("rm");
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace support
