@@ -15,6 +15,7 @@
 
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "tests/examples/terminal.hpp"
 
 namespace {
 
@@ -112,16 +113,18 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
   EXPECT_NE(outcome.text.find("frame0002.png: is no picture"), std::string::npos) << outcome.text;
 }
 
+// CSRT takes its time, so that the program is not at its end before the key is pressed.
 TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
-  // The control key's signal, to the program alone.
-  const std::string evaluate = std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate";
-  const std::string text = (folder_ / "text").string();
-  const std::string json = (folder_ / "json").string();
-  const std::string command = "timeout --foreground --signal=INT 2 " + evaluate +
-                              " --methods contours+none --json " + json + " > " + text + " 2>&1";
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 124);  // as `timeout` calls it
-  std::ifstream in(text);
-  const std::string shown((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const fs::path json = folder_ / "json";
+  programs::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
+                               "--methods",
+                               "contours+none,csrt",
+                               "--json",
+                               json.string()});
+  ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frames
+  terminal.type('\x03');
+  EXPECT_EQ(terminal.wait_for_end(), 130);
+  const std::string& shown = terminal.text();
   EXPECT_NE(shown.find("Interrupted: the figures are of"), std::string::npos) << shown;
   EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
   EXPECT_GT(fs::file_size(json), 200U);
