@@ -72,13 +72,15 @@ std::vector<Line> lines_of(const std::string& text) {
   return lines;
 }
 
+using Jobs = std::vector<std::pair<const Recipe*, std::unique_ptr<ShellJob>>>;
+
 class Commands : public testing::TestWithParam<std::pair<const Document*, const Recipe*>> {
  protected:
   static void SetUpTestSuite() {
     work_ = std::make_unique<support::TemporaryFolder>();
     for (const char* port : {"1883", "5000", "5005", "8554"}) {
-      const auto type = *port == '5' ? G_SOCKET_TYPE_DATAGRAM : G_SOCKET_TYPE_STREAM;
-      ports_[port] = support::Socket(type).bind();
+      held_.push_back(std::make_unique<support::OwnPort>());
+      ports_[port] = held_.back()->number();
     }
     for (const auto& [name, program] : cookbook().files) {
       std::ofstream(work_->file(name)) << in_the_tests(program);
@@ -92,7 +94,10 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     ShellJob job(cookbook().recipes.front().text, work_->file(""), "work");
     ASSERT_EQ(job.wait_for_end(), 0) << job.errors();
   }
-  static void TearDownTestSuite() { work_.reset(); }
+  static void TearDownTestSuite() {
+    work_.reset();
+    held_.clear();
+  }
 
   // Nothing of an earlier recipe but what it may work with.
   Commands() {
@@ -235,7 +240,27 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     }
   }
 
+  // Until what is on its way has arrived: nothing waits in a socket, and for a second nothing more
+  // is written. At most a minute.
+  static void wait_until_received(const Jobs& jobs) {
+    std::size_t written = 0;
+    for (int i = 0, quiet = 0; i < 1200 && quiet < 20; ++i) {
+      g_usleep(50000);
+      std::size_t now = 0;
+      bool is_read = true;
+      for (const auto& [recipe, job] : jobs) {
+        now += job->output().size();
+        for (const std::string& port : recipes::ports_of(*recipe, document())) {
+          is_read = is_read && support::is_all_read(ports_.at(port));
+        }
+      }
+      quiet = is_read && now == written ? quiet + 1 : 0;
+      written = now;
+    }
+  }
+
   inline static std::unique_ptr<support::TemporaryFolder> work_;
+  inline static std::vector<std::unique_ptr<support::OwnPort>> held_;
   inline static std::map<std::string, int> ports_;
   const support::TemporaryFolder folder_;
 };
@@ -253,7 +278,7 @@ TEST_P(Commands, LeaveWhatTheyPromise) {
     ports_["1883"] = std::stoi(broker->port());
     ASSERT_TRUE(broker->subscribe());
   }
-  std::vector<std::pair<const Recipe*, std::unique_ptr<ShellJob>>> others;
+  Jobs others;
   for (const Recipe& other : document().recipes) {
     if (!other.waits_for_ctrl_c || !share_a_port(other, recipe(), document())) continue;
     const std::string log = "other" + std::to_string(others.size());
@@ -264,7 +289,7 @@ TEST_P(Commands, LeaveWhatTheyPromise) {
   ShellJob job(in_the_tests(recipe().text), file(""), "job");
   EXPECT_EQ(job.wait_for_end(), 0) << recipe().text << job.errors();
   std::size_t results = check(recipe(), job);
-  if (!others.empty()) g_usleep(1000000);  // what is on its way arrives
+  if (!others.empty()) wait_until_received(others);
   for (const auto& [other, its_job] : others) {
     its_job->interrupt();
     EXPECT_TRUE(its_job->ends()) << other->text << its_job->errors();

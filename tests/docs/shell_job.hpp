@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/gst/support.hpp"
 
@@ -63,26 +65,56 @@ class ShellJob {
   bool is_over_ = false;
 };
 
-/// Whether somebody listens at a port of this machine, or is connected to it.
-inline bool is_port_open(int port, bool is_connected) {
-  gchar* hexadecimal = g_strdup_printf(":%04X", static_cast<guint>(port));
-  const std::string end = hexadecimal;
-  g_free(hexadecimal);
+/// A socket of this machine, as the kernel's tables tell of it.
+struct SocketState {
+  std::string here;    ///< Address and port, in hexadecimal.
+  std::string there;   ///< Of the other end.
+  std::string state;   ///< 01: connected; 0A: listens; 07: open, of UDP.
+  std::string queues;  ///< Bytes that wait to be sent, and to be read.
+};
+
+inline std::vector<SocketState> all_sockets() {
+  std::vector<SocketState> all;
   for (const char* table : {"udp", "udp6", "tcp", "tcp6"}) {
     std::ifstream in(std::string("/proc/net/") + table);
-    std::string number;
-    std::string here;
-    std::string there;
-    std::string state;
     std::string rest;
-    while (in >> number >> here >> there >> state && std::getline(in, rest)) {
-      if (is_connected ? there.ends_with(end) && state == "01"
-                       : here.ends_with(end) && (state == "0A" || state == "07")) {
-        return true;
-      }
+    std::getline(in, rest);  // what the columns are
+    std::string number;
+    SocketState one;
+    while (in >> number >> one.here >> one.there >> one.state >> one.queues &&
+           std::getline(in, rest)) {
+      all.push_back(one);
     }
   }
-  return false;
+  return all;
+}
+
+/// How the tables write a port, behind its address.
+inline std::string port_as_shown(int port) {
+  gchar* hexadecimal = g_strdup_printf(":%04X", static_cast<guint>(port));
+  const std::string text = hexadecimal;
+  g_free(hexadecimal);
+  return text;
+}
+
+/// Whether somebody listens at a port of this machine, or is connected to it.
+inline bool is_port_open(int port, bool is_connected) {
+  const std::string end = port_as_shown(port);
+  const std::vector<SocketState> all = all_sockets();
+  return std::any_of(all.begin(), all.end(), [&](const SocketState& one) {
+    return is_connected ? one.there.ends_with(end) && one.state == "01"
+                        : one.here.ends_with(end) && (one.state == "0A" || one.state == "07");
+  });
+}
+
+/// Whether nothing is on its way from or to a port of this machine.
+inline bool is_all_read(int port) {
+  const std::string end = port_as_shown(port);
+  const std::vector<SocketState> all = all_sockets();
+  return std::all_of(all.begin(), all.end(), [&](const SocketState& one) {
+    const bool is_of_port = one.here.ends_with(end) || one.there.ends_with(end);
+    return !is_of_port || one.queues == "00000000:00000000";
+  });
 }
 
 }  // namespace support

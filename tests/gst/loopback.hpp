@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "tests/gst/own_port.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/support/child_process.hpp"
 
@@ -147,8 +148,7 @@ inline std::pair<std::string, bool> output_of(const std::string& command) {
 class Broker {
  public:
   explicit Broker(const std::string& mosquitto) {
-    port_ = std::to_string(Socket(G_SOCKET_TYPE_STREAM).bind());
-    process_ = start_child({mosquitto, "-p", port_},
+    process_ = start_child({mosquitto, "-p", port()},
                            static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDOUT_SILENCE |
                                                          G_SUBPROCESS_FLAGS_STDERR_SILENCE));
   }
@@ -160,9 +160,9 @@ class Broker {
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
-  [[nodiscard]] const std::string& port() const { return port_; }
+  [[nodiscard]] std::string port() const { return std::to_string(port_.number()); }
   [[nodiscard]] std::string address() const {
-    return " -h 127.0.0.1 -p " + port_ + " -t pad -q 1 ";
+    return " -h 127.0.0.1 -p " + port() + " -t pad -q 1 ";
   }
   /// The broker keeps for this reader what comes from here on.
   [[nodiscard]] bool subscribe() const {
@@ -180,7 +180,7 @@ class Broker {
  private:
   static constexpr char kReader[] = "-i reader -c ";
 
-  std::string port_;
+  const OwnPort port_;
   GSubprocess* process_;
 };
 

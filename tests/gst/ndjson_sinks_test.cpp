@@ -9,9 +9,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/gst/loopback.hpp"
 #include "tests/gst/support.hpp"
@@ -167,6 +170,23 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
   EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(fileno(publisher))), "");
   EXPECT_EQ(pclose(publisher), 0);
   expect_frames(broker.read(kFrames), 0, kFrames);
+}
+
+// Of so many numbers some would meet by chance.
+TEST(OwnPort, IsNobodyElses) {
+  std::set<int> numbers;
+  std::vector<std::unique_ptr<support::OwnPort>> ports;
+  for (int i = 0; i < 500; ++i) {
+    ports.push_back(std::make_unique<support::OwnPort>());
+    EXPECT_TRUE(numbers.insert(ports.back()->number()).second);
+  }
+}
+
+TEST(OwnPort, IsNoneThatSomebodyHas) {
+  for (const GSocketType type : {G_SOCKET_TYPE_STREAM, G_SOCKET_TYPE_DATAGRAM}) {
+    Socket socket(type);
+    EXPECT_FALSE(support::is_free(socket.bind()));
+  }
 }
 
 // German, whose numbers have a comma; made for this test where the system does not have it.
