@@ -243,7 +243,8 @@ TEST(Stress, StartsAndEndsAThousandTimes) {
     gst_element_set_state(pipeline.get(), i % 2 == 0 ? GST_STATE_NULL : GST_STATE_READY);
     if (i == 10) files = open_files();
   }
-  EXPECT_EQ(open_files(), files);
+  // One left open at each start would be a thousand; GLib's own threads open some at any time.
+  EXPECT_LE(open_files(), files + 4);
 }
 
 TEST(Stress, EightTrackersInOneProcessDoNotDisturbEachOther) {
