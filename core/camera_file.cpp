@@ -78,6 +78,9 @@ class File {
   void parse() {
     const std::size_t first = text_.find_first_not_of(" \t\r\n");
     if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
+    if (is_cut_off(text_[first])) {
+      throw std::invalid_argument(path_ + ": is no calibration: it ends too early");
+    }
     // OpenCV reads YAML under its own first line only, which those of ROS have not.
     const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
     const std::string text = is_bare ? "%YAML:1.0\n---\n" + as_opencv_reads() : text_;
@@ -88,11 +91,21 @@ class File {
       const std::string& told = error.func;  // there OpenCV's parsers say what is wrong
       throw std::invalid_argument(path_ + line_in(told, added) +
                                   ": is no calibration: " + reason_in(error));
+    } catch (const std::exception&) {  // std::length_error, where a key has no letters
+      throw std::invalid_argument(path_ + ": is no calibration");
     }
     if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
     if (!storage_.root().isMap()) {
       throw std::invalid_argument(path_ + ": is no calibration: it has no keys");
     }
+  }
+
+  // OpenCV's parsers of XML and JSON may read beyond the end of what does not end as it should.
+  [[nodiscard]] bool is_cut_off(char first) const {
+    if (first != '<' && first != '{') return false;
+    const std::string_view end = first == '<' ? "</opencv_storage>" : "}";
+    const std::string_view text(text_.data(), text_.find_last_not_of(" \t\r\n") + 1);
+    return !text.ends_with(end);
   }
 
   // Others' YAML may have "---" of its own: kept as an empty line. And lists whose dashes stand

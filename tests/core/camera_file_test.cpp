@@ -235,6 +235,18 @@ TEST_F(CameraFile, RefusesAFileWithoutKeys) {
   EXPECT_EQ(refusal("b.yaml", "- 1\n- 2\n"), "b.yaml: is no calibration: it has no keys");
 }
 
+TEST_F(CameraFile, RefusesAKeyWithoutLetters) {
+  EXPECT_EQ(refusal("a.yaml", "header:\n  sec: 17\n  :\n"), "a.yaml: is no calibration");
+}
+
+// OpenCV's parser would read beyond it.
+TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
+  for (const char* text : {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=",
+                           "{\"camera_matrix\": [1, 2"}) {
+    EXPECT_EQ(refusal("a", text), "a: is no calibration: it ends too early");
+  }
+}
+
 // A broken line of YAML is told by its number.
 TEST_F(CameraFile, NamesTheLineOfBrokenYaml) {
   const std::string message = refusal("broken.yaml", with("data: [ 430.5", "data: [ 430.5 }"));
