@@ -48,7 +48,13 @@ std::string cookie_of(SoupServerMessage* message) {
   return cookies.substr(begin, cookies.find(';', begin) - begin);
 }
 
+// libsoup reads a body to its end, whatever was answered, and would keep all of it.
+void forget_body(SoupServerMessage* message) {
+  soup_message_body_set_accumulate(soup_server_message_get_request_body(message), FALSE);
+}
+
 bool refuse(SoupServerMessage* message, int status, const std::string& why) {
+  forget_body(message);
   answer(message, error_reply(status, why));
   return true;
 }
@@ -110,6 +116,7 @@ bool HttpGate::take_token_from_link(SoupServerMessage* message, const std::strin
   if (!given.starts_with(kStart) || !is_same_secret(given.substr(kStart.size()), token_)) {
     return false;
   }
+  forget_body(message);
   soup_message_headers_replace(
       soup_server_message_get_response_headers(message),
       "Set-Cookie",

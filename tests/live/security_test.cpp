@@ -7,11 +7,8 @@
 #include <net/if.h>
 
 #include <array>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "tests/gst/loopback.hpp"
 #include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
 
@@ -20,7 +17,6 @@ namespace {
 using support::Answer;
 using support::Client;
 using support::LiveProgram;
-using support::Socket;
 using support::SocketClient;
 using support::wait_until;
 
@@ -194,48 +190,6 @@ TEST(LiveSecurity, TheTokenDoesNotLetOtherSitesPagesIn) {
   EXPECT_TRUE(SocketClient(url, "ws/meta", own, token).is_open());
   EXPECT_FALSE(SocketClient(url, "ws/meta", "http://evil.example", token).is_open());
   EXPECT_FALSE(SocketClient(url, "ws/video", "http://evil.example", token).is_open());
-}
-
-TEST(LiveSecurity, WhatIsTooLargeIsRefused) {
-  const LiveProgram program({});
-  const Client client(program.url());
-  EXPECT_EQ(client.put("api/properties", std::string(70'000, ' ')).status, 413U);
-  EXPECT_EQ(client.get("api/" + std::string(2000, 'a')).status, 414U);
-  EXPECT_EQ(client.ask("GET", "api/target", "", {{"X-Large", std::string(20'000, 'a')}}).status,
-            431U);
-  SocketClient video(program.url(), "ws/video");
-  ASSERT_NE(video.next(), "");
-  video.send(std::string(5000, ' '));
-  EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
-  SocketClient talker(program.url(), "ws/meta");
-  for (int i = 0; i < 2000 && talker.is_open(); ++i) talker.send("{}");
-  EXPECT_TRUE(wait_until([&] { return !talker.is_open(); }));
-  EXPECT_EQ(client.get("api/target").status, 200U);
-}
-
-TEST(LiveSecurity, WhoAsksTooOftenHasToWait) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a sanitized program answers too slowly to be asked too often";
-#endif
-  const LiveProgram program({});
-  const Client client(program.url());
-  bool is_stopped = false;
-  for (int i = 0; i < 3000 && !is_stopped; ++i) is_stopped = client.get("api/target").status == 429;
-  EXPECT_TRUE(is_stopped);
-  EXPECT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }));
-}
-
-TEST(LiveSecurity, ConnectionsAreCounted) {
-  const LiveProgram program({});
-  std::vector<std::unique_ptr<Socket>> idle;
-  for (int i = 0; i < 200; ++i) {
-    idle.push_back(std::make_unique<Socket>(G_SOCKET_TYPE_STREAM));
-    idle.back()->connect(program.port());
-  }
-  idle.clear();
-  const Client client(program.url());
-  EXPECT_TRUE(wait_until([&] { return client.get("metrics").status == 200; }));
-  EXPECT_NE(client.get("metrics").body.find("ellipse_requests_refused_total"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// What a client may not take from others: memory, connections, time.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/live/live_clients.hpp"
+#include "tests/live/live_program.hpp"
+#include "tests/live/raw_client.hpp"
+
+namespace {
+
+using support::Answer;
+using support::Client;
+using support::LiveProgram;
+using support::RawClient;
+using support::SocketClient;
+using support::wait_until;
+
+TEST(LiveLimits, WhatIsTooLargeIsRefused) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  EXPECT_EQ(client.put("api/properties", std::string(70'000, ' ')).status, 413U);
+  EXPECT_EQ(client.get("api/" + std::string(2000, 'a')).status, 414U);
+  EXPECT_EQ(client.ask("GET", "api/target", "", {{"X-Large", std::string(20'000, 'a')}}).status,
+            431U);
+  SocketClient video(program.url(), "ws/video");
+  ASSERT_NE(video.next(), "");
+  video.send(std::string(5000, ' '));
+  EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
+  SocketClient talker(program.url(), "ws/meta");
+  for (int i = 0; i < 2000 && talker.is_open(); ++i) talker.send("{}");
+  EXPECT_TRUE(wait_until([&] { return !talker.is_open(); }));
+  EXPECT_EQ(client.get("api/target").status, 200U);
+}
+
+// The most memory that a program has had until now [KiB].
+int peak_memory_kib(const LiveProgram& program) {
+  std::ifstream status("/proc/" + program.id() + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stoi(line.substr(6));
+  }
+  return 0;
+}
+
+// Sends a body of 50 MB, whether it is wanted or not. @return What was answered.
+std::string send_body(const LiveProgram& program, bool is_chunked, const std::string& path) {
+  constexpr int kPieces = 800;
+  const std::string piece(65536, 'a');
+  const RawClient client(program.port());
+  std::string head = "PUT ";
+  head += path + " HTTP/1.1\r\nHost: localhost\r\n";
+  head += is_chunked ? "Transfer-Encoding: chunked\r\n\r\n"
+                     : "Content-Length: " + std::to_string(kPieces * piece.size()) + "\r\n\r\n";
+  client.send(head);
+  for (int i = 0; i < kPieces; ++i) {
+    if (!client.send(is_chunked ? "10000\r\n" + piece + "\r\n" : piece)) break;
+  }
+  if (is_chunked) client.send("0\r\n\r\n");
+  return client.receive();
+}
+
+TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer has a memory of its own";
+#endif
+  const LiveProgram program({"--token", "sesame"});
+  const Client client(program.url().substr(0, program.url().find('?')));
+  const auto frames = [&] {
+    const Answer stats = client.ask("GET", "api/stats", "", {{"Authorization", "Bearer sesame"}});
+    return json_object_get_int_member(stats.object(), "frames");
+  };
+  ASSERT_TRUE(wait_until([&] { return frames() > 30; }));
+  const int before_kib = peak_memory_kib(program);
+  EXPECT_NE(send_body(program, false, "/api/properties").find(" 401 "), std::string::npos);
+  EXPECT_NE(send_body(program, true, "/api/properties").find(" 401 "), std::string::npos);
+  EXPECT_NE(send_body(program, false, "/?token=sesame").find(" 303 "), std::string::npos);
+  EXPECT_LT(peak_memory_kib(program), before_kib + 10 * 1024);
+}
+
+TEST(LiveLimits, WhoAsksTooOftenHasToWait) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a sanitized program answers too slowly to be asked too often";
+#endif
+  const LiveProgram program({});
+  const Client client(program.url());
+  bool is_stopped = false;
+  for (int i = 0; i < 3000 && !is_stopped; ++i) is_stopped = client.get("api/target").status == 429;
+  EXPECT_TRUE(is_stopped);
+  EXPECT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }));
+}
+
+TEST(LiveLimits, ConnectionsAreCounted) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 200; ++i) idle.push_back(std::make_unique<RawClient>(program.port()));
+  EXPECT_EQ(client.get("api/target").status, static_cast<guint>(SOUP_STATUS_NONE));
+  idle.clear();
+  EXPECT_TRUE(wait_until([&] { return client.get("metrics").status == 200; }));
+  const std::string metrics = client.get("metrics").body;
+  const std::string name = "\nellipse_requests_refused_total ";
+  ASSERT_NE(metrics.find(name), std::string::npos);
+  EXPECT_GE(std::stod(metrics.substr(metrics.find(name) + name.size())), 41.0);
+}
+
+}  // namespace
