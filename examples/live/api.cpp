@@ -23,6 +23,9 @@
 namespace live {
 namespace {
 
+constexpr std::size_t kMostStreams = 120;  // of the connections, of which there may be 160
+constexpr char kTooMany[] = "too many watch";
+
 void write_time(JsonWriter& json, const char* name, GstClockTime time) {
   json.key(name);
   GST_CLOCK_TIME_IS_VALID(time) ? json.value(time) : json.null();
@@ -38,15 +41,27 @@ void add_page(HttpServer& server, const Options& options) {
   server.route("GET", "/*", [page](const Request& request) { return page.get(request.rest); });
 }
 
+// Those who stay leave connections to those who only ask.
+bool has_room(Session& session) {
+  return session.video().viewers() + session.lines().listeners() < kMostStreams;
+}
+
 void add_feeds(HttpServer& server, Session& session) {
-  server.websocket("/ws/video", [&](auto socket) { session.video().add(std::move(socket)); });
-  server.websocket("/ws/meta", [&](auto socket) { session.lines().add(std::move(socket)); });
-  server.route_open("GET", "/video.mjpeg", [&](const Request& request) {
-    session.video().add_stream(request.message);
-  });
-  server.route_open("GET", "/api/events", [&](const Request& request) {
-    session.lines().add_events(request.message);
-  });
+  const auto websocket = [&](const char* path, auto add) {
+    server.websocket(path, [&session, add](std::unique_ptr<WebSocket> socket) {
+      has_room(session) ? add(std::move(socket)) : socket->close(kTooMany);
+    });
+  };
+  const auto stream = [&](const char* path, auto add) {
+    server.route_open("GET", path, [&session, add](const Request& request) {
+      has_room(session) ? add(request.message)
+                        : answer(request.message, error_reply(503, kTooMany));
+    });
+  };
+  websocket("/ws/video", [&](auto socket) { session.video().add(std::move(socket)); });
+  websocket("/ws/meta", [&](auto socket) { session.lines().add(std::move(socket)); });
+  stream("/video.mjpeg", [&](auto* message) { session.video().add_stream(message); });
+  stream("/api/events", [&](auto* message) { session.lines().add_events(message); });
 }
 
 /* What it sees */

@@ -8,6 +8,7 @@ namespace {
 
 constexpr guint kGlanceMs = 1000;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
+constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
 constexpr std::size_t kLongestQueue = 30;  // a second of video
 
 class SocketListener : public LineFeed::Listener {
@@ -27,6 +28,8 @@ class SocketListener : public LineFeed::Listener {
   std::unique_ptr<WebSocket> socket_;
 };
 
+// That a client has gone shows where something is written: where frames are long in coming, that is
+// a comment.
 class EventListener : public LineFeed::Listener {
  public:
   EventListener(SoupServerMessage* request,
@@ -34,16 +37,25 @@ class EventListener : public LineFeed::Listener {
                 std::function<void()> on_closed)
       : stream_(request, "text/event-stream") {
     stream_.listen({std::move(on_ready), std::move(on_closed)});
-    stream_.write(": frames\n\n");
+    write(": frames\n\n");
   }
   bool send(const std::string& line) override {
     if (!stream_.is_ready()) return false;
-    stream_.write("data: " + line + "\n");
+    write("data: " + line + "\n");
     return true;
+  }
+  void take_glance() override {
+    if (stream_.is_ready() && g_get_monotonic_time() - written_us_ >= kQuietUs) write(": \n\n");
   }
 
  private:
+  void write(const std::string& text) {
+    stream_.write(text);
+    written_us_ = g_get_monotonic_time();
+  }
+
   HttpStream stream_;
+  gint64 written_us_ = 0;
 };
 
 }  // namespace
@@ -99,6 +111,7 @@ gboolean LineFeed::on_glance(gpointer data) {
   auto* self = static_cast<LineFeed*>(data);
   for (const auto& listener : self->listeners_) {
     self->flush(*listener);
+    if (listener->queue.empty()) listener->take_glance();
     if (g_get_monotonic_time() - listener->moved_us > kPatienceUs) listener->end();
   }
   return G_SOURCE_CONTINUE;

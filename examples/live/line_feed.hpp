@@ -38,6 +38,8 @@ class LineFeed {
     /// @return false where it can take no more now.
     virtual bool send(const std::string& line) = 0;
     virtual void end() {}
+    /// Once a second, where there is nothing to send.
+    virtual void take_glance() {}
 
     std::deque<std::string> queue;
     gint64 moved_us = g_get_monotonic_time();  ///< When it last took something, or had all.

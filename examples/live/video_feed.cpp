@@ -14,6 +14,7 @@ namespace {
 
 constexpr guint kGlanceMs = 1000;
 constexpr gint64 kFollowedUs = 500 * 1000;
+constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
 constexpr std::size_t kMostDelays = 256;
 constexpr std::size_t kMostInFlight = 2;  // one on its way, one being painted
@@ -77,7 +78,8 @@ class SocketViewer : public Viewer {
 };
 
 // A browser shows a picture when the next one begins, so that one which nothing follows is sent
-// once more.
+// once more. That a client has gone shows where something is written: now and then it is sent
+// again.
 class StreamViewer : public Viewer {
  public:
   StreamViewer(SoupServerMessage* request,
@@ -90,17 +92,20 @@ class StreamViewer : public Viewer {
   [[nodiscard]] bool is_ready() const override { return stream_.is_ready(); }
 
   void send(const Picture& picture) override {
-    const bool is_first = sent_us_ == 0;
     const std::string part = part_of(picture);
-    stream_.write(is_first ? part + part : part);
-    sent_us_ = g_get_monotonic_time();
-    has_second_ = is_first;
+    write(is_first_ ? part + part : part);
+    has_second_ = is_first_;
+    is_first_ = false;
   }
 
   void take_glance(const Picture& picture) override {
-    const bool is_followed = g_get_monotonic_time() - sent_us_ < kFollowedUs;
-    if (has_second_ || is_followed || last != picture.number || !is_ready()) return;
-    stream_.write(part_of(picture));
+    const gint64 quiet_us = g_get_monotonic_time() - written_us_;
+    if (!is_ready() || quiet_us < (has_second_ ? kQuietUs : kFollowedUs)) return;
+    if (is_first_) {
+      write("\r\n");  // before the first part anything may stand
+    } else if (last == picture.number) {
+      write(part_of(picture));
+    }
     has_second_ = true;
   }
 
@@ -115,8 +120,14 @@ class StreamViewer : public Viewer {
     return part;
   }
 
+  void write(const std::string& text) {
+    stream_.write(text);
+    written_us_ = g_get_monotonic_time();
+  }
+
   HttpStream stream_;
-  gint64 sent_us_ = 0;       // 0 = nothing yet
+  gint64 written_us_ = g_get_monotonic_time();
+  bool is_first_ = true;
   bool has_second_ = false;  // the last one was sent twice
 };
 

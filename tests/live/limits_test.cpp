@@ -64,6 +64,10 @@ std::string send_body(const LiveProgram& program, bool is_chunked, const std::st
   return client.receive();
 }
 
+std::string get(const std::string& path) {
+  return "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+}
+
 TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer has a memory of its own";
@@ -106,6 +110,41 @@ TEST(LiveLimits, ConnectionsAreCounted) {
   const std::string name = "\nellipse_requests_refused_total ";
   ASSERT_NE(metrics.find(name), std::string::npos);
   EXPECT_GE(std::stod(metrics.substr(metrics.find(name) + name.size())), 41.0);
+}
+
+// A picture that stands still is written to nobody, so that nothing tells of who leaves.
+TEST(LiveLimits, WhoLeavesWhileNothingMovesIsNotKept) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  {
+    std::vector<std::unique_ptr<RawClient>> watching;
+    for (int i = 0; i < 60; ++i) {
+      watching.push_back(std::make_unique<RawClient>(program.port()));
+      watching.back()->send(get(i % 2 == 0 ? "/api/events" : "/video.mjpeg"));
+      ASSERT_NE(watching.back()->receive(), "");
+    }
+    EXPECT_EQ(client.stat("viewers") + client.stat("listeners"), 60.0);
+  }
+  EXPECT_TRUE(
+      wait_until([&] { return client.stat("viewers") + client.stat("listeners") == 0.0; }, 60));
+}
+
+TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  std::vector<std::unique_ptr<RawClient>> watching;
+  int refused = 0;
+  for (int i = 0; i < 140; ++i) {
+    watching.push_back(std::make_unique<RawClient>(program.port()));
+    watching.back()->send(get("/api/events"));
+    refused += watching.back()->receive().find(" 503 ") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(refused, 20);
+  EXPECT_EQ(client.poll("api/target").status, 200U);
+  SocketClient video(program.url(), "ws/video");
+  EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
 }
 
 }  // namespace
