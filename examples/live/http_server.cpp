@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/http_server.hpp"
 
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-
 #include <stdexcept>
 #include <utility>
 
 namespace live {
 namespace {
 
-constexpr std::size_t kMostConnections = 160;
-constexpr guint kIdleSeconds = 20;  // for a request to come, or to go on
-constexpr char kSocketKey[] = "live-socket";
+constexpr int kWaiting = 160;  // to be let in
+constexpr char kClientKey[] = "live-client";
 
 std::string body_of(SoupServerMessage* message) {
   const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
@@ -32,17 +28,6 @@ std::map<std::string, std::string> map_of(GHashTable* query) {
       },
       &map);
   return map;
-}
-
-// The address and the port of a client.
-std::string text_of(GSocketAddress* address) {
-  if (address == nullptr) return "";
-  const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
-  return text.get();
-}
-
-void drop_socket(gpointer socket) {
-  g_object_unref(socket);
 }
 
 }  // namespace
@@ -68,7 +53,7 @@ void HttpServer::listen() {
   const Ref<GSocketAddress> wanted(
       g_inet_socket_address_new_from_string(settings_.address.c_str(), settings_.port));
   if (!wanted) throw std::runtime_error("\"" + settings_.address + "\" is no address to listen at");
-  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kMostConnections);
+  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kWaiting);
   GSocketAddress* effective = nullptr;
   GError* problem = nullptr;
   g_socket_listener_add_address(G_SOCKET_LISTENER(service_.get()),
@@ -124,27 +109,17 @@ gboolean HttpServer::on_incoming(GSocketService* /*service*/,
                                  GObject* /*source*/,
                                  gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
-  if (self->sockets_->size() >= kMostConnections) {
+  if (!self->connections_.admit(connection)) {
     ++self->counters_.refused;
     return TRUE;  // closed with its last reference
   }
   GSocket* socket = g_socket_connection_get_socket(connection);
-  g_socket_set_timeout(socket, kIdleSeconds);
-  g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
   const Ref<GSocketAddress> local(g_socket_get_local_address(socket, nullptr));
   const Ref<GSocketAddress> remote(g_socket_get_remote_address(socket, nullptr));
   if (!local || !remote) return TRUE;
-  const std::string client = text_of(remote.get());
-  (*self->sockets_)[client] = share(socket);
-  g_object_weak_ref(G_OBJECT(connection), on_connection_gone, new Gone{self->sockets_, client});
   soup_server_accept_iostream(
       self->server_.get(), G_IO_STREAM(connection), local.get(), remote.get(), nullptr);
   return TRUE;
-}
-
-void HttpServer::on_connection_gone(gpointer data, GObject* /*connection*/) {
-  const std::unique_ptr<Gone> gone(static_cast<Gone*>(data));
-  gone->sockets->erase(gone->client);
 }
 
 /* Requests */
@@ -159,11 +134,9 @@ void HttpServer::on_early(SoupServer* /*server*/,
   add_policy(message);
   if (self->gate_.refuses(message, path)) ++self->counters_.refused;
   // Kept for a WebSocket, which loses sight of whose it is.
-  const auto socket =
-      self->sockets_->find(text_of(soup_server_message_get_remote_address(message)));
-  if (socket == self->sockets_->end()) return;
-  g_object_set_data_full(
-      G_OBJECT(message), kSocketKey, g_object_ref(socket->second.get()), drop_socket);
+  GSocketAddress* client = soup_server_message_get_remote_address(message);
+  if (client == nullptr) return;
+  g_object_set_data_full(G_OBJECT(message), kClientKey, g_object_ref(client), g_object_unref);
 }
 
 void HttpServer::on_request(SoupServer* /*server*/,
@@ -171,7 +144,9 @@ void HttpServer::on_request(SoupServer* /*server*/,
                             const char* path,
                             GHashTable* query,
                             gpointer data) {
-  static_cast<HttpServer*>(data)->dispatch(message, path, query);
+  auto* self = static_cast<HttpServer*>(data);
+  self->connections_.keep(soup_server_message_get_remote_address(message));
+  self->dispatch(message, path, query);
 }
 
 // What stands where a route has its "*"; nullopt where the path is not the route's.
@@ -219,7 +194,8 @@ void HttpServer::on_websocket(SoupServer* /*server*/,
                               SoupWebsocketConnection* connection,
                               gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
-  auto* socket = static_cast<GSocket*>(g_object_get_data(G_OBJECT(message), kSocketKey));
+  GSocket* socket = self->connections_.keep(
+      static_cast<GSocketAddress*>(g_object_get_data(G_OBJECT(message), kClientKey)));
   const auto handler = self->websockets_.find(path);
   if (socket == nullptr || handler == self->websockets_.end()) return;
   g_socket_set_timeout(socket, 0);  // it may be silent for as long as it likes

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "examples/live/connections.hpp"
 #include "examples/live/http_gate.hpp"
 #include "examples/live/http_reply.hpp"
 #include "examples/live/ref.hpp"
@@ -52,7 +53,7 @@ class HttpServer {
 
   [[nodiscard]] guint port() const { return port_; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t connections() const { return sockets_->size(); }
+  [[nodiscard]] std::size_t connections() const { return connections_.size(); }
 
  private:
   struct Route {
@@ -63,19 +64,10 @@ class HttpServer {
     std::function<void(const Request&)> handle;
   };
 
-  // Those of open connections, by the client's address.
-  using Sockets = std::map<std::string, Ref<GSocket>>;
-  // A connection that will be gone one day, later than this server where a viewer keeps it.
-  struct Gone {
-    std::shared_ptr<Sockets> sockets;
-    std::string client;
-  };
-
   static gboolean on_incoming(GSocketService* service,
                               GSocketConnection* connection,
                               GObject* source,
                               gpointer data);
-  static void on_connection_gone(gpointer data, GObject* connection);
   static void on_early(
       SoupServer* server, SoupServerMessage* message, const char* path, GHashTable*, gpointer data);
   static void on_request(SoupServer* server,
@@ -101,7 +93,7 @@ class HttpServer {
   std::vector<Route> routes_;
   std::map<std::string, std::function<void(std::unique_ptr<WebSocket>)>> websockets_;
   Counters counters_;
-  std::shared_ptr<Sockets> sockets_ = std::make_shared<Sockets>();
+  Connections connections_;
 };
 
 }  // namespace live

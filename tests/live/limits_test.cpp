@@ -147,4 +147,41 @@ TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
   EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
 }
 
+// One that sends a byte now and then is never silent, and never done.
+TEST(LiveLimits, ARequestHasToComeToItsEnd) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  const std::string rest = "PUT /api/properties HTTP/1.1\r\nHost: localhost\r\nContent-Length: 500";
+  std::vector<std::unique_ptr<RawClient>> slow;
+  for (int i = 0; i < 40; ++i) {
+    slow.push_back(std::make_unique<RawClient>(program.port()));
+    slow.back()->send(i % 2 == 0 ? rest : rest + "\r\n\r\n");  // in the headers, in the body
+  }
+  ASSERT_TRUE(wait_until([&] { return client.stat("connections") > 40.0; }));
+  const bool is_freed = wait_until(
+      [&] {
+        for (const auto& each : slow) each->send("1");
+        g_usleep(1'000'000);
+        return client.stat("connections") < 5.0;
+      },
+      60);
+  EXPECT_TRUE(is_freed);
+}
+
+TEST(LiveLimits, OneAddressInANetworkDoesNotTakeAllConnections) {
+  const std::string address = support::network_address();
+  if (address.empty()) GTEST_SKIP() << "this machine is in no network";
+  const LiveProgram program({"--bind", "0.0.0.0", "--token", "sesame"});
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 60; ++i) {
+    idle.push_back(std::make_unique<RawClient>(address, program.port()));
+  }
+  const Client client("http://127.0.0.1:" + std::to_string(program.port()) + "/");
+  const auto connections = [&] {
+    const Answer stats = client.ask("GET", "api/stats", "", {{"Authorization", "Bearer sesame"}});
+    return stats.status == 200U ? json_object_get_int_member(stats.object(), "connections") : 0;
+  };
+  EXPECT_EQ(connections(), 41);
+}
+
 }  // namespace

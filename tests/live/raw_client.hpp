@@ -1,6 +1,9 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <arpa/inet.h>
 #include <gio/gio.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 
 #include <array>
 #include <string>
@@ -43,5 +46,21 @@ class RawClient {
  private:
   live::Ref<GSocket> socket_;
 };
+
+/// An IPv4 address of this machine in some network; empty where it is in none.
+inline std::string network_address() {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return "";
+  std::string found;
+  for (const ifaddrs* each = all; each != nullptr && found.empty(); each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    if ((each->ifa_flags & IFF_LOOPBACK) != 0 || (each->ifa_flags & IFF_UP) == 0) continue;
+    std::array<char, INET_ADDRSTRLEN> text;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    found = inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size());
+  }
+  freeifaddrs(all);
+  return found;
+}
 
 }  // namespace support

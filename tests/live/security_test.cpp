@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/security.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 
-#include <array>
 #include <string>
 
 #include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
+#include "tests/live/raw_client.hpp"
 
 namespace {
 
@@ -106,22 +103,6 @@ Door door_of(const LiveProgram& program) {
   return {printed.substr(0, end), printed.substr(end + 7)};
 }
 
-// An IPv4 address of this machine in some network; empty where it is in none.
-std::string network_address() {
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return "";
-  std::string found;
-  for (const ifaddrs* each = all; each != nullptr && found.empty(); each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
-    if ((each->ifa_flags & IFF_LOOPBACK) != 0 || (each->ifa_flags & IFF_UP) == 0) continue;
-    std::array<char, INET_ADDRSTRLEN> text;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
-    found = inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size());
-  }
-  freeifaddrs(all);
-  return found;
-}
-
 // It made a token, and nothing goes without.
 void expect_locked(const LiveProgram& program, const LiveProgram& other) {
   const auto [url, token] = door_of(program);
@@ -154,7 +135,7 @@ TEST(LiveSecurity, OpenToAllNetworksItMakesATokenAndAsksForIt) {
 }
 
 TEST(LiveSecurity, OpenToOneNetworkItMakesATokenAndAsksForIt) {
-  const std::string address = network_address();
+  const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
   const LiveProgram program({"--bind", address});
   const LiveProgram other({"--bind", address});
@@ -162,7 +143,7 @@ TEST(LiveSecurity, OpenToOneNetworkItMakesATokenAndAsksForIt) {
 }
 
 TEST(LiveSecurity, IsNotReachedFromTheNetworkUnlessAsked) {
-  const std::string address = network_address();
+  const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
   const LiveProgram program({});
   const auto from = [&](const std::string& host) {
