@@ -30,6 +30,10 @@ Options parse_options(int argc, char** argv) {
       "--record", options.record, "Write H.264 into this .mkv, and the JSON lines beside it");
   app.add_option("--preset", options.preset, "Begin with this preset of ellipsetrack");
   app.add_option("--labels", options.labels, "Folder for the data set of labelled snapshots");
+  app.add_option("--cameras",
+                 options.cameras,
+                 "Folder of calibrations, from which clients may choose a camera-file")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--page", options.page, "Serve the page's files from this folder")
       ->check(CLI::ExistingDirectory);
   app.add_option("--quality", options.quality, "Of the JPEGs")

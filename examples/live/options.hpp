@@ -14,9 +14,10 @@ struct Options {
   int rtsp_port = -1;  ///< -1 = none, 0 = one that is free.
   std::string record;  ///< A file; empty = nothing is recorded.
   std::string preset;
-  std::string labels;  ///< A folder; empty = nothing is labelled.
-  std::string page;    ///< A folder; empty = the page that is built in.
-  int quality = 80;    ///< Of the JPEGs, 1 to 100.
+  std::string labels;   ///< A folder; empty = nothing is labelled.
+  std::string cameras;  ///< A folder; empty = clients set no camera-file.
+  std::string page;     ///< A folder; empty = the page that is built in.
+  int quality = 80;     ///< Of the JPEGs, 1 to 100.
   bool allows_source_change = false;
 };
 

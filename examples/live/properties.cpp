@@ -17,6 +17,8 @@
 namespace live {
 namespace {
 
+constexpr char kCameraFile[] = "camera-file";
+
 // A GValue that clears itself.
 class Value {
  public:
@@ -30,6 +32,11 @@ class Value {
  private:
   GValue value_ = G_VALUE_INIT;
 };
+
+std::string text_in(Value& value) {
+  const gchar* text = g_value_get_string(value.get());
+  return text != nullptr ? text : "";
+}
 
 struct Change {
   GParamSpec* spec;
@@ -49,7 +56,19 @@ std::vector<GParamSpec*> tunable(GstElement* tracker) {
   return result;
 }
 
-std::vector<Change> parse_changes(GstElement* tracker, const std::string& json) {
+// Any path else would be opened by who asks. What it is already needs no folder.
+void check_camera(GstElement* tracker, const CameraFolder& cameras, Change& change) {
+  if (g_strcmp0(change.spec->name, kCameraFile) != 0) return;
+  Value now(change.spec);
+  g_object_get_property(G_OBJECT(tracker), kCameraFile, now.get());
+  const std::string wanted = g_value_get_string(change.value->get());
+  if (wanted.empty() || wanted == text_in(now)) return;
+  g_value_set_string(change.value->get(), cameras.path_of(wanted).c_str());
+}
+
+std::vector<Change> parse_changes(GstElement* tracker,
+                                  const CameraFolder& cameras,
+                                  const std::string& json) {
   std::vector<Change> changes;
   if (json.empty()) return changes;
   const RequestJson object(json);
@@ -67,6 +86,7 @@ std::vector<Change> parse_changes(GstElement* tracker, const std::string& json) 
     }
     Change change{*spec, std::make_unique<Value>(*spec)};
     read_value(*spec, node, change.value->get());
+    check_camera(tracker, cameras, change);
     changes.push_back(std::move(change));
   }
   return changes;
@@ -135,13 +155,16 @@ bool is_unset(const GParamSpec* spec, const GValue* value) {
 std::string Properties::to_json() const {
   JsonWriter json;
   json.begin_array();
-  for (GParamSpec* spec : tunable(tracker_)) write_property(json, tracker_, spec);
+  for (GParamSpec* spec : tunable(tracker_)) {
+    const bool is_camera = g_strcmp0(spec->name, kCameraFile) == 0;
+    write_property(json, tracker_, spec, !is_camera || cameras_.is_open());
+  }
   return json.end_array().text() + "\n";
 }
 
 void Properties::set(const std::string& json) {
   if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
-  std::vector<Change> changes = parse_changes(tracker_, json);
+  std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
   (void)settings_after(tracker_, changes);
   std::stable_partition(changes.begin(), changes.end(), [this](const Change& change) {
     return widens(tracker_, change);
@@ -152,7 +175,7 @@ void Properties::set(const std::string& json) {
 }
 
 ellipse::TrackerSettings Properties::settings_with(const std::string& json) const {
-  return settings_after(tracker_, parse_changes(tracker_, json));
+  return settings_after(tracker_, parse_changes(tracker_, cameras_, json));
 }
 
 std::string Properties::launch_settings() const {

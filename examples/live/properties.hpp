@@ -3,8 +3,10 @@
 #include <gst/gst.h>
 
 #include <string>
+#include <utility>
 
 #include "core/tracker_settings.hpp"
+#include "examples/live/camera_folder.hpp"
 
 namespace live {
 
@@ -12,10 +14,12 @@ namespace live {
 class Properties {
  public:
   /// @param tracker  Borrowed for as long as this lives.
-  explicit Properties(GstElement* tracker) : tracker_(tracker) {}
+  /// @param cameras  Where a camera-file may be.
+  Properties(GstElement* tracker, CameraFolder cameras)
+      : tracker_(tracker), cameras_(std::move(cameras)) {}
 
   /// An array with one object a property, made from its GParamSpec: name, nick, blurb, type, range,
-  /// default, value, unit, group.
+  /// default, value, unit, group, and whether it can be set.
   [[nodiscard]] std::string to_json() const;
 
   /// Sets those that an object {"name": value, ...} names: all of them, or none. They act from the
@@ -31,6 +35,7 @@ class Properties {
 
  private:
   GstElement* tracker_;
+  CameraFolder cameras_;
 };
 
 }  // namespace live

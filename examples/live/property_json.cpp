@@ -121,7 +121,7 @@ bool is_vector(const GParamSpec* spec) {
          G_IS_PARAM_SPEC_DOUBLE(GST_PARAM_SPEC_ARRAY_LIST(spec)->element_spec);
 }
 
-void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec) {
+void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec, bool is_writable) {
   const char* blurb = g_param_spec_get_blurb(spec);
   json.begin_object()
       .member("name", spec->name)
@@ -130,7 +130,7 @@ void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec) {
       .member("type", type_of(spec))
       .member("group", group_of(spec->name))
       .member("unit", unit_in(blurb))
-      .member("writable", true)
+      .member("writable", is_writable)
       .member("mutable_playing", (spec->flags & GST_PARAM_MUTABLE_PLAYING) != 0);
   write_limits(json, spec);
   if (G_IS_PARAM_SPEC_ENUM(spec)) {

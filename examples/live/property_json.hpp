@@ -15,8 +15,8 @@ namespace live {
 [[nodiscard]] bool is_vector(const GParamSpec* spec);
 
 /// Writes an object that tells all that a control needs: name, nick, blurb, type, range, default,
-/// value, unit, group.
-void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec);
+/// value, unit, group, whether clients can set it.
+void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec, bool is_writable);
 
 /// A property's value as one word of a gst-launch line, unquoted.
 [[nodiscard]] std::string word_of(const GParamSpec* spec, const GValue* value);

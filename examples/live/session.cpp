@@ -18,7 +18,7 @@ Session::Session(const Options& options, std::function<void()> on_failure)
                                  << (trouble.empty() ? "is back" : trouble) << std::endl;
                      },
                  .on_failure = std::move(on_failure)}),
-      properties_(pipeline_.tracker()) {
+      properties_(pipeline_.tracker(), CameraFolder(options.cameras)) {
   if (options.rtsp_port >= 0) {
     rtsp_.emplace(RtspOutput::Settings{options.bind, options.rtsp_port, options.token});
   }

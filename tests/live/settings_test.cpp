@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <gst/gst.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -77,6 +80,53 @@ TEST(LiveSettings, SetsAllPropertiesOrNone) {
   refused(R"({"min-axis":{"a":[1]}})", "min-axis");
   refused(R"({"min-axis":20)", "JSON");
   refused("[1,2]", "object");
+}
+
+void write_calibration(const std::string& file) {
+  std::ofstream(file) << "%YAML:1.0\n---\nimage_width: 640\nimage_height: 360\n"
+                         "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+                         "   data: [ 500., 0., 320., 0., 500., 180., 0., 0., 1. ]\n";
+}
+
+// A client has nothing opened but what lies in one folder: no file, and no pipe, which would hold
+// the program.
+TEST(LiveSettings, ACameraFileComesFromItsFolderOrNotAtAll) {
+  const support::TemporaryFolder folder;
+  const std::string cameras = folder.file("cameras");
+  std::filesystem::create_directory(cameras);
+  write_calibration(cameras + "/front.yaml");
+  write_calibration(folder.file("other.yaml"));
+  std::ofstream(cameras + "/letter.yaml") << "Dear robot,\n";
+  std::filesystem::create_symlink(folder.file("other.yaml"), cameras + "/link.yaml");
+  ASSERT_EQ(mkfifo((cameras + "/pipe").c_str(), 0600), 0);
+  const LiveProgram program({"--cameras", cameras});
+  const LiveProgram closed({});
+  const Client client(program.url());
+  const auto put = [](const LiveProgram& where, const std::string& file) {
+    std::string body = R"({"min-axis":20,"camera-file":")";
+    return Client(where.url()).put("api/properties", body + file + "\"}").status;
+  };
+  for (const std::string& wrong : {folder.file("other.yaml"),
+                                   std::string("../other.yaml"),
+                                   std::string("link.yaml"),
+                                   std::string("letter.yaml"),
+                                   std::string("none.yaml"),
+                                   std::string("pipe"),
+                                   std::string("."),
+                                   std::string("/etc/passwd")}) {
+    EXPECT_EQ(put(program, wrong), 400U) << wrong;
+  }
+  EXPECT_EQ(put(closed, cameras + "/front.yaml"), 400U);
+  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // all of them, or none
+  EXPECT_EQ(put(program, "front.yaml"), 200U);
+  const Answer now = client.get("api/properties");
+  EXPECT_EQ(json_object_get_string_member(property(now, "camera-file"), "value"),
+            std::filesystem::canonical(cameras + "/front.yaml"));
+  EXPECT_TRUE(json_object_get_boolean_member(property(now, "camera-file"), "writable"));
+  EXPECT_FALSE(json_object_get_boolean_member(
+      property(Client(closed.url()).get("api/properties"), "camera-file"), "writable"));
+  EXPECT_EQ(put(program, ""), 200U);
+  EXPECT_EQ(put(closed, ""), 200U);
 }
 
 std::vector<double> numbers_in(const Answer& answer, const std::string& name, const char* member) {

@@ -178,7 +178,13 @@ function colorControl(property, change) {
 }
 
 function textControl(property, change) {
-  const field = make("input", { type: "text", "aria-label": property.name, autocomplete: "off" });
+  const field = make("input", {
+    type: "text",
+    "aria-label": property.name,
+    autocomplete: "off",
+    disabled: !property.writable,
+    placeholder: property.writable ? "" : "set where ellipse-live is started with --cameras FOLDER",
+  });
   field.onchange = () => change(field.value);
   const set = showWhenLeft([field], (value) => {
     field.value = value;
