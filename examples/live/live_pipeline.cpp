@@ -61,6 +61,8 @@ const char* nick_of(PlayState state) {
       return "starting";
     case PlayState::kPlaying:
       return "playing";
+    case PlayState::kPausing:
+      return "pausing";
     case PlayState::kPaused:
       return "paused";
     case PlayState::kEnded:
@@ -142,22 +144,44 @@ void LivePipeline::play() {
       start();
       return;
     }
-  } else if (state_ != PlayState::kPaused) {
+  } else if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) {
     return;
   }
+  steps_ = 0;
   state_ = PlayState::kPlaying;
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
 }
 
 void LivePipeline::pause() {
   if (state_ != PlayState::kPlaying) return;
-  state_ = PlayState::kPaused;
+  hold_still();
+}
+
+// A sink that is paused waits for one more frame, and shows it.
+void LivePipeline::hold_still() {
+  steps_ = 0;
+  state_ = PlayState::kPausing;
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
+  settle();
+}
+
+void LivePipeline::settle() {
+  GstState now = GST_STATE_VOID_PENDING;
+  if (state_ != PlayState::kPausing) return;
+  if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
+  if (now != GST_STATE_PAUSED) return;
+  state_ = PlayState::kPaused;
+  if (steps_ == 0) return;
+  --steps_;
+  step();
 }
 
 void LivePipeline::step() {
+  if (state_ == PlayState::kPausing) ++steps_;
   if (state_ != PlayState::kPaused) return;
+  state_ = PlayState::kPausing;
   gst_element_send_event(sink_, gst_event_new_step(GST_FORMAT_BUFFERS, 1, 1.0, TRUE, FALSE));
+  settle();
 }
 
 bool LivePipeline::seek(GstClockTime position) {
@@ -169,10 +193,7 @@ bool LivePipeline::seek(GstClockTime position) {
           static_cast<gint64>(position))) {
     return false;
   }
-  if (state_ == PlayState::kEnded) {
-    state_ = PlayState::kPaused;
-    gst_element_set_state(pipeline_, GST_STATE_PAUSED);
-  }
+  if (state_ == PlayState::kEnded) hold_still();
   return true;
 }
 
@@ -210,6 +231,10 @@ gboolean LivePipeline::on_message(GstBus* /*bus*/, GstMessage* message, gpointer
       break;
     case GST_MESSAGE_EOS:
       self->end_of_stream();
+      break;
+    case GST_MESSAGE_ASYNC_DONE:
+    case GST_MESSAGE_STATE_CHANGED:
+      self->settle();
       break;
     case GST_MESSAGE_LATENCY:
       gst_bin_recalculate_latency(GST_BIN(self->pipeline_));

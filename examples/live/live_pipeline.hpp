@@ -11,7 +11,7 @@
 
 namespace live {
 
-enum class PlayState { kStarting, kPlaying, kPaused, kEnded, kReconnecting, kFailed };
+enum class PlayState { kStarting, kPlaying, kPausing, kPaused, kEnded, kReconnecting, kFailed };
 
 [[nodiscard]] const char* nick_of(PlayState state);
 
@@ -40,8 +40,9 @@ class LivePipeline {
   void open(SourceSpec spec, bool loops);
 
   void play();
+  /// kPausing until the picture stands still: the frame that is under way is still shown.
   void pause();
-  /// Shows the next frame of what is paused.
+  /// Shows the next frame of what is paused, or is about to be.
   void step();
   /// To a time [ns] of what can be sought; at once also where it is paused. @return false where it
   /// cannot.
@@ -68,6 +69,8 @@ class LivePipeline {
   void end_of_stream();
   void source_dropped(const std::string& why);
   void watch_arrivals();
+  void hold_still();
+  void settle();
   void cancel_retry();
 
   Handlers handlers_;
@@ -84,6 +87,7 @@ class LivePipeline {
   guint retries_ = 0;  // since it last delivered
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
+  guint steps_ = 0;  // that wait until it is paused
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;

@@ -112,17 +112,32 @@ TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
   EXPECT_EQ(other.wait(), 1);
 }
 
+// The frame that is shown once it is paused; -1 where that does not come to be.
+gint64 shown_when_paused(const Client& client) {
+  Answer answer;
+  const bool is_paused = wait_until([&] {
+    answer = client.poll("api/source");
+    return json_object_get_string_member(answer.object(), "state") == std::string("paused");
+  });
+  return is_paused ? json_object_get_int_member(answer.object(), "pts_ns") : -1;
+}
+
+bool stands_still(const Client& client) {
+  return shown_when_paused(client) >= 0;
+}
+
 class SeekableSource : public testing::TestWithParam<const char*> {};
 
 TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
   const TemporaryFolder folder;
   const std::string source =
-      GetParam() == std::string("file") ? make_video(folder, 90) : make_pictures(folder, 90);
+      GetParam() == std::string("file") ? make_video(folder, 900) : make_pictures(folder, 900);
   const LiveProgram program({"--source", source});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
   ASSERT_EQ(client.post("api/step").status, 409U);
   ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
   ASSERT_EQ(client.post("api/seek", R"({"position_ns":1000000000})").status, 200U);
   const auto shows = [&](int frame) {
     return wait_until(
@@ -135,10 +150,52 @@ TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
   }
   EXPECT_EQ(client.post("api/seek", R"({"position_ns":-1})").status, 400U);
   EXPECT_EQ(client.post("api/seek", "{}").status, 400U);
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":29000000000})").status, 200U);
+  ASSERT_TRUE(shows(870)) << number_in(client, "pts_ns");
   ASSERT_EQ(client.post("api/play").status, 200U);
   EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
   ASSERT_EQ(client.post("api/play").status, 200U);
   EXPECT_EQ(text_in(client, "state"), "playing");
+}
+
+// A slow decoder: when it is paused, a frame is still under way.
+TEST(LiveSource, WhatIsPausedStandsStill) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source",
+                             "[filesrc location=" + make_video(folder, 300) +
+                                 " ! matroskademux ! jpegdec ! identity sleep-time=100000]"});
+  const Client client(program.url());
+  for (int i = 0; i < 5; ++i) {
+    const double frames = client.stat("frames");
+    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames; }));
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    const gint64 shown = shown_when_paused(client);
+    g_usleep(200'000);
+    EXPECT_EQ(number_in(client, "pts_ns"), shown);
+    // A step that was asked for before it stood still is not lost.
+    ASSERT_EQ(client.post("api/play").status, 200U);
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    const gint64 stepped = shown_when_paused(client);
+    EXPECT_GE(stepped - shown, 2 * 33'000'000);
+    g_usleep(200'000);
+    EXPECT_EQ(number_in(client, "pts_ns"), stepped);
+    ASSERT_EQ(client.post("api/play").status, 200U);
+  }
+}
+
+TEST(LiveSource, AFileThatIsSteppedToItsEndCanBePlayedOn) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 300)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":9900000000})").status, 200U);
+  for (int i = 0; i < 6; ++i) ASSERT_EQ(client.post("api/step").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return number_in(client, "pts_ns") > 9'960'000'000; }));
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
 }
 
 INSTANTIATE_TEST_SUITE_P(LiveSource,
@@ -169,10 +226,11 @@ void expect_greetings(const LiveProgram& program, const Client& client) {
 
 TEST(LiveSource, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
   const TemporaryFolder folder;
-  const LiveProgram program({"--source", make_video(folder, 60)});
+  const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
   expect_greetings(program, client);
 }
 
@@ -188,19 +246,22 @@ TEST(LiveSource, WhoJoinsWhileTheViewIsHeldGetsItsFrameAtOnce) {
 
 TEST(LiveSource, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
   const TemporaryFolder folder;
-  const LiveProgram program({"--source", make_video(folder, 60)});
+  const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
   const gint64 shown = number_in(client, "pts_ns");
   std::string text;
   std::thread watcher(
       [&] { text = support::read_stream(program.url() + "video.mjpeg", "X-PTS: ", 4); });
   EXPECT_TRUE(wait_until([&] { return client.stat("sent") > 0; }));
   EXPECT_EQ(client.post("api/step").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  const gint64 next = number_in(client, "pts_ns");
+  EXPECT_NEAR(static_cast<double>(next - shown), 1e9 / 30, 1e6);
   watcher.join();
-  EXPECT_TRUE(wait_until([&] { return number_in(client, "pts_ns") > shown; }));
-  const std::string head = "X-PTS: " + std::to_string(number_in(client, "pts_ns")) + "\r\n";
+  const std::string head = "X-PTS: " + std::to_string(next) + "\r\n";
   EXPECT_NE(text.find(head), text.rfind(head)) << head;
 }
 
