@@ -10,7 +10,10 @@ namespace live {
 namespace {
 
 constexpr guint kGlanceMs = 1000;
-constexpr guint kPatience = 5;  // glances without a frame, after which a live source has dropped
+// Glances without a frame, after which a live source has dropped: one that has to connect, or to
+// wait for a key frame, and one that has begun.
+constexpr guint kFirstPatience = 15;
+constexpr guint kPatience = 5;
 constexpr guint kFirstRetryMs = 500;
 constexpr guint kSlowestRetryMs = 5000;
 
@@ -110,6 +113,7 @@ void LivePipeline::open(SourceSpec spec, bool loops) {
 void LivePipeline::start() {
   state_ = PlayState::kStarting;
   glances_without_frames_ = 0;
+  has_begun_ = false;
   try {
     source_ = source_bin(spec_.description);
   } catch (const std::exception& error) {
@@ -299,9 +303,11 @@ void LivePipeline::watch_arrivals() {
     trouble_.clear();
     retries_ = 0;
     glances_without_frames_ = 0;
+    has_begun_ = true;
   } else if (spec_.is_live && state_ == PlayState::kPlaying &&
-             ++glances_without_frames_ >= kPatience) {
-    source_dropped("no frame for " + std::to_string(kPatience * kGlanceMs / 1000) + " s");
+             ++glances_without_frames_ >= (has_begun_ ? kPatience : kFirstPatience)) {
+    const guint seconds = glances_without_frames_ * kGlanceMs / 1000;
+    source_dropped("no frame for " + std::to_string(seconds) + " s");
   }
 }
 

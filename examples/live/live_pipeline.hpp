@@ -91,6 +91,7 @@ class LivePipeline {
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;
+  bool has_begun_ = false;  // a frame has come since the source was started
 };
 
 }  // namespace live
