@@ -13,11 +13,15 @@
 
 namespace live {
 
-Allowance::Allowance(double per_second, double most)
-    : per_second_(per_second), most_(most), left_(most), last_us_(g_get_monotonic_time()) {}
+Allowance::Allowance(double per_second, double most, Clock clock)
+    : per_second_(per_second),
+      most_(most),
+      left_(most),
+      clock_(clock != nullptr ? clock : g_get_monotonic_time),
+      last_us_(clock_()) {}
 
 bool Allowance::take() {
-  const long long now_us = g_get_monotonic_time();
+  const std::int64_t now_us = clock_();
   left_ = std::min(most_, left_ + 1e-6 * static_cast<double>(now_us - last_us_) * per_second_);
   last_us_ = now_us;
   if (left_ < 1.0) return false;

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -8,7 +9,9 @@ namespace live {
 /// So many things a second, and a store of some more for those who were quiet. Not thread-safe.
 class Allowance {
  public:
-  Allowance(double per_second, double most);
+  using Clock = std::int64_t (*)();  ///< [us], and never goes back.
+
+  Allowance(double per_second, double most, Clock clock = nullptr);
   /// @return false where it is used up.
   bool take();
 
@@ -16,7 +19,8 @@ class Allowance {
   double per_second_;
   double most_;
   double left_;
-  long long last_us_;
+  Clock clock_;
+  std::int64_t last_us_;
 };
 
 /// What of a request says where it comes from; empty where it says nothing.

@@ -262,12 +262,19 @@ class Line {
   }
   /// The first with this role, or null.
   [[nodiscard]] JsonObject* ellipse(const std::string& role) const {
+    const int index = index_of(role);
+    if (index < 0) return nullptr;
+    JsonArray* all = json_object_get_array_member(object_, "targets");
+    return json_array_get_object_element(all, static_cast<guint>(index));
+  }
+  /// Of that among the line's ellipses; -1 where there is none.
+  [[nodiscard]] int index_of(const std::string& role) const {
     JsonArray* all = json_object_get_array_member(object_, "targets");
     for (guint i = 0; i < json_array_get_length(all); ++i) {
       JsonObject* each = json_array_get_object_element(all, i);
-      if (role == json_object_get_string_member(each, "role")) return each;
+      if (role == json_object_get_string_member(each, "role")) return static_cast<int>(i);
     }
-    return nullptr;
+    return -1;
   }
 
  private:

@@ -33,12 +33,14 @@ TEST(LiveLoad, StalledViewersHoldNobodyUp) {
     watching.push_back(std::make_unique<SocketClient>(program.url(), "ws/video"));
     watching.back()->watch();
   }
-  EXPECT_TRUE(wait_until([&] {
-    for (const auto& each : watching) {
-      if (each->watched() < 60) return false;
-    }
-    return true;
-  }));
+  EXPECT_TRUE(wait_until(
+      [&] {
+        for (const auto& each : watching) {
+          if (each->watched() < 60) return false;
+        }
+        return true;
+      },
+      60));
   EXPECT_EQ(tracker_stat(client, "skipped"), 0.0);
   for (const auto& each : stalled) EXPECT_LE(each->waiting(), 2U);
   EXPECT_EQ(client.stat("viewers"), 10.0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 
 #include "tests/live/live_clients.hpp"
@@ -15,7 +16,6 @@ using support::Answer;
 using support::Client;
 using support::LiveProgram;
 using support::SocketClient;
-using support::wait_until;
 
 TEST(LiveSecurity, KnowsTheLoopback) {
   EXPECT_TRUE(live::is_loopback_address("127.0.0.1"));
@@ -39,13 +39,25 @@ TEST(LiveSecurity, TokensAreLongAndComparedWhole) {
   EXPECT_FALSE(live::is_same_secret("", token));
 }
 
+std::int64_t now_us = 0;
+
 TEST(LiveSecurity, AnAllowanceRunsOutAndComesBack) {
-  live::Allowance allowance(1000.0, 3.0);
-  EXPECT_TRUE(allowance.take() && allowance.take() && allowance.take());
-  live::Allowance slow(1e-6, 1.0);
-  EXPECT_TRUE(slow.take());
-  EXPECT_FALSE(slow.take());
-  EXPECT_TRUE(wait_until([&] { return allowance.take(); }));
+  now_us = 5'000'000;
+  live::Allowance allowance(100.0, 300.0, [] { return now_us; });
+  const auto taken = [&] {
+    int count = 0;
+    while (allowance.take()) ++count;
+    return count;
+  };
+  EXPECT_EQ(taken(), 300);
+  now_us += 9'000;
+  EXPECT_EQ(taken(), 0);
+  now_us += 1'001;
+  EXPECT_EQ(taken(), 1);
+  now_us += 500'000;
+  EXPECT_NEAR(taken(), 50, 1);
+  now_us += 60'000'000;  // no more than the store
+  EXPECT_EQ(taken(), 300);
 }
 
 TEST(LiveSecurity, PagesOfOtherSitesAreKeptOut) {
