@@ -123,15 +123,13 @@ ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<C
 
 // The order in which two settings that fit come from one to the other without a pair that is turned
 // around in between: first what widens a pair, then what narrows it.
-bool widens(GstElement* tracker, const Change& change) {
-  const std::string name = change.spec->name;
+bool widens(const GParamSpec* spec, const GValue* from, const GValue* to) {
+  const std::string name = spec->name;
   const bool is_upper = name.starts_with("max-") || name == "edge-high";
   const bool is_lower = name.starts_with("min-") || name == "edge-low";
-  if (!G_IS_PARAM_SPEC_DOUBLE(change.spec) || (!is_upper && !is_lower)) return false;
-  Value now(change.spec);
-  g_object_get_property(G_OBJECT(tracker), change.spec->name, now.get());
-  const double before = g_value_get_double(now.get());
-  const double after = g_value_get_double(change.value->get());
+  if (!G_IS_PARAM_SPEC_DOUBLE(spec) || (!is_upper && !is_lower)) return false;
+  const double before = g_value_get_double(from);
+  const double after = g_value_get_double(to);
   if (name == "edge-high" && (before == 0.0 || after == 0.0)) return after == 0.0;  // 0: no limit
   return is_upper ? after > before : after < before;
 }
@@ -167,7 +165,9 @@ void Properties::set(const std::string& json) {
   std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
   (void)settings_after(tracker_, changes);
   std::stable_partition(changes.begin(), changes.end(), [this](const Change& change) {
-    return widens(tracker_, change);
+    Value now(change.spec);
+    g_object_get_property(G_OBJECT(tracker_), change.spec->name, now.get());
+    return widens(change.spec, now.get(), change.value->get());
   });
   for (const Change& change : changes) {
     g_object_set_property(G_OBJECT(tracker_), change.spec->name, change.value->get());
@@ -179,8 +179,8 @@ ellipse::TrackerSettings Properties::settings_with(const std::string& json) cons
 }
 
 std::string Properties::launch_settings() const {
-  // Largest first: gst-launch-1.0 sets one after the other.
-  std::string uppers;
+  // gst-launch-1.0 sets one after the other, from the defaults on.
+  std::string widening;
   std::string others;
   for (GParamSpec* spec : tunable(tracker_)) {
     Value value(spec);
@@ -189,10 +189,12 @@ std::string Properties::launch_settings() const {
     if (is_unset(spec, value.get())) continue;
     const std::string text = word_of(spec, value.get());
     if (text.empty()) continue;
-    const std::string setting = std::string(" ") + spec->name + "=" + text;
-    (std::string_view(spec->name).starts_with("max-") ? uppers : others) += setting;
+    std::string setting = " ";
+    setting.append(spec->name).append("=").append(text);
+    const GValue* usual = g_param_spec_get_default_value(spec);
+    (widens(spec, usual, value.get()) ? widening : others) += setting;
   }
-  return uppers + others;
+  return widening + others;
 }
 
 }  // namespace live

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "examples/live/properties.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"
@@ -203,30 +204,36 @@ TEST(LiveSettings, PresetsSurviveARestart) {
   g_unsetenv("XDG_DATA_HOME");
 }
 
+// All properties of the tracker that a launch line builds, as the API tells them.
+std::string built_by(const std::string& line) {
+  gchar** words = nullptr;
+  EXPECT_TRUE(g_shell_parse_argv(line.c_str(), nullptr, &words, nullptr)) << line;
+  EXPECT_STREQ(words[0], "gst-launch-1.0");
+  GError* problem = nullptr;
+  const support::Owned<GstElement> pipeline(
+      gst_parse_launchv(const_cast<const gchar**>(words + 1), &problem));
+  g_strfreev(words);
+  EXPECT_EQ(problem, nullptr) << line << problem->message;
+  g_clear_error(&problem);
+  const support::Owned<GstElement> track(
+      gst_bin_get_by_interface(GST_BIN(pipeline.get()), GST_TYPE_PRESET));
+  return live::Properties(track.get(), live::CameraFolder("")).to_json();
+}
+
+// gst-launch-1.0 sets one after the other: no pair may be turned around on the way.
 TEST(LiveSettings, TheLaunchLineBuildsThisVeryElement) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
-  ASSERT_EQ(
-      client
-          .put(
-              "api/properties",
-              R"({"min-axis":750,"max-axis":900,"roi":[1,2,30,40],"gravity":[0,1,0],"overlay":"ellipse+roi"})")
-          .status,
-      200U);
-  const std::string line = client.get("api/launch-line").body;
-  gchar** words = nullptr;
-  ASSERT_TRUE(g_shell_parse_argv(line.c_str(), nullptr, &words, nullptr)) << line;
-  ASSERT_STREQ(words[0], "gst-launch-1.0");
-  const support::Owned<GstElement> pipeline(
-      gst_parse_launchv(const_cast<const gchar**>(words + 1), nullptr));
-  g_strfreev(words);
-  ASSERT_NE(pipeline, nullptr) << line;
-  const support::Owned<GstElement> track(
-      gst_bin_get_by_interface(GST_BIN(pipeline.get()), GST_TYPE_PRESET));
-  ASSERT_NE(track, nullptr);
-  gdouble min = 0.0;
-  g_object_get(track.get(), "min-axis", &min, nullptr);
-  EXPECT_EQ(min, 750.0);
+  for (const char* body :
+       {R"({"roi":[1,2,30,40],"gravity":[0,1,0],"overlay":"ellipse+roi","detector":"contours"})",
+        R"({"min-axis":750,"max-axis":900})",
+        R"({"max-target-size":30,"min-target-size":10})",
+        R"({"max-axis":4,"min-axis":2})",
+        R"({"edge-high":9,"edge-low":5})",
+        R"({"edge-high":50,"edge-low":40})"}) {
+    ASSERT_EQ(client.put("api/properties", body).status, 200U) << body;
+    EXPECT_EQ(built_by(client.get("api/launch-line").body), client.get("api/properties").body);
+  }
 }
 
 }  // namespace
