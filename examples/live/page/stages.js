@@ -54,6 +54,7 @@ export class Stages {
     this.#result = null;
     this.screen.canvas.parentElement.classList.remove("picks");
     this.screen.view = null;
+    delete this.screen.canvas.dataset.stage;
     this.screen.draw();
   }
 
@@ -62,8 +63,9 @@ export class Stages {
     if (!this.#isOn || !this.screen.frame) return;
     try {
       // The candidates are drawn here, over the luma.
-      const stage = this.#stage === "candidates" ? "luma" : this.#stage;
-      this.#result = { stage, ...await analyze({ stage }) };
+      const choice = this.#stage;
+      const stage = choice === "candidates" ? "luma" : choice;
+      this.#result = { choice, stage, ...await analyze({ stage }) };
     } catch (error) {
       at("stage-summary").textContent = error.message;
       return;
@@ -76,15 +78,16 @@ export class Stages {
   });
 
   #draw(context, { bitmap, pts }) {
-    const { image, candidates, stage, pts_ns: lookedAt } = this.#result;
+    const { image, candidates, choice, stage, pts_ns: lookedAt } = this.#result;
     const isSame = String(lookedAt) === pts && stage === "luma";
     drawPicture(context, isSame || !image ? bitmap : image, bitmap.width, bitmap.height, stage !== "luma");
-    if (this.#stage === "candidates") {
+    this.screen.canvas.dataset.stage = choice;
+    if (choice === "candidates") {
       context.fillStyle = "rgb(8 10 14 / .55)";
       context.fillRect(-0.5, -0.5, bitmap.width, bitmap.height);
     }
     const isShown = (candidate, i) => i === this.#marked || candidate.reason === this.#only ||
-      (this.#only === null && this.#stage === "candidates");
+      (this.#only === null && choice === "candidates");
     // What is found lies over what is refused, and what is pointed at over all.
     const rank = ({ is_target, found, number }) => (number === this.#marked ? 3 : is_target ? 2 : found ? 1 : 0);
     const shown = candidates

@@ -3,7 +3,7 @@
 // The page in a real browser, over the program as it is.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
@@ -15,7 +15,10 @@ process.env.XDG_DATA_HOME = mkdtempSync(join(tmpdir(), "ellipse-live-"));
 
 let browser;
 before(async () => { browser = await startBrowser(); });
-after(async () => { await browser.close(); });
+after(async () => {
+  await browser.close();
+  rmSync(process.env.XDG_DATA_HOME, { recursive: true });
+});
 
 /** Each test has its own page; the program is shared. */
 function withProgram(args, tests) {
@@ -33,6 +36,25 @@ function withProgram(args, tests) {
 const readRows = (file) => readFileSync(file, "utf8").trim().split("\n");
 const setting = (page, name) => page.locator(`[data-setting="${name}"]`);
 const stateIs = (page, state) => page.waitForSelector(`#state[data-state=${state}]`);
+
+/** Waits until it is paused and the very frame that the program shows is on the screen; @returns its time [ns]. */
+async function standsStill(page, program) {
+  for (;;) {
+    const { state, pts_ns: pts } = await program.ask("GET", "/api/source");
+    const shown = await page.evaluate(() => document.querySelector("#screen").dataset.pts);
+    if (["paused", "held"].includes(state) && shown === String(pts)) return pts;
+    await setTimeout(20);
+  }
+}
+
+/** Waits until the choices of the frame on the screen, and not of this one, are there; @returns its time. */
+async function choicesAreThere(page, before = null) {
+  const shown = await page.waitForFunction((old) => {
+    const { pts } = document.querySelector("#label-choices").dataset;
+    return pts && pts !== old && pts === document.querySelector("#screen").dataset.pts && pts;
+  }, before);
+  return shown.jsonValue();
+}
 
 describe("a live source", () => withProgram(() => ["--source", "test:approach"], (live) => {
   // Whatever the last test has left.
@@ -73,7 +95,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     for (let i = 0; i < 3; ++i) {
       await page.click("#play");
       await page.waitForSelector("#play[aria-label=Play]");
-      await page.waitForTimeout(300);  // what was under way is painted
+      await standsStill(page, live.program);
       const distance = await largestDistance(page);
       assert.ok(distance.rays > 80, `the ring was met on ${distance.rays} rays`);
       assert.ok(distance.largest_px <= 2, `${distance.largest_px} px apart`);
@@ -217,13 +239,15 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
 
   it("shows each stage on the screen", async () => {
     const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#play");
+    await standsStill(page, live.program);
     await page.click("#tab-stages");
-    await page.waitForSelector("#stage-summary b");
     const pictures = new Set();
-    for (const stage of ["luma", "edges", "chains", "arcs", "candidates"]) {
+    for (const stage of ["luma", "edges", "chains", "arcs", "candidates", "luma"]) {
       await page.locator(`input[name=stage][value=${stage}]`).check({ force: true });
-      await page.waitForTimeout(900);
-      pictures.add(await page.evaluate(() => document.querySelector("#screen").toDataURL("image/png").length));
+      await page.waitForSelector(`#screen[data-stage=${stage}]`);
+      pictures.add(await page.evaluate(() => document.querySelector("#screen").toDataURL("image/png")));
     }
     assert.equal(pictures.size, 5);
     assert.deepEqual(page.troubles, []);
@@ -362,11 +386,14 @@ describe("a file", () => withProgram(() => {
     const page = await live.open();
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
-    await page.waitForTimeout(300);
-    const pts = () => page.evaluate(() => Number(document.querySelector("#screen").dataset.pts));
-    const start = await pts();
+    // Not at its end, behind which it begins again.
+    await page.locator("#scrub").fill("250");
+    await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 5e8) < 1e8);
+    const start = await standsStill(page, live.program);
     await page.click("#step");
     await page.waitForFunction((n) => Number(document.querySelector("#screen").dataset.pts) !== n, start);
+    const step = await standsStill(page, live.program) - start;
+    assert.ok(Math.abs(step - 1e9 / 30) < 2e6, `${step} ns`);
     await page.locator("#scrub").fill("500");
     await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 1e9) < 1e8);
     await page.click("#play");
@@ -377,10 +404,12 @@ describe("a file", () => withProgram(() => {
   it("becomes a data set, frame by frame", async () => {
     const page = await live.open();
     await page.click("#tab-label");
+    await standsStill(page, live.program);
+    const first = await choicesAreThere(page);
     await page.waitForSelector("#label-save:enabled");
     await page.click("#label-save");
     await page.waitForFunction(() => /^1 saved/.test(document.querySelector("#label-result").textContent));
-    await page.waitForTimeout(500);
+    await choicesAreThere(page, first);
     await page.getByLabel("None: no target in this frame").check();
     await page.click("#label-save");
     await page.waitForFunction(() => /^2 saved/.test(document.querySelector("#label-result").textContent));
@@ -390,9 +419,35 @@ describe("a file", () => withProgram(() => {
     assert.match(rows[2], /^images\/labelled\/000002\.png,,,,,,,\d+/);
     await page.close();
   });
+
+  it("takes no choice between two frames, which would be of neither", async () => {
+    const page = await live.open();
+    await page.click("#tab-label");
+    await standsStill(page, live.program);
+    const first = await choicesAreThere(page);
+    let goOn;
+    const isHeld = new Promise((resolve) => { goOn = resolve; });
+    await page.route("**/api/analyze", async (route) => {
+      await isHeld;
+      await route.continue();
+    });
+    await page.click("#label-save");
+    await page.waitForFunction((old) => document.querySelector("#screen").dataset.pts !== old, first);
+    assert.ok(await page.isDisabled("#label-save"));
+    assert.ok(await page.getByLabel("None: no target in this frame").isDisabled());
+    await page.locator("#screen").click();
+    assert.ok(await page.isDisabled("#label-save"));
+    goOn();
+    await choicesAreThere(page, first);
+    assert.ok(await page.getByLabel("None: no target in this frame").isEnabled());
+    await page.close();
+  });
+
   it("takes an ellipse drawn by hand into the data set", async () => {
     const page = await live.open();
     await page.click("#tab-label");
+    await standsStill(page, live.program);
+    await choicesAreThere(page);
     await page.getByLabel("Drawn: click points all along its edge").check();
     const { x, y, width } = await page.locator("#screen").boundingBox();
     const scale = width / 640;
