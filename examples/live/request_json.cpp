@@ -4,6 +4,13 @@
 #include <stdexcept>
 
 namespace live {
+namespace {
+
+bool is_text(JsonNode* node) {
+  return JSON_NODE_HOLDS_VALUE(node) && json_node_get_value_type(node) == G_TYPE_STRING;
+}
+
+}  // namespace
 
 RequestJson::RequestJson(const std::string& body) : parser_(json_parser_new()) {
   GError* problem = nullptr;
@@ -30,8 +37,7 @@ bool RequestJson::has(const char* name) const {
 
 std::string RequestJson::text(const char* name) const {
   JsonNode* member = node(name);
-  if (member == nullptr || !JSON_NODE_HOLDS_VALUE(member) ||
-      json_node_get_value_type(member) != G_TYPE_STRING) {
+  if (member == nullptr || !is_text(member)) {
     throw std::invalid_argument(std::string(name) + ": text is wanted");
   }
   return json_node_get_string(member);
@@ -49,11 +55,17 @@ double RequestJson::number(const char* name) const {
 
 GstClockTime RequestJson::time(const char* name) const {
   constexpr double kLatest = 9e18;
-  const double time = number(name);
-  if (!(time >= 0.0 && time <= kLatest)) {
-    throw std::invalid_argument(std::string(name) + ": a time in ns is wanted");
+  if (has(name) && is_text(node(name))) {
+    // Of a page, whose numbers are doubles, while nanoseconds since 1970 have more digits.
+    const std::string digits = text(name);
+    guint64 time = 0;
+    if (g_ascii_string_to_unsigned(digits.c_str(), 10, 0, G_MAXINT64, &time, nullptr)) return time;
+  } else if (const double time = number(name); time >= 0.0 && time <= kLatest) {
+    return json_node_get_value_type(node(name)) == G_TYPE_INT64
+               ? static_cast<GstClockTime>(json_node_get_int(node(name)))
+               : static_cast<GstClockTime>(time);
   }
-  return static_cast<GstClockTime>(time);
+  throw std::invalid_argument(std::string(name) + ": a time in ns is wanted");
 }
 
 }  // namespace live

@@ -18,7 +18,7 @@ class RequestJson {
 
   [[nodiscard]] std::string text(const char* name) const;
   [[nodiscard]] double number(const char* name) const;
-  /// A time [ns].
+  /// A time [ns]: a number, or text of its digits.
   [[nodiscard]] GstClockTime time(const char* name) const;
   [[nodiscard]] bool has(const char* name) const;
   /// Owned by this; null where there is none.

@@ -194,6 +194,29 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
   EXPECT_EQ(dataset.sequences[0].pictures->picture(frames[0]).cols, 640);
 }
 
+// Nanoseconds since 1970 are no exact doubles.
+TEST(LiveOutput, ALabelIsOfTheVeryFrameWhateverItsTime) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--labels",
+                             folder.file("labels"),
+                             "--source",
+                             "[videotestsrc timestamp-offset=1700000000123456789]"});
+  const Client client(program.url());
+  // Its first frame is shown, and then waited with for years.
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 0; }));
+  const gint64 pts = json_object_get_int_member(client.get("api/source").object(), "pts_ns");
+  ASSERT_GT(pts, 1'700'000'000'000'000'000);
+  const auto label = [&](const std::string& time) {
+    std::string body = R"({"choice":"none","pts_ns":)";
+    return client.post("api/snapshot", body.append(time).append("}")).status;
+  };
+  EXPECT_EQ(label("\"" + std::to_string(pts) + "\""), 200U);
+  EXPECT_EQ(label(std::to_string(pts)), 200U);
+  EXPECT_EQ(label(std::to_string(pts + 1)), 409U);
+  EXPECT_EQ(label("\"now\""), 400U);
+  EXPECT_EQ(label("\"-1\""), 400U);
+}
+
 TEST(LiveOutput, WithoutAFolderThereAreNoSnapshots) {
   const LiveProgram program({});
   EXPECT_EQ(Client(program.url()).post("api/snapshot", R"({"choice":"none"})").status, 409U);

@@ -8,6 +8,7 @@ import { ellipseThrough, kLeastPoints } from "./hand.js";
 
 const kMostChoices = 12;
 const kSamePx = 2;
+const kPatienceMs = 2000;
 const kFields = ["cx", "cy", "semi_major", "semi_minor", "angle_rad"];
 const kOthers = { drawn: true, none: true };
 const at = (id) => document.getElementById(id);
@@ -19,6 +20,7 @@ export class Labels {
   #pts = null;        // of the frame that they are of
   #saved = 0;
   #isOn = false;
+  #isWaiting = false; // for the choices of another frame
 
   constructor(screen, playback) {
     Object.assign(this, { screen, playback });
@@ -43,6 +45,7 @@ export class Labels {
 
   stop() {
     this.#isOn = false;
+    if (this.#isWaiting) this.#pts = null;
     this.screen.canvas.parentElement.classList.remove("picks");
     this.screen.view = null;
     this.screen.draw();
@@ -53,6 +56,7 @@ export class Labels {
     const { frame } = this.screen;
     if (!this.#isOn || !frame || frame.pts === this.#pts) return;
     this.#pts = frame.pts;
+    this.#wait();
     const target = targetOf(frame.line);
     let found = [];
     try {
@@ -70,7 +74,18 @@ export class Labels {
     this.screen.draw();
   });
 
+  // What is chosen now would be of the frame before, or lost.
+  #wait() {
+    this.#isWaiting = true;
+    at("label-choices").disabled = at("label-save").disabled = at("label-undo").disabled = true;
+    delete at("label-choices").dataset.pts;
+    this.screen.draw();
+  }
+
   #list() {
+    this.#isWaiting = false;
+    at("label-choices").disabled = false;
+    at("label-choices").dataset.pts = this.#pts;
     const choices = this.#choices.map((e, i) => [String(i), `${i + 1}: ${placeText(e)}`]);
     const legend = at("label-choices").querySelector("legend");
     const others = [
@@ -106,6 +121,7 @@ export class Labels {
   }
 
   #pick(event) {
+    if (this.#isWaiting) return;
     const { x, y } = this.screen.placeOf(event);
     if (this.#chosen === "drawn") {
       this.#points.push({ x, y });
@@ -119,6 +135,7 @@ export class Labels {
 
   #draw(context, { bitmap }) {
     drawPicture(context, bitmap, bitmap.width, bitmap.height);
+    if (this.#isWaiting) return;
     const width = context.lineWidth;
     this.#choices.forEach((e, i) => {
       const isChosen = i === this.#chosen;
@@ -155,18 +172,25 @@ export class Labels {
   }
 
   async #save() {
-    const { frame } = this.screen;
     const e = this.#answer();
     const choice = e === null ? "none"
       : Object.fromEntries(kFields.map((field) => [field, e[field]]));
     try {
-      const { image } = await ask("POST", "api/snapshot", { choice, pts_ns: Number(frame.pts) });
+      const { image } = await ask("POST", "api/snapshot", { choice, pts_ns: this.#pts });
       at("label-result").textContent = `${++this.#saved} saved, the last as ${image}`;
     } catch (error) {
       at("label-result").textContent = error.message;
       return;
     }
-    if (at("label-step").checked) await this.playback.step();
+    if (at("label-step").checked) await this.#step();
+  }
+
+  async #step() {
+    const { pts } = this.screen.frame;
+    this.#wait();
+    await this.playback.step();
+    // At the end of a file there is no other one.
+    setTimeout(() => this.#isWaiting && this.screen.frame.pts === pts && this.#list(), kPatienceMs);
   }
 }
 
