@@ -17,19 +17,6 @@ std::string body_of(SoupServerMessage* message) {
   return data != nullptr ? std::string(data, size) : std::string();
 }
 
-std::map<std::string, std::string> map_of(GHashTable* query) {
-  std::map<std::string, std::string> map;
-  if (query == nullptr) return map;
-  g_hash_table_foreach(
-      query,
-      [](gpointer key, gpointer value, gpointer data) {
-        auto& result = *static_cast<std::map<std::string, std::string>*>(data);
-        result[static_cast<const char*>(key)] = static_cast<const char*>(value);
-      },
-      &map);
-  return map;
-}
-
 }  // namespace
 
 HttpServer::HttpServer(Settings settings)
@@ -80,6 +67,7 @@ void HttpServer::route(const char* method,
   route_open(method, path, [handle = std::move(handle)](const Request& request) {
     answer(request.message, handle(request));
   });
+  routes_.back().has_end = true;
 }
 
 void HttpServer::route_open(const char* method,
@@ -91,6 +79,7 @@ void HttpServer::route_open(const char* method,
                      path.substr(0, star),
                      has_rest ? path.substr(star + 1) : "",
                      has_rest,
+                     false,
                      std::move(handle)});
 }
 
@@ -142,11 +131,11 @@ void HttpServer::on_early(SoupServer* /*server*/,
 void HttpServer::on_request(SoupServer* /*server*/,
                             SoupServerMessage* message,
                             const char* path,
-                            GHashTable* query,
+                            GHashTable* /*query*/,
                             gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
   self->connections_.keep(soup_server_message_get_remote_address(message));
-  self->dispatch(message, path, query);
+  self->dispatch(message, path);
 }
 
 // What stands where a route has its "*"; nullopt where the path is not the route's.
@@ -160,20 +149,18 @@ std::optional<std::string> HttpServer::rest_of(const std::string& path, const Ro
   return rest.find('/') == std::string::npos ? std::optional(std::move(rest)) : std::nullopt;
 }
 
-void HttpServer::dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query) {
-  std::string method = soup_server_message_get_method(message);
-  if (method == "HEAD") method = "GET";
+void HttpServer::dispatch(SoupServerMessage* message, const std::string& path) {
+  const std::string method = soup_server_message_get_method(message);
   bool is_known = false;
   for (const Route& route : routes_) {
     const std::optional<std::string> rest = rest_of(path, route);
     if (!rest) continue;
     is_known = true;
-    if (route.method != method) continue;
-    const Request request{.message = message,
-                          .path = path,
-                          .rest = *rest,
-                          .body = body_of(message),
-                          .query = map_of(query)};
+    // Of what has no end there is no head by itself.
+    const bool is_head = method == "HEAD" && route.method == "GET" && route.has_end;
+    if (route.method != method && !is_head) continue;
+    const Request request{
+        .message = message, .path = path, .rest = *rest, .body = body_of(message)};
     try {
       route.handle(request);
     } catch (const std::invalid_argument& error) {

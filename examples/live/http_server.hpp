@@ -22,7 +22,6 @@ struct Request {
   std::string path;
   std::string rest;  ///< What of the path came where the route has its "*".
   std::string body;
-  std::map<std::string, std::string> query;
 };
 
 /// HTTP and WebSockets on libsoup, behind the gate that every request passes. In the main loop's
@@ -61,6 +60,7 @@ class HttpServer {
     std::string before;  // the "*"
     std::string after;
     bool has_rest;
+    bool has_end;  // of its reply
     std::function<void(const Request&)> handle;
   };
 
@@ -83,7 +83,7 @@ class HttpServer {
 
   static std::optional<std::string> rest_of(const std::string& path, const Route& route);
   void listen();
-  void dispatch(SoupServerMessage* message, const std::string& path, GHashTable* query);
+  void dispatch(SoupServerMessage* message, const std::string& path);
 
   Settings settings_;
   HttpGate gate_;

@@ -2,9 +2,23 @@
 #include "examples/live/options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
 
 namespace live {
+namespace {
+
+// It stands in a cookie, in a link and in the address of RTSP, where other characters mean
+// something.
+std::string is_token(const std::string& text) {
+  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '~' || c == '-';
+  });
+  return is_plain ? "" : "takes letters, digits and . _ ~ - only";
+}
+
+}  // namespace
 
 Options parse_options(int argc, char** argv) {
   Options options;
@@ -22,7 +36,8 @@ Options parse_options(int argc, char** argv) {
   app.add_option(
          "--bind", options.bind, "Address to listen at; any but a loopback address wants a token")
       ->capture_default_str();
-  app.add_option("--token", options.token, "What clients have to know; made and printed if needed");
+  app.add_option("--token", options.token, "What clients have to know; made and printed if needed")
+      ->check(is_token);
   app.add_option(
          "--rtsp", options.rtsp_port, "Also serve rtsp://.../live at this port; 0 = a free one")
       ->check(CLI::Range(0, 65535));

@@ -170,6 +170,15 @@ TEST(LiveApi, MjpegIsForWhatKnowsNoWebSocket) {
   EXPECT_EQ(picture.cols, 640);
 }
 
+TEST(LiveApi, WhoAsksForTheHeadAloneIsNoViewer) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  EXPECT_EQ(client.ask("HEAD", "").status, 200U);
+  EXPECT_NE(client.ask("HEAD", "video.mjpeg").status, 200U);
+  EXPECT_EQ(client.ask("HEAD", "api/events").status, 405U);
+  EXPECT_EQ(client.stat("viewers") + client.stat("listeners"), 0.0);
+}
+
 TEST(LiveApi, MetricsAreWellFormed) {
   const LiveProgram program({});
   const Client client(program.url());

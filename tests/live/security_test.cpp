@@ -102,6 +102,16 @@ TEST(LiveSecurity, TheTokenIsAskedForEverywhere) {
   EXPECT_EQ(client.get("?token=sesam").status, 401U);
 }
 
+TEST(LiveSecurity, ATokenThatWouldNotFitIntoALinkIsRefused) {
+  for (const char* token : {"open sesame", "a;b", "a&b", "a%41", "sésame", ""}) {
+    LiveProgram program({"--token", token}, false);
+    EXPECT_NE(program.line_with("--token"), "") << token;
+    EXPECT_NE(program.wait(), 0) << token;
+  }
+  const LiveProgram program({"--token", "Az09._~-"});
+  EXPECT_TRUE(program.url().ends_with("/?token=Az09._~-"));
+}
+
 struct Door {
   std::string url;  // without the token
   std::string token;
