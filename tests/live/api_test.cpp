@@ -67,7 +67,7 @@ TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
   while (line_at.empty() || line_at.rbegin()->first < SocketClient::pts_of(pictures.back())) {
     const std::string text = lines.next();
     const Line line(text);
-    ASSERT_TRUE(line.is_valid());
+    ASSERT_TRUE(line.is_valid()) << text << (lines.is_open() ? "" : lines.closing());
     line_at[static_cast<guint64>(line.number("pts_ns"))] = text;
   }
   int compared = 0;

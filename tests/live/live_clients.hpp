@@ -192,6 +192,12 @@ class SocketClient {
     return connection_ &&
            soup_websocket_connection_get_state(connection_.get()) == SOUP_WEBSOCKET_STATE_OPEN;
   }
+  /// Why it is not open: the code and the text that it was closed with.
+  [[nodiscard]] std::string closing() const {
+    const char* why = soup_websocket_connection_get_close_data(connection_.get());
+    return std::to_string(soup_websocket_connection_get_close_code(connection_.get())) + " " +
+           (why != nullptr ? why : "");
+  }
   void send(const std::string& text) {
     soup_websocket_connection_send_text(connection_.get(), text.c_str());
   }
