@@ -58,7 +58,13 @@ GSocket* Connections::keep(GSocketAddress* client) {
   const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
   if (found == open_->end()) return nullptr;
   found->second.deadline_us = 0;
+  g_socket_set_timeout(found->second.socket.get(), kSilenceSeconds);
   return found->second.socket.get();
+}
+
+void Connections::allow_silence(GSocketAddress* client) {
+  const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
+  if (found != open_->end()) g_socket_set_timeout(found->second.socket.get(), 0);
 }
 
 void Connections::on_gone(gpointer data, GObject* /*connection*/) {

@@ -26,6 +26,10 @@ class Connections {
   /// Its request has come: from now on it may stay. @return Its socket; null where it has gone.
   GSocket* keep(GSocketAddress* client);
 
+  /// It may send nothing for as long as it likes. To be said before a WebSocket waits for its
+  /// bytes: who waits already does so for the time that was allowed before.
+  void allow_silence(GSocketAddress* client);
+
   [[nodiscard]] std::size_t size() const { return open_->size(); }
 
  private:

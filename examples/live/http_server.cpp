@@ -121,11 +121,13 @@ void HttpServer::on_early(SoupServer* /*server*/,
   auto* self = static_cast<HttpServer*>(data);
   ++self->counters_.requests;
   add_policy(message);
-  if (self->gate_.refuses(message, path)) ++self->counters_.refused;
+  const bool is_refused = self->gate_.refuses(message, path);
+  if (is_refused) ++self->counters_.refused;
   // Kept for a WebSocket, which loses sight of whose it is.
   GSocketAddress* client = soup_server_message_get_remote_address(message);
   if (client == nullptr) return;
   g_object_set_data_full(G_OBJECT(message), kClientKey, g_object_ref(client), g_object_unref);
+  if (!is_refused && self->websockets_.contains(path)) self->connections_.allow_silence(client);
 }
 
 void HttpServer::on_request(SoupServer* /*server*/,
@@ -185,7 +187,7 @@ void HttpServer::on_websocket(SoupServer* /*server*/,
       static_cast<GSocketAddress*>(g_object_get_data(G_OBJECT(message), kClientKey)));
   const auto handler = self->websockets_.find(path);
   if (socket == nullptr || handler == self->websockets_.end()) return;
-  g_socket_set_timeout(socket, 0);  // it may be silent for as long as it likes
+  g_socket_set_timeout(socket, 0);
   handler->second(std::make_unique<WebSocket>(connection, socket));
 }
 

@@ -185,6 +185,18 @@ TEST(LiveLimits, ARequestHasToComeToItsEnd) {
   EXPECT_TRUE(is_freed);
 }
 
+// A viewer of lines has nothing to say; this one does not even answer pings.
+TEST(LiveLimits, AWebSocketMayBeSilent) {
+  const LiveProgram program({});
+  const RawClient viewer(program.port());
+  ASSERT_TRUE(
+      viewer.send("GET /ws/meta HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: "
+                  "Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                  "Sec-WebSocket-Version: 13\r\n\r\n"));
+  const gint64 begin = g_get_monotonic_time();
+  while (g_get_monotonic_time() - begin < 25 * G_USEC_PER_SEC) ASSERT_NE(viewer.receive(), "");
+}
+
 TEST(LiveLimits, OneAddressInANetworkDoesNotTakeAllConnections) {
   const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
