@@ -203,7 +203,7 @@ TEST(LiveApi, MetricsAreWellFormed) {
 TEST(LiveApi, TheTargetIsAskedForByItself) {
   const LiveProgram program({});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.poll("api/target").object() != nullptr; }));
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
   EXPECT_GT(json_object_get_double_member(client.get("api/target").object(), "semi_major"), 20.0);
 }
 
@@ -215,7 +215,7 @@ int count_of(const Answer& answer, const char* reason) {
 TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
   const LiveProgram program({});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.poll("api/target").object() != nullptr; }));
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
   const Answer now = client.post("api/analyze", R"({"stage":"edges"})");
   ASSERT_EQ(now.status, 200U) << now.body;

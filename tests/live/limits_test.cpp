@@ -112,7 +112,7 @@ TEST(LiveLimits, WhoAsksTooOftenHasToWait) {
   bool is_stopped = false;
   for (int i = 0; i < 20 && !is_stopped; ++i) is_stopped = is_stopped_at_once(program, 150);
   EXPECT_TRUE(is_stopped);
-  EXPECT_EQ(Client(program.url()).poll("api/target").status, 200U);
+  EXPECT_EQ(Client(program.url()).get("api/target").status, 200U);
 }
 
 TEST(LiveLimits, ConnectionsAreCounted) {
@@ -159,7 +159,7 @@ TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
     refused += watching.back()->receive().find(" 503 ") != std::string::npos ? 1 : 0;
   }
   EXPECT_EQ(refused, 20);
-  EXPECT_EQ(client.poll("api/target").status, 200U);
+  EXPECT_EQ(client.get("api/target").status, 200U);
   SocketClient video(program.url(), "ws/video");
   EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
 }

@@ -57,11 +57,36 @@ class Client {
   explicit Client(std::string url) : url_(std::move(url)), session_(soup_session_new()) {}
 
   using Headers = std::map<std::string, std::string>;
+  static constexpr guint kTooOften = 429;
 
+  /// Waits and asks again where it has asked too often, as those do who poll.
   Answer ask(const char* method,
              const std::string& path,
              const std::string& body = "",
              const Headers& headers = {}) const {
+    Answer answer = ask_once(method, path, body, headers);
+    for (int i = 0; i < 50 && answer.status == kTooOften; ++i) {
+      g_usleep(100'000);
+      answer = ask_once(method, path, body, headers);
+    }
+    return answer;
+  }
+  [[nodiscard]] Answer get(const std::string& path) const { return ask("GET", path); }
+  [[nodiscard]] Answer put(const std::string& path, const std::string& body) const {
+    return ask("PUT", path, body);
+  }
+  [[nodiscard]] Answer post(const std::string& path, const std::string& body = "") const {
+    return ask("POST", path, body);
+  }
+  [[nodiscard]] double stat(const char* name) const {
+    return json_object_get_double_member(get("api/stats").object(), name);
+  }
+
+ private:
+  [[nodiscard]] Answer ask_once(const char* method,
+                                const std::string& path,
+                                const std::string& body,
+                                const Headers& headers) const {
     const Ref<SoupMessage> message(soup_message_new(method, (url_ + path).c_str()));
     soup_message_add_flags(message.get(), SOUP_MESSAGE_NO_REDIRECT);
     for (const auto& [name, value] : headers) {
@@ -88,27 +113,7 @@ class Client {
     while (soup_message_headers_iter_next(&iter, &name, &value)) answer.headers[name] = value;
     return answer;
   }
-  [[nodiscard]] Answer get(const std::string& path) const { return ask("GET", path); }
-  [[nodiscard]] Answer put(const std::string& path, const std::string& body) const {
-    return ask("PUT", path, body);
-  }
-  [[nodiscard]] Answer post(const std::string& path, const std::string& body = "") const {
-    return ask("POST", path, body);
-  }
-  /// The same, for those who ask until something is so: waits where they ask too often.
-  [[nodiscard]] Answer poll(const std::string& path) const {
-    Answer answer = get(path);
-    for (int i = 0; i < 100 && answer.status != SOUP_STATUS_OK; ++i) {
-      g_usleep(100'000);
-      answer = get(path);
-    }
-    return answer;
-  }
-  [[nodiscard]] double stat(const char* name) const {
-    return json_object_get_double_member(poll("api/stats").object(), name);
-  }
 
- private:
   std::string url_;
   Ref<SoupSession> session_;
 };

@@ -15,7 +15,7 @@ using support::SocketClient;
 using support::wait_until;
 
 double tracker_stat(const Client& client, const char* name) {
-  const support::Answer answer = client.poll("api/stats");
+  const support::Answer answer = client.get("api/stats");
   return json_object_get_double_member(json_object_get_object_member(answer.object(), "tracker"),
                                        name);
 }

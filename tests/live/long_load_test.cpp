@@ -38,7 +38,7 @@ Pace run(const Client& client) {
     frames = client.stat("frames") - first;
   }
   const double seconds = 1e-6 * static_cast<double>(g_get_monotonic_time() - start_us);
-  const support::Answer answer = client.poll("api/stats");
+  const support::Answer answer = client.get("api/stats");
   JsonObject* tracker = json_object_get_object_member(answer.object(), "tracker");
   return {frames / seconds,
           1e-6 * json_object_get_double_member(tracker, "processing_time_median"),

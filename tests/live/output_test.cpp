@@ -149,7 +149,7 @@ int number_of_target(const LiveProgram& program, const Client& client) {
     if (number >= 0) return number;
     EXPECT_EQ(client.post("api/step").status, 200U);
     EXPECT_TRUE(wait_until([&] {
-      return json_object_get_int_member(client.poll("api/source").object(), "pts_ns") !=
+      return json_object_get_int_member(client.get("api/source").object(), "pts_ns") !=
              line.number("pts_ns");
     }));
   }
@@ -160,7 +160,7 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
   const TemporaryFolder folder;
   const LiveProgram program({"--labels", folder.file("labels")});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.poll("api/target").object() != nullptr; }));
+  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
   const int target = number_of_target(program, client);
   ASSERT_GE(target, 0);

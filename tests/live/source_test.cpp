@@ -68,11 +68,11 @@ std::string trouble_with(const std::string& source) {
 }
 
 std::string text_in(const Client& client, const char* member) {
-  return json_object_get_string_member(client.poll("api/source").object(), member);
+  return json_object_get_string_member(client.get("api/source").object(), member);
 }
 
 gint64 number_in(const Client& client, const char* member) {
-  return json_object_get_int_member(client.poll("api/source").object(), member);
+  return json_object_get_int_member(client.get("api/source").object(), member);
 }
 
 TEST(LiveSource, WhatIsWrongIsSaid) {
@@ -116,7 +116,7 @@ TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
 gint64 shown_when_paused(const Client& client) {
   Answer answer;
   const bool is_paused = wait_until([&] {
-    answer = client.poll("api/source");
+    answer = client.get("api/source");
     return json_object_get_string_member(answer.object(), "state") == std::string("paused");
   });
   return is_paused ? json_object_get_int_member(answer.object(), "pts_ns") : -1;
