@@ -25,7 +25,8 @@ static bool succeeds(GstEllipseTrack* self, const char* failure, const Body& bod
     why = error.what();
   } catch (...) {
   }
-  GST_ELEMENT_WARNING(self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("it passes"));
+  GST_ELEMENT_WARNING(
+      self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("the stream goes on"));
   return false;
 }
 

@@ -133,6 +133,21 @@ TEST(EllipseTrackProperties, TheirTypesArePartOfThePluginsApi) {
   }
 }
 
+// A property follows straight lines between values at whole seconds of stream time.
+void control(GstElement* element, const char* name, const std::map<int, double>& values) {
+  GstControlSource* source = gst_interpolation_control_source_new();
+  g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
+  gst_object_add_control_binding(
+      GST_OBJECT(element),
+      gst_direct_control_binding_new_absolute(GST_OBJECT(element), name, source));
+  for (const auto& [at_s, value] : values) {
+    gst_timed_value_control_source_set(GST_TIMED_VALUE_CONTROL_SOURCE(source),
+                                       static_cast<GstClockTime>(at_s) * GST_SECOND,
+                                       value);
+  }
+  gst_object_unref(source);
+}
+
 TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
   const auto harness = tracker("tracking=none");
   GstElement* element = element_of(harness);
@@ -140,15 +155,7 @@ TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
   gst_segment_init(&segment, GST_FORMAT_TIME);
   segment.time = 10 * GST_SECOND;
   gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
-  GstControlSource* source = gst_interpolation_control_source_new();
-  g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
-  gst_object_add_control_binding(
-      GST_OBJECT(element),
-      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "max-axis", source));
-  auto* curve = GST_TIMED_VALUE_CONTROL_SOURCE(source);
-  gst_timed_value_control_source_set(curve, 10 * GST_SECOND, 150.0);
-  gst_timed_value_control_source_set(curve, 11 * GST_SECOND, 50.0);
-  gst_object_unref(source);
+  control(element, "max-axis", {{10, 150.0}, {11, 50.0}});
   std::string pattern;  // the ring is 100 px across, its inner edge 79.5
   for (guint64 i = 0; i < 8; ++i) {
     auto buffer = gray_buffer_of(ring_picture());
@@ -170,16 +177,7 @@ TEST(EllipseTrackProperties, OfACurveAreRefusedAloudOnce) {
   EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
   EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
   g_object_set(element, "min-axis", 5.0, nullptr);
-  GstControlSource* source = gst_interpolation_control_source_new();
-  g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
-  gst_object_add_control_binding(
-      GST_OBJECT(element),
-      gst_direct_control_binding_new_absolute(GST_OBJECT(element), "min-axis", source));
-  auto* curve = GST_TIMED_VALUE_CONTROL_SOURCE(source);
-  for (const auto& [at_s, value] : {std::pair(0, 600.0), {1, 800.0}, {2, 600.0}, {3, 800.0}}) {
-    gst_timed_value_control_source_set(curve, static_cast<GstClockTime>(at_s) * GST_SECOND, value);
-  }
-  gst_object_unref(source);
+  control(element, "min-axis", {{0, 600.0}, {1, 800.0}, {2, 600.0}, {3, 800.0}});
   int warnings = 0;
   for (guint64 i = 0; i <= 30; ++i) {
     auto buffer = gray_buffer_of(ring_picture());
