@@ -28,21 +28,21 @@ GstPadProbeReturn FrameTap::on_arrival(GstPad* /*pad*/, GstPadProbeInfo* /*info*
 }
 
 GstFlowReturn FrameTap::on_sample(GstAppSink* sink, gpointer data) {
-  if (GstSample* sample = gst_app_sink_pull_sample(sink)) {
-    static_cast<FrameTap*>(data)->take(sample);
-  }
+  Ref<GstSample> sample(gst_app_sink_pull_sample(sink));
+  if (sample) static_cast<FrameTap*>(data)->take(std::move(sample));
   return GST_FLOW_OK;
 }
 
 GstFlowReturn FrameTap::on_preroll(GstAppSink* sink, gpointer data) {
-  if (GstSample* sample = gst_app_sink_pull_preroll(sink)) {
-    static_cast<FrameTap*>(data)->take(sample);
-  }
+  Ref<GstSample> sample(gst_app_sink_pull_preroll(sink));
+  if (sample) static_cast<FrameTap*>(data)->take(std::move(sample));
   return GST_FLOW_OK;
 }
 
-void FrameTap::take(GstSample* sample) {
+void FrameTap::take(Ref<GstSample> theirs) {
+  // appsink 1.22 writes on its own sample after a flush without asking who else holds it.
   auto frame = std::make_shared<Frame>();
+  GstSample* sample = gst_sample_copy(theirs.get());
   frame->sample.reset(sample);
   GstBuffer* buffer = gst_sample_get_buffer(sample);
   GstVideoInfo info;

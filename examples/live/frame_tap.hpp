@@ -29,7 +29,7 @@ class FrameTap {
   static GstPadProbeReturn on_arrival(GstPad* pad, GstPadProbeInfo* info, gpointer data);
   static GstFlowReturn on_sample(GstAppSink* sink, gpointer data);
   static GstFlowReturn on_preroll(GstAppSink* sink, gpointer data);
-  void take(GstSample* sample);
+  void take(Ref<GstSample> theirs);
 
   FrameSink on_frame_;
   std::atomic<guint64> frames_{0};

@@ -110,7 +110,7 @@ void LivePipeline::open(SourceSpec spec, bool loops) {
   start();
 }
 
-void LivePipeline::start() {
+void LivePipeline::start(GstState wanted) {
   state_ = PlayState::kStarting;
   glances_without_frames_ = 0;
   has_begun_ = false;
@@ -126,8 +126,9 @@ void LivePipeline::start() {
   const GstStateChangeReturn paused = gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   if (paused == GST_STATE_CHANGE_NO_PREROLL) spec_.is_live = true;
   g_object_set(sink_, "sync", spec_.is_live ? FALSE : TRUE, nullptr);
-  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
-  if (paused != GST_STATE_CHANGE_FAILURE) state_ = PlayState::kPlaying;
+  gst_element_set_state(pipeline_, wanted);
+  if (paused == GST_STATE_CHANGE_FAILURE) return;
+  state_ = wanted == GST_STATE_PLAYING ? PlayState::kPlaying : PlayState::kPausing;
 }
 
 void LivePipeline::stop() {
@@ -142,16 +143,10 @@ void LivePipeline::stop() {
 }
 
 void LivePipeline::play() {
-  if (state_ == PlayState::kEnded) {
-    if (!seek(0)) {
-      stop();
-      start();
-      return;
-    }
-  } else if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) {
-    return;
-  }
+  if (state_ == PlayState::kEnded) rewind();
+  if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) return;
   steps_ = 0;
+  is_stepping_ = false;
   state_ = PlayState::kPlaying;
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
 }
@@ -164,6 +159,7 @@ void LivePipeline::pause() {
 // A sink that is paused waits for one more frame, and shows it.
 void LivePipeline::hold_still() {
   steps_ = 0;
+  is_stepping_ = false;
   state_ = PlayState::kPausing;
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   settle();
@@ -175,17 +171,37 @@ void LivePipeline::settle() {
   if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
   if (now != GST_STATE_PAUSED) return;
   state_ = PlayState::kPaused;
-  if (steps_ == 0) return;
-  --steps_;
-  step();
+  // A sink that is paused tells nobody of the end that it was stepped to.
+  if (std::exchange(is_stepping_, false) && is_at_end()) {
+    end_of_stream();
+  } else if (steps_ > 0) {
+    --steps_;
+    step();
+  }
 }
 
 void LivePipeline::step() {
   if (state_ == PlayState::kPausing) ++steps_;
   if (state_ != PlayState::kPaused) return;
+  if (is_at_end()) {
+    end_of_stream();
+    return;
+  }
   state_ = PlayState::kPausing;
+  is_stepping_ = true;
   gst_element_send_event(sink_, gst_event_new_step(GST_FORMAT_BUFFERS, 1, 1.0, TRUE, FALSE));
   settle();
+}
+
+bool LivePipeline::is_at_end() const {
+  return gst_app_sink_is_eos(GST_APP_SINK(sink_)) != FALSE;
+}
+
+// It stands still at the first frame.
+void LivePipeline::rewind() {
+  if (seek(0)) return;
+  stop();
+  start(GST_STATE_PAUSED);
 }
 
 bool LivePipeline::seek(GstClockTime position) {
@@ -197,7 +213,7 @@ bool LivePipeline::seek(GstClockTime position) {
           static_cast<gint64>(position))) {
     return false;
   }
-  if (state_ == PlayState::kEnded) hold_still();
+  if (state_ != PlayState::kPlaying) hold_still();
   return true;
 }
 
@@ -254,8 +270,11 @@ void LivePipeline::end_of_stream() {
     source_dropped("it has ended");
     return;
   }
+  const bool was_playing = state_ == PlayState::kPlaying;
   state_ = PlayState::kEnded;
-  if (loops_) play();
+  if (!loops_) return;
+  rewind();
+  if (was_playing) play();
 }
 
 void LivePipeline::source_dropped(const std::string& why) {

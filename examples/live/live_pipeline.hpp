@@ -42,7 +42,8 @@ class LivePipeline {
   void play();
   /// kPausing until the picture stands still: the frame that is under way is still shown.
   void pause();
-  /// Shows the next frame of what is paused, or is about to be.
+  /// Shows the next frame of what is paused, or is about to be. Behind the last one it has ended, or
+  /// begins again where it loops.
   void step();
   /// To a time [ns] of what can be sought; at once also where it is paused. @return false where it
   /// cannot.
@@ -64,13 +65,15 @@ class LivePipeline {
   static gboolean on_glance(gpointer data);
   static gboolean on_retry(gpointer data);
 
-  void start();
+  void start(GstState wanted = GST_STATE_PLAYING);
   void stop();
   void end_of_stream();
   void source_dropped(const std::string& why);
   void watch_arrivals();
   void hold_still();
   void settle();
+  [[nodiscard]] bool is_at_end() const;
+  void rewind();
   void cancel_retry();
 
   Handlers handlers_;
@@ -87,7 +90,8 @@ class LivePipeline {
   guint retries_ = 0;  // since it last delivered
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
-  guint steps_ = 0;  // that wait until it is paused
+  guint steps_ = 0;           // that wait until it is paused
+  bool is_stepping_ = false;  // a step is under way
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;

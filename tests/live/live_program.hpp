@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <gio/gio.h>
+#include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -29,6 +30,7 @@ class LiveProgram {
   }
   ~LiveProgram() {
     stop();
+    EXPECT_TRUE(g_subprocess_get_if_exited(process_)) << "ellipse-live has crashed";
     g_object_unref(process_);
   }
   LiveProgram(const LiveProgram&) = delete;

@@ -1,0 +1,57 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+// What ellipse-live plays in the tests, and what it says of it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/gst/support.hpp"
+#include "tests/live/live_clients.hpp"
+
+namespace support {
+
+inline std::string make_video(const TemporaryFolder& folder,
+                              int frames,
+                              const std::string& size = "width=320,height=180") {
+  const std::string file = folder.file("video.mkv");
+  EXPECT_EQ(run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                         " ! video/x-raw,format=I420," + size +
+                         " ! jpegenc ! matroskamux ! filesink location=" + file),
+            "");
+  return file;
+}
+
+inline std::string make_pictures(const TemporaryFolder& folder, int frames) {
+  const std::string pictures = folder.file("pictures");
+  std::filesystem::create_directory(pictures);
+  EXPECT_EQ(run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                         " ! video/x-raw,format=I420,width=320,height=180 ! jpegenc ! "
+                         "multifilesink location=" +
+                         pictures + "/flight-%d.jpg"),
+            "");
+  std::ofstream(pictures + "/notes.txt") << "no picture";
+  return pictures;
+}
+
+// As cameras and telephones write it: H.264 with sound.
+inline std::string make_mp4(const TemporaryFolder& folder, int frames) {
+  const std::string file = folder.file("video.mp4");
+  EXPECT_EQ(run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
+                         " ! video/x-raw,width=320,height=180 ! videoconvert ! x264enc ! "
+                         "mp4mux name=mux ! filesink location=" +
+                         file + " audiotestsrc num-buffers=40 ! audioconvert ! avenc_aac ! mux."),
+            "");
+  return file;
+}
+
+inline std::string text_in(const Client& client, const char* member) {
+  return json_object_get_string_member(client.get("api/source").object(), member);
+}
+
+inline gint64 number_in(const Client& client, const char* member) {
+  return json_object_get_int_member(client.get("api/source").object(), member);
+}
+
+}  // namespace support

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <thread>
+
+#include "tests/gst/support.hpp"
+#include "tests/live/live_clients.hpp"
+#include "tests/live/live_program.hpp"
+#include "tests/live/live_sources.hpp"
+
+namespace {
+
+using support::Answer;
+using support::Client;
+using support::Line;
+using support::LiveProgram;
+using support::make_mp4;
+using support::make_pictures;
+using support::make_video;
+using support::number_in;
+using support::SocketClient;
+using support::TemporaryFolder;
+using support::text_in;
+using support::wait_until;
+
+// The frame that is shown once it is paused; -1 where that does not come to be.
+gint64 shown_when_paused(const Client& client) {
+  Answer answer;
+  const bool is_paused = wait_until([&] {
+    answer = client.get("api/source");
+    return json_object_get_string_member(answer.object(), "state") == std::string("paused");
+  });
+  return is_paused ? json_object_get_int_member(answer.object(), "pts_ns") : -1;
+}
+
+bool stands_still(const Client& client) {
+  return shown_when_paused(client) >= 0;
+}
+
+class SeekableSource : public testing::TestWithParam<const char*> {};
+
+TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
+  const TemporaryFolder folder;
+  const std::string source =
+      GetParam() == std::string("file") ? make_video(folder, 900) : make_pictures(folder, 900);
+  const LiveProgram program({"--source", source});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/step").status, 409U);
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":1000000000})").status, 200U);
+  const auto shows = [&](int frame) {
+    return wait_until(
+        [&] { return std::abs(number_in(client, "pts_ns") - frame * 33'333'333LL) < 1'000'000; });
+  };
+  ASSERT_TRUE(shows(30)) << number_in(client, "pts_ns");
+  for (int frame = 31; frame < 34; ++frame) {
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    ASSERT_TRUE(shows(frame)) << number_in(client, "pts_ns");
+  }
+  EXPECT_EQ(client.post("api/seek", R"({"position_ns":-1})").status, 400U);
+  EXPECT_EQ(client.post("api/seek", "{}").status, 400U);
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":29000000000})").status, 200U);
+  ASSERT_TRUE(shows(870)) << number_in(client, "pts_ns");
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_EQ(text_in(client, "state"), "playing");
+}
+
+// A slow decoder: when it is paused, a frame is still under way.
+TEST(LivePlayback, WhatIsPausedStandsStill) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source",
+                             "[filesrc location=" + make_video(folder, 300) +
+                                 " ! matroskademux ! jpegdec ! identity sleep-time=100000]"});
+  const Client client(program.url());
+  for (int i = 0; i < 5; ++i) {
+    const double frames = client.stat("frames");
+    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames; }));
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    const gint64 shown = shown_when_paused(client);
+    g_usleep(200'000);
+    EXPECT_EQ(number_in(client, "pts_ns"), shown);
+    // A step that was asked for before it stood still is not lost.
+    ASSERT_EQ(client.post("api/play").status, 200U);
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    const gint64 stepped = shown_when_paused(client);
+    EXPECT_GE(stepped - shown, 2 * 33'000'000);
+    g_usleep(200'000);
+    EXPECT_EQ(number_in(client, "pts_ns"), stepped);
+    ASSERT_EQ(client.post("api/play").status, 200U);
+  }
+}
+
+// Steps on until that state, or frame, is there; a paused sink says nothing of the end by itself.
+bool steps_until(const Client& client, const std::function<bool()>& is_so) {
+  return wait_until([&] {
+    if (is_so()) return true;
+    EXPECT_EQ(client.post("api/step").status, 200U);
+    return false;
+  });
+}
+
+TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 30)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":900000000})").status, 200U);
+  ASSERT_TRUE(steps_until(client, [&] { return text_in(client, "state") == "ended"; }));
+  EXPECT_EQ(number_in(client, "pts_ns"), 967'000'000);  // its last frame is still shown
+  ASSERT_EQ(client.post("api/step").status, 200U);
+  EXPECT_EQ(text_in(client, "state"), "ended");
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":500000000})").status, 200U);
+  EXPECT_EQ(shown_when_paused(client), 500'000'000);
+  ASSERT_TRUE(steps_until(client, [&] { return text_in(client, "state") == "ended"; }));
+  const double frames = client.stat("frames");
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  EXPECT_EQ(client.stat("frames"), frames + 30);  // from its beginning on
+}
+
+class LoopedSource : public testing::TestWithParam<const char*> {};
+
+// One that can be sought, and one that cannot.
+TEST_P(LoopedSource, ThatIsSteppedOverItsEndBeginsAgainAndStandsStill) {
+  const TemporaryFolder folder;
+  const std::string source =
+      GetParam() == std::string("file")
+          ? make_video(folder, 6)
+          : "[multifilesrc stop-index=5 caps=image/jpeg,framerate=30/1 location=" +
+                make_pictures(folder, 6) + "/flight-%d.jpg ! jpegdec]";
+  const LiveProgram program({"--source", source, "--loop"});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  gint64 shown = shown_when_paused(client);
+  EXPECT_EQ(client.get("api/source").body.find(R"("seekable":true)") != std::string::npos,
+            GetParam() == std::string("file"));
+  int begins = 0;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    gint64 next = shown;
+    ASSERT_TRUE(wait_until([&] { return (next = shown_when_paused(client)) != shown; })) << shown;
+    begins += next < shown ? 1 : 0;
+    EXPECT_NEAR(static_cast<double>(next), next < shown ? 0.0 : shown + 1e9 / 30, 1e6);
+    shown = next;
+  }
+  EXPECT_GE(begins, 3);
+}
+
+TEST(LivePlayback, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
+  const TemporaryFolder folder;
+  const std::string source = make_video(folder, 90);
+  const LiveProgram program({"--source", source, "--allow-source-change"});
+  const Client client(program.url());
+  for (int i = 0; i < 5; ++i) {
+    const double frames = client.stat("frames");
+    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 3; }));
+    ASSERT_EQ(client.put("api/source", R"({"spec":")" + source + R"("})").status, 200U);
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    ASSERT_TRUE(stands_still(client));
+    const auto seek = [&] {
+      return client.post("api/seek", R"({"position_ns":500000000})").status;
+    };
+    ASSERT_TRUE(wait_until([&] { return seek() == 200U; }));
+    EXPECT_EQ(shown_when_paused(client), 500'000'000);
+    ASSERT_EQ(client.post("api/play").status, 200U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(LivePlayback,
+                         LoopedSource,
+                         testing::Values("file", "fragment"),
+                         [](const auto& info) { return std::string(info.param); });
+
+INSTANTIATE_TEST_SUITE_P(LivePlayback,
+                         SeekableSource,
+                         testing::Values("file", "folder"),
+                         [](const auto& info) { return std::string(info.param); });
+
+// Browsers show a picture when the next one begins.
+void expect_mjpeg_twice(const LiveProgram& program, gint64 pts) {
+  const std::string head = "X-PTS: " + std::to_string(pts) + "\r\n";
+  const std::string text = support::read_stream(program.url() + "video.mjpeg", head, 2);
+  EXPECT_NE(text.find(head), text.rfind(head));
+}
+
+// Whoever joins gets the very frame that is shown, by each way that there is.
+void expect_greetings(const LiveProgram& program, const Client& client) {
+  const gint64 shown = number_in(client, "pts_ns");
+  SocketClient video(program.url(), "ws/video");
+  EXPECT_EQ(SocketClient::pts_of(video.next()), static_cast<guint64>(shown));
+  SocketClient lines(program.url(), "ws/meta");
+  EXPECT_EQ(Line(lines.next()).number("pts_ns"), shown);
+  const std::string pts = std::to_string(shown);
+  const std::string events = support::read_stream(program.url() + "api/events", "\n\n", 2);
+  EXPECT_NE(events.find("\"pts_ns\":" + pts + ","), std::string::npos) << events;
+  expect_mjpeg_twice(program, shown);
+  EXPECT_EQ(lines.waiting(), 0U);
+}
+
+TEST(LivePlayback, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 900)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  expect_greetings(program, client);
+}
+
+TEST(LivePlayback, WhoJoinsWhileTheViewIsHeldGetsItsFrameAtOnce) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const double frames = client.stat("frames");
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));
+  expect_greetings(program, client);
+}
+
+TEST(LivePlayback, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 900)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  const gint64 shown = number_in(client, "pts_ns");
+  std::string text;
+  std::thread watcher(
+      [&] { text = support::read_stream(program.url() + "video.mjpeg", "X-PTS: ", 4); });
+  EXPECT_TRUE(wait_until([&] { return client.stat("sent") > 0; }));
+  EXPECT_EQ(client.post("api/step").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  const gint64 next = number_in(client, "pts_ns");
+  EXPECT_NEAR(static_cast<double>(next - shown), 1e9 / 30, 1e6);
+  watcher.join();
+  const std::string head = "X-PTS: " + std::to_string(next) + "\r\n";
+  EXPECT_NE(text.find(head), text.rfind(head)) << head;
+}
+
+TEST(LivePlayback, AnMp4WithSoundIsPlayedToItsEnd) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_mp4(folder, 20)});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  EXPECT_EQ(client.stat("frames"), 20.0);
+}
+
+TEST(LivePlayback, AFileIsPlayedAgainWhereAsked) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 10), "--loop"});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 35; }));
+}
+
+// An analysis may be at work on the last frame when the first one follows.
+TEST(LivePlayback, ALoopBeginsAgainWhileItsEndIsAnalysed) {
+  const TemporaryFolder folder;
+  const LiveProgram program(
+      {"--source", make_video(folder, 3, "width=1920,height=1080"), "--loop"});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  while (client.stat("frames") < 60) {
+    ASSERT_EQ(client.post("api/analyze", R"({"stage":"edges"})").status, 200U);
+  }
+}
+
+TEST(LivePlayback, OfALiveSourceTheViewIsHeldAndStepped) {
+  const LiveProgram program({});
+  const Client client(program.url());
+  SocketClient lines(program.url(), "ws/meta");
+  ASSERT_NE(lines.next(), "");
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  const double frames = client.stat("frames");
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));  // it tracks on
+  while (lines.waiting() > 0) (void)lines.next();
+  const gint64 held = number_in(client, "pts_ns");
+  ASSERT_EQ(client.post("api/step").status, 200U);
+  const Line line(lines.next());
+  EXPECT_GT(line.number("pts_ns"), held);
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 30; }));
+  EXPECT_EQ(lines.waiting(), 0U);
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_NE(lines.next(), "");
+}
+
+}  // namespace
