@@ -49,7 +49,7 @@ void FrameTap::take(Ref<GstSample> theirs) {
   if (buffer == nullptr || !gst_video_info_from_caps(&info, gst_sample_get_caps(sample))) return;
   // What was shown when paused comes once more when it plays on.
   if (last_ && gst_sample_get_buffer(last_->sample.get()) == buffer) return;
-  frame->number = frames_++;
+  frame->number = frames_;
   frame->arrived_us = arrived_us_;  // no queue lies between: it is this frame's
   frame->pts = GST_BUFFER_PTS_IS_VALID(buffer) ? GST_BUFFER_PTS(buffer) : 0;
   frame->width = GST_VIDEO_INFO_WIDTH(&info);
@@ -63,6 +63,7 @@ void FrameTap::take(Ref<GstSample> theirs) {
   frame->line = std::string(json.get()) + "\n";
   last_ = frame;
   on_frame_(std::move(frame));
+  ++frames_;
 }
 
 }  // namespace live

@@ -215,7 +215,7 @@ int count_of(const Answer& answer, const char* reason) {
 TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
   const LiveProgram program({});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 0; }));
   ASSERT_EQ(client.post("api/pause").status, 200U);
   const Answer now = client.post("api/analyze", R"({"stage":"edges"})");
   ASSERT_EQ(now.status, 200U) << now.body;
