@@ -75,6 +75,7 @@ function rate(times) {
 }
 
 function rateText(times) {
-  if (times.length < 2) return "–";
-  return (1000 * (times.length - 1) / (times.at(-1) - times[0])).toFixed(0);
+  const span = times.at(-1) - times[0];
+  // Some browsers' clocks stand still for 100 ms.
+  return span > 0 ? (1000 * (times.length - 1) / span).toFixed(0) : "–";
 }

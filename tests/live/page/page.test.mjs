@@ -89,6 +89,16 @@ describe("a live source", () => withProgram(() => ["--source", "test:approach"],
     await page.close();
   });
 
+  it("tells no rate by a clock that stands still", async () => {
+    const page = await browser.newPage();
+    await page.addInitScript(() => { performance.now = () => 5; });
+    await page.goto(live.program.url);
+    await page.waitForFunction(() => Number(document.querySelector("#screen").dataset.shown) >= 3);
+    assert.equal(await page.textContent("#figure-shown"), "–");
+    assert.equal(await page.textContent("#figure-rate"), "–");
+    await page.close();
+  });
+
   it("is drawn on where the ring is: within 2 px of the screen", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
