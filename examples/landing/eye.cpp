@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "examples/landing/eye.hpp"
 
-#include <gst/app/app.h>
 #include <gst/ellipse/gstellipsemeta.h>
 #include <gst/video/video.h>
 
@@ -68,9 +67,8 @@ Look Eye::look(const Eigen::Vector3d& gravity,
   GST_BUFFER_DURATION(buffer) = GST_SECOND / rate;
 
   Look look;
-  if (gst_app_src_push_buffer(GST_APP_SRC(source_.get()), buffer) != GST_FLOW_OK) pipeline_.fail();
-  look.sample.reset(gst_app_sink_pull_sample(GST_APP_SINK(sink_.get())));
-  if (!look.sample) pipeline_.fail();
+  pipeline_.push(source_, buffer);
+  look.sample = pipeline_.pull(sink_);
   const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(gst_sample_get_buffer(look.sample.get()),
                                                            GST_ELLIPSE_ROLE_TARGET);
   look.has_target = meta != nullptr;

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,11 +12,6 @@
 #include "examples/landing/pipeline.hpp"
 
 namespace landing {
-
-struct SampleDeleter {
-  void operator()(GstSample* sample) const { gst_sample_unref(sample); }
-};
-using Sample = std::unique_ptr<GstSample, SampleDeleter>;
 
 /// What ellipsetrack says of a picture.
 struct Look {

@@ -9,7 +9,8 @@ namespace landing {
 namespace {
 
 constexpr GstClockTime kPatience = 60 * GST_SECOND;
-constexpr GstClockTime kPause = 2 * GST_MSECOND;  // between looks at a full queue
+constexpr GstClockTime kPause = 2 * GST_MSECOND;     // between looks at a full queue
+constexpr GstClockTime kGlance = 100 * GST_MSECOND;  // waits for a picture between looks at the bus
 constexpr guint64 kQueued = 4;
 
 [[noreturn]] void raise(GError* error) {
@@ -54,6 +55,16 @@ void Pipeline::push(const Element& source, GstBuffer* buffer) {
     if (waited > kPatience) throw std::runtime_error("the pipeline does not go on");
   }
   if (gst_app_src_push_buffer(queue, held.release()) != GST_FLOW_OK) fail();
+}
+
+// An appsink that waits would do so for ever once an element before it has failed.
+Sample Pipeline::pull(const Element& sink) {
+  for (GstClockTime waited = 0; waited <= kPatience; waited += kGlance) {
+    Sample sample(gst_app_sink_try_pull_sample(GST_APP_SINK(sink.get()), kGlance));
+    if (sample) return sample;
+    if (has_ended(0)) throw std::runtime_error("the pipeline has ended");
+  }
+  throw std::runtime_error("the pipeline does not go on");
 }
 
 void Pipeline::await_end() {

@@ -12,6 +12,11 @@ struct ElementDeleter {
 };
 using Element = std::unique_ptr<GstElement, ElementDeleter>;
 
+struct SampleDeleter {
+  void operator()(GstSample* sample) const { gst_sample_unref(sample); }
+};
+using Sample = std::unique_ptr<GstSample, SampleDeleter>;
+
 /// A pipeline written as for gst-launch-1.0. It stops with this object.
 class Pipeline {
  public:
@@ -31,13 +36,16 @@ class Pipeline {
   /// Throws the std::runtime_error of what has stopped the pipeline.
   void push(const Element& source, GstBuffer* buffer);
 
+  /// Waits for what an appsink is handed.
+  /// Throws the std::runtime_error of what has stopped the pipeline.
+  [[nodiscard]] Sample pull(const Element& sink);
+
   /// Waits for the end of the stream. Throws std::runtime_error where it ends otherwise.
   void await_end();
 
+ private:
   /// Throws the std::runtime_error of what has stopped it.
   [[noreturn]] void fail();
-
- private:
   [[nodiscard]] bool has_ended(GstClockTime patience);
 
   GstElement* pipeline_ = nullptr;

@@ -5,11 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
 
 #include "core/homography.hpp"
+#include "examples/landing/eye.hpp"
 #include "examples/landing/pipeline.hpp"
 #include "examples/landing/report.hpp"
 
@@ -308,6 +311,18 @@ TEST(Report, CountsLandingsByMethodAndSpeed) {
 TEST(LandingPipeline, SaysWhatCannotStart) {
   landing::Pipeline pipeline("videotestsrc ! filesink location=/no/such/folder/file");
   EXPECT_THROW(pipeline.play(), std::runtime_error);
+}
+
+TEST(LandingEye, SaysWhatHasStoppedIt) {
+  landing::Eye eye(64, 48, 30, "! identity error-after=3");
+  const auto look = [&] {
+    return eye.look(Vector3d::UnitZ(), [](const ellipse::MutableImage& picture) {
+      std::fill_n(picture.data, picture.stride * picture.height, std::uint8_t{0});
+    });
+  };
+  EXPECT_FALSE(look().has_target);
+  EXPECT_FALSE(look().has_target);
+  EXPECT_THROW((void)look(), std::runtime_error);
 }
 
 TEST(LandingPipeline, SaysWhatHasStoppedItWhileItIsFed) {
