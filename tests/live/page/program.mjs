@@ -2,7 +2,12 @@
 // ellipse-live as a process, and a browser that looks at it.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
+import { setTimeout } from "node:timers/promises";
 import { chromium } from "playwright-core";
+
+/** What is waited for comes at once on an idle machine, and late on a busy one. */
+export const kMostMs = 120_000;
+const kTooOften = 429;
 
 /**
  * Starts the program at a free port. The kernel ends it together with this process: it is not left
@@ -23,8 +28,15 @@ export async function startProgram(...args) {
     });
     child.once("exit", () => reject(new Error(`ellipse-live has ended: ${output}`)));
   });
+  // Waits and asks again where it has asked too often, as those do who poll.
   const ask = async (method, path, body) => {
-    const answer = await fetch(new URL(path, url), { method, body: body && JSON.stringify(body) });
+    const askOnce = () => fetch(new URL(path, url), { method, body: body && JSON.stringify(body) });
+    let answer = await askOnce();
+    while (answer.status === kTooOften) {
+      await answer.text();
+      await setTimeout(100);
+      answer = await askOnce();
+    }
     const text = await answer.text();
     if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${text}`);
     try {
@@ -46,6 +58,7 @@ export function startBrowser() {
   return chromium.launch({
     executablePath: process.env.CHROMIUM,
     args: ["--no-sandbox", "--disable-dev-shm-usage"],
+    timeout: kMostMs,
   });
 }
 
@@ -55,6 +68,7 @@ export function startBrowser() {
  */
 export async function openPage(browser, url, size = { width: 1440, height: 900 }, frames = 3) {
   const page = await browser.newPage({ viewport: size });
+  page.setDefaultTimeout(kMostMs);
   page.troubles = [];
   page.on("pageerror", (error) => page.troubles.push(String(error)));
   page.on("console", (message) => {

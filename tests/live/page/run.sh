@@ -14,7 +14,7 @@ done
 CHROMIUM=$(command -v chromium) || skip "there is no chromium"
 if ! cmp -s "$here/package-lock.json" node_modules/.lock; then
   cp "$here/package.json" "$here/package-lock.json" .
-  npm ci --no-audit --no-fund > npm.log 2>&1 || skip "npm ci failed, see $1/npm.log"
+  npm ci --no-audit --no-fund --fetch-retries=5 > npm.log 2>&1 || skip "npm ci failed, see $1/npm.log"
   cp package-lock.json node_modules/.lock
 fi
 # node looks for packages beside and above the file that imports them.
