@@ -203,8 +203,9 @@ TEST(LiveApi, MetricsAreWellFormed) {
 TEST(LiveApi, TheTargetIsAskedForByItself) {
   const LiveProgram program({});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.get("api/target").object() != nullptr; }));
-  EXPECT_GT(json_object_get_double_member(client.get("api/target").object(), "semi_major"), 20.0);
+  Answer answer;
+  ASSERT_TRUE(wait_until([&] { return (answer = client.get("api/target")).object() != nullptr; }));
+  EXPECT_GT(json_object_get_double_member(answer.object(), "semi_major"), 20.0);
 }
 
 int count_of(const Answer& answer, const char* reason) {

@@ -144,8 +144,7 @@ TEST(LiveLimits, WhoLeavesWhileNothingMovesIsNotKept) {
     }
     EXPECT_EQ(client.stat("viewers") + client.stat("listeners"), 60.0);
   }
-  EXPECT_TRUE(
-      wait_until([&] { return client.stat("viewers") + client.stat("listeners") == 0.0; }, 60));
+  EXPECT_TRUE(wait_until([&] { return client.stat("viewers") + client.stat("listeners") == 0.0; }));
 }
 
 TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {

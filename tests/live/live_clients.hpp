@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -19,8 +20,12 @@ namespace support {
 using live::Ref;
 using live::share;
 
+/// How long these clients wait before they give up [s]: what is waited for comes at once on an idle
+/// machine, and late on a busy one.
+inline constexpr int kMostSeconds = 60;
+
 /// Runs the main loop until something is so. @return false where it does not come to be.
-inline bool wait_until(const std::function<bool()>& is_so, int seconds = 20) {
+inline bool wait_until(const std::function<bool()>& is_so, int seconds = kMostSeconds) {
   const gint64 deadline = g_get_monotonic_time() + seconds * G_USEC_PER_SEC;
   while (!is_so()) {
     if (g_get_monotonic_time() > deadline) return false;
@@ -65,7 +70,7 @@ class Client {
              const std::string& body = "",
              const Headers& headers = {}) const {
     Answer answer = ask_once(method, path, body, headers);
-    for (int i = 0; i < 50 && answer.status == kTooOften; ++i) {
+    for (int i = 0; i < 10 * kMostSeconds && answer.status == kTooOften; ++i) {
       g_usleep(100'000);
       answer = ask_once(method, path, body, headers);
     }
@@ -78,8 +83,11 @@ class Client {
   [[nodiscard]] Answer post(const std::string& path, const std::string& body = "") const {
     return ask("POST", path, body);
   }
+  /// No number, which is neither more nor less than any, where nothing was answered.
   [[nodiscard]] double stat(const char* name) const {
-    return json_object_get_double_member(get("api/stats").object(), name);
+    const Answer answer = get("api/stats");
+    return answer.object() != nullptr ? json_object_get_double_member(answer.object(), name)
+                                      : std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
@@ -134,7 +142,7 @@ inline double value_of(const Client& client, const std::string& name) {
 
 /// Reads an endless answer until it has what is looked for so many times, or until nothing comes.
 inline std::string read_stream(const std::string& url, const std::string& part, int times) {
-  const Ref<SoupSession> session(soup_session_new_with_options("timeout", 20, nullptr));
+  const Ref<SoupSession> session(soup_session_new_with_options("timeout", kMostSeconds, nullptr));
   const Ref<SoupMessage> message(soup_message_new("GET", url.c_str()));
   const Ref<GInputStream> stream(soup_session_send(session.get(), message.get(), nullptr, nullptr));
   std::string text;
@@ -207,7 +215,7 @@ class SocketClient {
     soup_websocket_connection_send_text(connection_.get(), text.c_str());
   }
   /// Waits for a message and takes it; empty where none comes.
-  std::string next(int seconds = 20) {
+  std::string next(int seconds = kMostSeconds) {
     if (!wait_until([this] { return !messages_.empty(); }, seconds)) return "";
     std::string message = std::move(messages_.front());
     messages_.pop_front();
@@ -280,6 +288,7 @@ class Line {
   }
   /// Of that among the line's ellipses; -1 where there is none.
   [[nodiscard]] int index_of(const std::string& role) const {
+    if (object_ == nullptr) return -1;
     JsonArray* all = json_object_get_array_member(object_, "targets");
     for (guint i = 0; i < json_array_get_length(all); ++i) {
       JsonObject* each = json_array_get_object_element(all, i);

@@ -46,12 +46,15 @@ inline std::string make_mp4(const TemporaryFolder& folder, int frames) {
   return file;
 }
 
+/// What api/source tells; "", or -1, where nothing is answered.
 inline std::string text_in(const Client& client, const char* member) {
-  return json_object_get_string_member(client.get("api/source").object(), member);
+  const Answer answer = client.get("api/source");
+  return answer.object() != nullptr ? json_object_get_string_member(answer.object(), member) : "";
 }
 
 inline gint64 number_in(const Client& client, const char* member) {
-  return json_object_get_int_member(client.get("api/source").object(), member);
+  const Answer answer = client.get("api/source");
+  return answer.object() != nullptr ? json_object_get_int_member(answer.object(), member) : -1;
 }
 
 }  // namespace support

@@ -90,7 +90,7 @@ TEST(LiveSource, ACameraHasTimeForItsFirstFrame) {
        "[videotestsrc is-live=true ! video/x-raw,width=64,height=48 ! queue max-size-buffers=0 "
        "max-size-bytes=0 max-size-time=0 min-threshold-time=7000000000]"});
   const Client client(program.url());
-  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 5; }, 40));
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 5; }));
   EXPECT_EQ(client.stat("reconnections"), 0.0);
 }
 
@@ -105,14 +105,14 @@ TEST(LiveSource, ComesBackAfterItDropped) {
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 5; }));
   camera.reset();
   ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "reconnecting"; }));
-  EXPECT_NE(text_in(client, "error"), "");
+  EXPECT_TRUE(wait_until([&] { return !text_in(client, "error").empty(); }));
   const double frames = client.stat("frames");
   // Another program may have the port for a moment.
   ASSERT_TRUE(wait_until([&] {
     camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", port});
     return !camera->url().empty();
   }));
-  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > frames + 5; }, 40));
+  EXPECT_TRUE(wait_until([&] { return client.stat("frames") > frames + 5; }));
   EXPECT_TRUE(wait_until([&] { return text_in(client, "error").empty(); }));
 }
 
