@@ -10,5 +10,9 @@ fi
 mkdir -p "$2"
 cp "$1"/*.js "$1"/*.json "$2"
 cd "$2"
-npm ci --no-audit --no-fund --loglevel=error
+# What is there already is not asked of the network again.
+if ! cmp -s package-lock.json node_modules/.lock; then
+  npm ci --no-audit --no-fund --loglevel=error --fetch-retries=5
+  cp package-lock.json node_modules/.lock
+fi
 node --test

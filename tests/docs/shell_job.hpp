@@ -43,15 +43,15 @@ class ShellJob {
 
   /// What Ctrl-C sends.
   void interrupt() const { kill(-process_, SIGINT); }
-  /// @return Whether it ends within a minute.
+  /// @return Whether it ends within three minutes, of which a busy machine may need the second.
   [[nodiscard]] bool ends() {
-    for (int i = 0; i < 3000 && !is_over_; ++i) {
+    for (int i = 0; i < 9000 && !is_over_; ++i) {
       is_over_ = waitpid(process_, &status_, WNOHANG) == process_;
       if (!is_over_) g_usleep(20000);
     }
     return is_over_;
   }
-  /// @return Its exit status; -1 where a signal ended it, or nothing within a minute.
+  /// @return Its exit status; -1 where a signal ended it, or nothing within that time.
   [[nodiscard]] int wait_for_end() {
     return ends() && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
   }

@@ -215,7 +215,7 @@ constexpr const char* kShortLanding = "ellipse-landing --runs 1 --speed 0 --widt
 
 // Where the program would wait for ever it is ended, with status 124.
 Outcome run_bounded(const std::string& arguments) {
-  return programs::run("timeout 120 " + std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" +
+  return programs::run("timeout 300 " + std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" +
                        arguments);
 }
 

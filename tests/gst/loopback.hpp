@@ -26,7 +26,7 @@ class Socket {
  public:
   explicit Socket(GSocketType type)
       : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, type, G_SOCKET_PROTOCOL_DEFAULT, nullptr)) {
-    g_socket_set_timeout(socket_, 20);
+    g_socket_set_timeout(socket_, 60);
   }
   ~Socket() { g_object_unref(socket_); }
   Socket(const Socket&) = delete;
@@ -91,7 +91,7 @@ class Server {
     return value;
   }
   void wait_for_clients(guint count) const {
-    for (int i = 0; i < 2000 && number("num-handles") != count; ++i) g_usleep(10000);
+    for (int i = 0; i < 6000 && number("num-handles") != count; ++i) g_usleep(10000);
     EXPECT_EQ(number("num-handles"), count);
   }
   /// This frame's line waits at the door until there are so many clients.
@@ -166,14 +166,14 @@ class Broker {
   }
   /// The broker keeps for this reader what comes from here on.
   [[nodiscard]] bool subscribe() const {
-    for (int i = 0; i < 200; ++i) {  // until it is up
+    for (int i = 0; i < 1200; ++i) {  // until it is up
       if (output_of("mosquitto_sub" + address() + kReader + "-E").second) return true;
       g_usleep(50000);
     }
     return false;
   }
   [[nodiscard]] std::string read(std::size_t count) const {
-    return output_of("mosquitto_sub" + address() + kReader + "-W 20 -C " + std::to_string(count))
+    return output_of("mosquitto_sub" + address() + kReader + "-W 60 -C " + std::to_string(count))
         .first;
   }
 
