@@ -272,6 +272,8 @@ void LivePipeline::end_of_stream() {
   }
   const bool was_playing = state_ == PlayState::kPlaying;
   state_ = PlayState::kEnded;
+  // It stands still: when it is sought, one frame comes, and not those that follow it.
+  gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   if (!loops_) return;
   rewind();
   if (was_playing) play();

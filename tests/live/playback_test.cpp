@@ -128,6 +128,20 @@ TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
   EXPECT_EQ(client.stat("frames"), frames + 30);  // from its beginning on
 }
 
+TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 20)});
+  const Client client(program.url());
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+    const double frames = client.stat("frames");
+    ASSERT_EQ(client.post("api/seek", R"({"position_ns":500000000})").status, 200U);
+    EXPECT_EQ(shown_when_paused(client), 500'000'000);
+    EXPECT_EQ(client.stat("frames"), frames + 1);
+    ASSERT_EQ(client.post("api/play").status, 200U);
+  }
+}
+
 class LoopedSource : public testing::TestWithParam<const char*> {};
 
 // One that can be sought, and one that cannot.
