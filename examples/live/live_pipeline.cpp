@@ -146,7 +146,6 @@ void LivePipeline::play() {
   if (state_ == PlayState::kEnded) rewind();
   if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) return;
   steps_ = 0;
-  is_stepping_ = false;
   state_ = PlayState::kPlaying;
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
 }
@@ -159,7 +158,6 @@ void LivePipeline::pause() {
 // A sink that is paused waits for one more frame, and shows it.
 void LivePipeline::hold_still() {
   steps_ = 0;
-  is_stepping_ = false;
   state_ = PlayState::kPausing;
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   settle();
@@ -171,8 +169,8 @@ void LivePipeline::settle() {
   if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
   if (now != GST_STATE_PAUSED) return;
   state_ = PlayState::kPaused;
-  // A sink that is paused tells nobody of the end that it was stepped to.
-  if (std::exchange(is_stepping_, false) && is_at_end()) {
+  // A sink that is paused tells nobody of the end that it was stepped to, or sought behind.
+  if (std::exchange(is_moving_, false) && is_at_end() && tap_.frames() == frames_before_) {
     end_of_stream();
   } else if (steps_ > 0) {
     --steps_;
@@ -188,7 +186,8 @@ void LivePipeline::step() {
     return;
   }
   state_ = PlayState::kPausing;
-  is_stepping_ = true;
+  is_moving_ = true;
+  frames_before_ = tap_.frames();
   gst_element_send_event(sink_, gst_event_new_step(GST_FORMAT_BUFFERS, 1, 1.0, TRUE, FALSE));
   settle();
 }
@@ -206,6 +205,11 @@ void LivePipeline::rewind() {
 
 bool LivePipeline::seek(GstClockTime position) {
   if (!is_seekable()) return false;
+  // Behind the last frame there is none to be shown.
+  const GstClockTime length = duration();
+  if (GST_CLOCK_TIME_IS_VALID(length) && length > 0) position = std::min(position, length - 1);
+  is_moving_ = true;
+  frames_before_ = tap_.frames();
   if (!gst_element_seek_simple(
           pipeline_,
           GST_FORMAT_TIME,

@@ -42,11 +42,11 @@ class LivePipeline {
   void play();
   /// kPausing until the picture stands still: the frame that is under way is still shown.
   void pause();
-  /// Shows the next frame of what is paused, or is about to be. Behind the last one it has ended, or
-  /// begins again where it loops.
+  /// Shows the next frame of what is paused, or is about to be. Behind the last one it has ended,
+  /// or begins again where it loops.
   void step();
-  /// To a time [ns] of what can be sought; at once also where it is paused. @return false where it
-  /// cannot.
+  /// To a time [ns] of what can be sought; at once also where it is paused. A time behind the end
+  /// is the last one; where no frame is there it has ended. @return false where it cannot.
   bool seek(GstClockTime position);
 
   [[nodiscard]] GstElement* tracker() const { return tracker_; }
@@ -90,8 +90,9 @@ class LivePipeline {
   guint retries_ = 0;  // since it last delivered
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
-  guint steps_ = 0;           // that wait until it is paused
-  bool is_stepping_ = false;  // a step is under way
+  guint steps_ = 0;            // that wait until it is paused
+  bool is_moving_ = false;     // a step or a seek is under way
+  guint64 frames_before_ = 0;  // the last of these
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;

@@ -128,15 +128,45 @@ TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
   EXPECT_EQ(client.stat("frames"), frames + 30);  // from its beginning on
 }
 
+TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_video(folder, 30)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  for (const char* position : {"1000000000", "90000000000"}) {
+    ASSERT_EQ(client.post("api/seek", R"({"position_ns":300000000})").status, 200U);
+    ASSERT_EQ(shown_when_paused(client), 300'000'000);
+    const std::string body = std::string(R"({"position_ns":)") + position + "}";
+    ASSERT_EQ(client.post("api/seek", body).status, 200U);
+    EXPECT_GE(shown_when_paused(client), 967'000'000);
+    ASSERT_EQ(client.post("api/step").status, 200U);
+    EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  }
+}
+
+// The sound goes on long after the last frame.
+TEST(LivePlayback, WhatIsSoughtBehindItsLastFrameHasEnded) {
+  const TemporaryFolder folder;
+  const LiveProgram program({"--source", make_mp4(folder, 10)});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":0})").status, 200U);
+  ASSERT_TRUE(stands_still(client));
+  ASSERT_EQ(client.post("api/seek", R"({"position_ns":900000000})").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+}
+
 TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
   const TemporaryFolder folder;
-  const LiveProgram program({"--source", make_video(folder, 20)});
+  const LiveProgram program({"--source", make_video(folder, 10)});
   const Client client(program.url());
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
     const double frames = client.stat("frames");
-    ASSERT_EQ(client.post("api/seek", R"({"position_ns":500000000})").status, 200U);
-    EXPECT_EQ(shown_when_paused(client), 500'000'000);
+    ASSERT_EQ(client.post("api/seek", R"({"position_ns":200000000})").status, 200U);
+    EXPECT_EQ(shown_when_paused(client), 200'000'000);
     EXPECT_EQ(client.stat("frames"), frames + 1);
     ASSERT_EQ(client.post("api/play").status, 200U);
   }
