@@ -287,6 +287,7 @@ void LivePipeline::source_dropped(const std::string& why) {
   const bool is_news = why != trouble_;
   trouble_ = why;
   stop();
+  glanced_frames_ = tap_.frames();  // what had come before does not say that it is back
   if (!spec_.is_live) {
     state_ = PlayState::kFailed;
     handlers_.on_trouble(trouble_);

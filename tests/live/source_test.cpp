@@ -70,6 +70,15 @@ TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
   EXPECT_EQ(other.wait(), 1);
 }
 
+TEST(LiveSource, OfOneThatFailsAfterAFewFramesTheErrorStays) {
+  const LiveProgram program({"--source", "[ellipsetestsrc ! identity error-after=5]"});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "failed"; }));
+  EXPECT_EQ(client.stat("frames"), 4.0);
+  g_usleep(1'500'000);  // it looks each second whether frames have come
+  EXPECT_NE(text_in(client, "error"), "");
+}
+
 TEST(LiveSource, IsChangedOverHttpOnlyWhereAllowed) {
   const LiveProgram closed({});
   EXPECT_EQ(Client(closed.url()).put("api/source", R"({"spec":"test:dusk"})").status, 403U);
