@@ -107,6 +107,7 @@ void LivePipeline::open(SourceSpec spec, bool loops) {
   loops_ = loops;
   retries_ = 0;
   trouble_.clear();
+  frames_at_rewind_ = tap_.frames();
   start();
 }
 
@@ -198,6 +199,7 @@ bool LivePipeline::is_at_end() const {
 
 // It stands still at the first frame.
 void LivePipeline::rewind() {
+  frames_at_rewind_ = tap_.frames();
   if (seek(0)) return;
   stop();
   start(GST_STATE_PAUSED);
@@ -278,7 +280,8 @@ void LivePipeline::end_of_stream() {
   state_ = PlayState::kEnded;
   // It stands still: when it is sought, one frame comes, and not those that follow it.
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
-  if (!loops_) return;
+  const bool has_frames = tap_.frames() != frames_at_rewind_;
+  if (!loops_ || !has_frames) return;
   rewind();
   if (was_playing) play();
 }

@@ -93,6 +93,7 @@ class LivePipeline {
   guint steps_ = 0;            // that wait until it is paused
   bool is_moving_ = false;     // a step or a seek is under way
   guint64 frames_before_ = 0;  // the last of these
+  guint64 frames_at_rewind_ = 0;
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;

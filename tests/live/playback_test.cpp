@@ -308,6 +308,14 @@ TEST(LivePlayback, AFileIsPlayedAgainWhereAsked) {
   EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 35; }));
 }
 
+TEST(LivePlayback, WhatHasNoFramesIsNotPlayedAgainAndAgain) {
+  const LiveProgram program({"--source", "[videotestsrc num-buffers=0]", "--loop"});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  ASSERT_EQ(client.post("api/play").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+}
+
 // An analysis may be at work on the last frame when the first one follows.
 TEST(LivePlayback, ALoopBeginsAgainWhileItsEndIsAnalysed) {
   const TemporaryFolder folder;
