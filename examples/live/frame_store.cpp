@@ -46,6 +46,13 @@ void FrameStore::release() {
   is_held_ = false;
 }
 
+void FrameStore::clear() {
+  FramePtr old;  // given back after the lock
+  const std::lock_guard lock(mutex_);
+  is_held_ = false;
+  old = std::move(newest_);
+}
+
 void FrameStore::step() {
   const std::lock_guard lock(mutex_);
   if (is_held_) ++steps_;

@@ -32,6 +32,8 @@ class FrameStore {
   /// Before the first frame, that one is still let through.
   void hold();
   void release();
+  /// As before the first frame.
+  void clear();
   /// Lets one more frame through while the view is held.
   void step();
   [[nodiscard]] bool is_held() const;

@@ -100,9 +100,13 @@ LivePipeline::~LivePipeline() {
 
 /* The source, in the main loop */
 
-void LivePipeline::open(SourceSpec spec, bool loops) {
+void LivePipeline::close() {
   cancel_retry();
   stop();
+}
+
+void LivePipeline::open(SourceSpec spec, bool loops) {
+  close();
   spec_ = std::move(spec);
   loops_ = loops;
   retries_ = 0;

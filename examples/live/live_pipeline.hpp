@@ -38,6 +38,8 @@ class LivePipeline {
 
   /// Plays this from now on. Trouble is told by the handlers.
   void open(SourceSpec spec, bool loops);
+  /// No frame comes from now on.
+  void close();
 
   void play();
   /// kPausing until the picture stands still: the frame that is under way is still shown.

@@ -37,7 +37,8 @@ void Session::on_frame(FramePtr frame) {
 
 void Session::open(const std::string& source) {
   SourceSpec spec = parse_source(source);
-  store_.release();
+  pipeline_.close();
+  store_.clear();  // what is held, analysed or labelled from now on is of the new one
   pipeline_.open(std::move(spec), loops_);
 }
 

@@ -93,6 +93,17 @@ TEST(LiveSource, IsChangedOverHttpOnlyWhereAllowed) {
   EXPECT_NE(client.get("api/launch-line").body.find("max-axis=444"), std::string::npos);
 }
 
+TEST(LiveSource, WhatIsHeldAfterAnExchangeIsOfTheNewOne) {
+  const LiveProgram program({"--allow-source-change"});
+  const Client client(program.url());
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
+  const char* other = R"({"spec":"[videotestsrc is-live=true ! video/x-raw,width=128,height=96]"})";
+  ASSERT_EQ(client.put("api/source", other).status, 200U);
+  ASSERT_EQ(client.post("api/pause").status, 200U);
+  EXPECT_TRUE(wait_until([&] { return support::number_in(client, "width") == 128; }));
+  EXPECT_EQ(text_in(client, "state"), "held");
+}
+
 TEST(LiveSource, ACameraHasTimeForItsFirstFrame) {
   const LiveProgram program(
       {"--source",
