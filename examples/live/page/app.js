@@ -57,7 +57,14 @@ settings.onChange = () => {
   screen.draw();
   view?.refresh();
 };
-playback.onChange = (source) => status.setTrouble(source.error);
+let wasPlaying = true;
+playback.onChange = (source) => {
+  status.setTrouble(source.error);
+  // The last frame may have come before it was known that it stands still, or the first one after
+  // it was known that it plays.
+  if (source.playing !== wasPlaying) view?.refresh();
+  wasPlaying = source.playing;
+};
 views.stages.onSetting = (name) => {
   openTab("tune");
   settings.reveal(name);

@@ -12,6 +12,7 @@ export class Compare {
   #kept = null;  // the settings that are A
   #results = null;
   #isOn = false;
+  #timer = 0;
 
   constructor(screen, playback, settings) {
     Object.assign(this, { screen, playback, settings });
@@ -57,7 +58,8 @@ export class Compare {
     this.screen.view = (context, frame) => this.#draw(context, frame);
     this.screen.draw();
     this.#tell();
-    if (this.playback.isPlaying) setTimeout(() => this.refresh(), kPauseMs);
+    clearTimeout(this.#timer);
+    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kPauseMs);
   });
 
   // Of these settings, those that are not so now.

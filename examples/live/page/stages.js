@@ -27,6 +27,7 @@ export class Stages {
   #only = null;    // a reason
   #open = new Set(["accepted"]);
   #isOn = false;
+  #timer = 0;
   #names = {};     // of the stages, as they are shown
 
   constructor(screen, playback, settings, say) {
@@ -74,7 +75,8 @@ export class Stages {
     this.screen.view = (context, frame) => this.#draw(context, frame);
     this.screen.draw();
     this.#list();
-    if (this.playback.isPlaying) setTimeout(() => this.refresh(), kPauseMs);
+    clearTimeout(this.#timer);
+    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kPauseMs);
   });
 
   #draw(context, { bitmap, pts }) {

@@ -277,6 +277,40 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
+  it("looks at the stages again when it plays on", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#tab-stages");
+    await page.waitForSelector("#stage-summary b");
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    // What was under way when it was paused has come.
+    await page.waitForTimeout(1500);
+    await page.click("#play");
+    for (let i = 0; i < 3; ++i) await page.waitForResponse(/api\/analyze/);
+    await page.close();
+  });
+
+  it("lists the choices of the frame that it was paused at", async () => {
+    const page = await live.open();
+    await stateIs(page, "tracked");
+    await page.click("#tab-label");
+    await choicesAreThere(page);
+    for (let i = 0; i < 5; ++i) {
+      await page.click("#play");
+      await page.waitForSelector("#play[aria-label=Pause]");
+      const before = await shownBy(page);
+      await page.waitForFunction((n) => Number(document.querySelector("#screen").dataset.shown) > n + 5, before);
+      await page.click("#play");
+      await page.waitForSelector("#play[aria-label=Play]");
+      await page.waitForFunction(() => {
+        return document.querySelector("#label-choices").dataset.pts === document.querySelector("#screen").dataset.pts;
+      });
+    }
+    await page.click("#play");
+    await page.close();
+  });
+
   it("finds what is clicked on the screen in the list", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
