@@ -59,7 +59,8 @@ void check_readable(const std::string& text, const std::string& path, const std:
   if (access(path.c_str(), R_OK) != 0) refuse(text, "this " + what + " may not be read");
 }
 
-// So that an extension finds its pictures whatever their names: 000000.png, 000001.png ...
+// So that an extension finds its pictures whatever their names: 000001.png, 000002.png ...
+// Not from 0: imagesequencesrc 1.22 does not stop behind a stop-index of 0.
 class NumberedFolder {
  public:
   NumberedFolder() {
@@ -113,12 +114,12 @@ SourceSpec folder_source(const std::string& text) {
                       pictures.front().extension().string().ends_with("NG");
   const std::string extension = is_png ? ".png" : ".jpg";
   const auto folder = std::make_shared<NumberedFolder>();
-  for (std::size_t i = 0; i < pictures.size(); ++i) folder->add(i, pictures[i], extension);
+  for (std::size_t i = 0; i < pictures.size(); ++i) folder->add(i + 1, pictures[i], extension);
   SourceSpec spec{.kind = SourceKind::kFolder, .text = text};
-  spec.description =
-      "imagesequencesrc framerate=30/1 stop-index=" + std::to_string(pictures.size() - 1) +
-      " location=" + quoted((folder->path() / ("%06d" + extension)).string()) +
-      (is_png ? " ! pngdec" : " ! jpegdec");
+  spec.description = "imagesequencesrc framerate=30/1 start-index=1 stop-index=" +
+                     std::to_string(pictures.size()) +
+                     " location=" + quoted((folder->path() / ("%06d" + extension)).string()) +
+                     (is_png ? " ! pngdec" : " ! jpegdec");
   spec.numbered = std::shared_ptr<const fs::path>(folder, &folder->path());
   return spec;
 }

@@ -158,6 +158,17 @@ TEST(LivePlayback, WhatIsSoughtBehindItsLastFrameHasEnded) {
   EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
 }
 
+TEST(LivePlayback, AFolderOfOnePictureIsPlayedToItsEnd) {
+  const TemporaryFolder folder;
+  const std::string pictures = make_pictures(folder, 1);
+  const LiveProgram program({"--source", pictures});
+  const Client client(program.url());
+  EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
+  EXPECT_EQ(client.stat("frames"), 1.0);
+  const LiveProgram looped({"--source", pictures, "--loop"});
+  EXPECT_TRUE(wait_until([&] { return Client(looped.url()).stat("frames") > 5; }));
+}
+
 TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 10)});
