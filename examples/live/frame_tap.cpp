@@ -29,7 +29,9 @@ GstPadProbeReturn FrameTap::on_arrival(GstPad* /*pad*/, GstPadProbeInfo* /*info*
 
 GstFlowReturn FrameTap::on_sample(GstAppSink* sink, gpointer data) {
   Ref<GstSample> sample(gst_app_sink_pull_sample(sink));
-  if (sample) static_cast<FrameTap*>(data)->take(std::move(sample));
+  auto* self = static_cast<FrameTap*>(data);
+  if (sample) self->take(std::move(sample));
+  ++self->rendered_;
   return GST_FLOW_OK;
 }
 

@@ -24,6 +24,9 @@ class FrameTap {
 
   /// How many there were. Any thread.
   [[nodiscard]] guint64 frames() const { return frames_; }
+  /// How often the sink has shown one while it played; what was shown in a pause comes again. Any
+  /// thread.
+  [[nodiscard]] guint64 rendered() const { return rendered_; }
 
  private:
   static GstPadProbeReturn on_arrival(GstPad* pad, GstPadProbeInfo* info, gpointer data);
@@ -33,6 +36,7 @@ class FrameTap {
 
   FrameSink on_frame_;
   std::atomic<guint64> frames_{0};
+  std::atomic<guint64> rendered_{0};
   FramePtr last_;
   gint64 arrived_us_ = 0;
 };

@@ -14,6 +14,7 @@ constexpr guint kGlanceMs = 1000;
 // wait for a key frame, and one that has begun.
 constexpr guint kFirstPatience = 15;
 constexpr guint kPatience = 5;
+constexpr guint kLookMs = 2;
 constexpr guint kFirstRetryMs = 500;
 constexpr guint kSlowestRetryMs = 5000;
 
@@ -92,6 +93,7 @@ LivePipeline::LivePipeline(Handlers handlers)
 
 LivePipeline::~LivePipeline() {
   cancel_retry();
+  if (look_ != 0) g_source_remove(look_);
   g_source_remove(glance_);
   g_source_remove(bus_watch_);
   gst_element_set_state(pipeline_, GST_STATE_NULL);
@@ -131,9 +133,11 @@ void LivePipeline::start(GstState wanted) {
   const GstStateChangeReturn paused = gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   if (paused == GST_STATE_CHANGE_NO_PREROLL) spec_.is_live = true;
   g_object_set(sink_, "sync", spec_.is_live ? FALSE : TRUE, nullptr);
-  gst_element_set_state(pipeline_, wanted);
   if (paused == GST_STATE_CHANGE_FAILURE) return;
   state_ = wanted == GST_STATE_PLAYING ? PlayState::kPlaying : PlayState::kPausing;
+  // One in a network waits for a frame that comes only when it plays.
+  if (spec_.is_live) gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  settle();
 }
 
 void LivePipeline::stop() {
@@ -152,7 +156,7 @@ void LivePipeline::play() {
   if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) return;
   steps_ = 0;
   state_ = PlayState::kPlaying;
-  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  settle();
 }
 
 void LivePipeline::pause() {
@@ -160,19 +164,47 @@ void LivePipeline::pause() {
   hold_still();
 }
 
-// A sink that is paused waits for one more frame, and shows it.
 void LivePipeline::hold_still() {
   steps_ = 0;
   state_ = PlayState::kPausing;
+  settle();
+}
+
+// Goes on to what is wanted, by steps, each from where all elements have arrived. GStreamer 1.22
+// may stay between two states for good where it is sent back on its way to play; and a sink that is
+// to pause before it has gone on from its last pause plays on.
+void LivePipeline::settle() {
+  GstState now = GST_STATE_VOID_PENDING;
+  if (state_ != PlayState::kPlaying && state_ != PlayState::kPausing) return;
+  if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
+  if (state_ == PlayState::kPlaying && now == GST_STATE_PAUSED) {
+    rendered_before_ = tap_.rendered();
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  } else if (state_ == PlayState::kPausing && now == GST_STATE_PLAYING) {
+    halt();
+  } else if (state_ == PlayState::kPausing && now == GST_STATE_PAUSED) {
+    stand_still();
+  }
+}
+
+// A sink that is paused waits for one more frame, and shows it.
+void LivePipeline::halt() {
+  if (tap_.rendered() == rendered_before_ && !is_at_end()) {
+    if (look_ == 0) look_ = g_timeout_add(kLookMs, on_look, this);
+    return;
+  }
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   settle();
 }
 
-void LivePipeline::settle() {
-  GstState now = GST_STATE_VOID_PENDING;
-  if (state_ != PlayState::kPausing) return;
-  if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
-  if (now != GST_STATE_PAUSED) return;
+gboolean LivePipeline::on_look(gpointer data) {
+  auto* self = static_cast<LivePipeline*>(data);
+  self->look_ = 0;
+  self->settle();
+  return G_SOURCE_REMOVE;
+}
+
+void LivePipeline::stand_still() {
   state_ = PlayState::kPaused;
   // A sink that is paused tells nobody of the end that it was stepped to, or sought behind.
   if (std::exchange(is_moving_, false) && is_at_end() && tap_.frames() == frames_before_) {

@@ -66,6 +66,7 @@ class LivePipeline {
   static gboolean on_message(GstBus* bus, GstMessage* message, gpointer data);
   static gboolean on_glance(gpointer data);
   static gboolean on_retry(gpointer data);
+  static gboolean on_look(gpointer data);
 
   void start(GstState wanted = GST_STATE_PLAYING);
   void stop();
@@ -74,6 +75,8 @@ class LivePipeline {
   void watch_arrivals();
   void hold_still();
   void settle();
+  void halt();
+  void stand_still();
   [[nodiscard]] bool is_at_end() const;
   void rewind();
   void cancel_retry();
@@ -89,6 +92,7 @@ class LivePipeline {
   guint bus_watch_ = 0;
   guint glance_ = 0;
   guint retry_ = 0;
+  guint look_ = 0;
   guint retries_ = 0;  // since it last delivered
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
@@ -96,6 +100,7 @@ class LivePipeline {
   bool is_moving_ = false;     // a step or a seek is under way
   guint64 frames_before_ = 0;  // the last of these
   guint64 frames_at_rewind_ = 0;
+  guint64 rendered_before_ = 0;  // when it was last sent to play
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;

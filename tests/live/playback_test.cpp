@@ -183,6 +183,24 @@ TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
   }
 }
 
+// A sink that has not gone on from its first frame yet is told to pause again.
+TEST(LivePlayback, APauseRightAfterTheFirstFrameHolds) {
+  const TemporaryFolder folder;
+  const std::string source = make_video(folder, 60);
+  const LiveProgram program({"--source", source, "--allow-source-change"});
+  const Client client(program.url());
+  for (int i = 0; i < 40; ++i) {
+    const double frames = client.stat("frames");
+    ASSERT_EQ(client.put("api/source", R"({"spec":")" + source + R"("})").status, 200U);
+    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames; }));
+    ASSERT_EQ(client.post("api/pause").status, 200U);
+    const gint64 shown = shown_when_paused(client);
+    ASSERT_GE(shown, 0) << i;
+    g_usleep(100'000);
+    ASSERT_EQ(number_in(client, "pts_ns"), shown) << i;
+  }
+}
+
 class LoopedSource : public testing::TestWithParam<const char*> {};
 
 // One that can be sought, and one that cannot.
