@@ -13,6 +13,8 @@ using Eigen::Vector3d;
 
 constexpr int kSeenInARow = 4;           // pictures until it is believed
 constexpr double kEnoughToBegin = 0.6;   // of its outline in view
+constexpr double kEnoughToTell = 0.1;    // of it, with which the picture tells how sure it is
+constexpr double kBlindError = 0.1;      // of a place that is told by the pattern inside alone [m]
 constexpr double kLost_s = 1.0;          // unseen while nothing hurries
 constexpr double kInSight_s = 2.0;       // since it was seen: better known than radio tells
 constexpr double kSpiralGrowth = 0.5;    // of the search's circles [m/s]
@@ -68,8 +70,11 @@ void Controller::look(const Observation& seen) {
     refused_in_a_row_ = 0;
     return;
   }
-  // What the picture cannot tell: an error of the attitude turns what was seen.
-  const double error = std::hypot(0.01 + 0.01 * seen.pad->norm(), seen.error);
+  // What the picture cannot tell: an error of the attitude turns what was seen; and with nothing of
+  // the outline in view it may hold one line for another.
+  const double attitude = 0.01 + 0.01 * seen.pad->norm();
+  const double blind = kBlindError * std::max(0.0, 1.0 - seen.visible_fraction / kEnoughToTell);
+  const double error = std::hypot(attitude, blind, seen.error);
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
     seen_in_a_row_ = 0;
     refused_in_a_row_ = refused_in_a_row_ % kMostRefused + 1;
