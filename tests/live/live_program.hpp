@@ -30,7 +30,7 @@ class LiveProgram {
   }
   ~LiveProgram() {
     stop();
-    EXPECT_TRUE(g_subprocess_get_if_exited(process_)) << "ellipse-live has crashed";
+    EXPECT_FALSE(has_crashed()) << "ellipse-live has crashed";
     g_object_unref(process_);
   }
   LiveProgram(const LiveProgram&) = delete;
@@ -64,6 +64,11 @@ class LiveProgram {
   [[nodiscard]] std::string id() const { return g_subprocess_get_identifier(process_); }
 
  private:
+  // SIGINT ends it by itself where it comes before the program has begun to listen.
+  [[nodiscard]] bool has_crashed() const {
+    return g_subprocess_get_if_signaled(process_) && g_subprocess_get_term_sig(process_) != SIGINT;
+  }
+
   GSubprocess* process_;
   Ref<GDataInputStream> output_;
   std::string url_;
