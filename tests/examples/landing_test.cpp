@@ -185,13 +185,16 @@ class Hover {
       Observation seen;
       seen.time_s = frame_ / 30.0;
       seen.own = own_;
-      if (is_seen) seen.pad = -own_.position;
+      if (is_seen) seen.pad = aside_ - own_.position;
       seen.visible_fraction = visible_fraction;
       last_ = controller_->update(seen.time_s, own_, seen);
       own_.velocity = last_.velocity;
       own_.position += last_.velocity / 30.0;
     }
   }
+
+  /// From now on the pad is seen so far from where it is.
+  void see_aside(const Vector3d& by) { aside_ = by; }
 
   [[nodiscard]] Phase phase() const { return controller_->phase(); }
   [[nodiscard]] int climbs() const { return controller_->climbs(); }
@@ -202,6 +205,7 @@ class Hover {
   Motion own_;
   std::optional<Controller> controller_;
   Command last_;
+  Vector3d aside_ = Vector3d::Zero();
   int frame_ = 0;
 };
 
@@ -226,6 +230,23 @@ TEST(Controller, DoesNotBeginWithAGlimpse) {
   EXPECT_EQ(hover.phase(), Phase::kApproach);
   hover.fly_for(3.0, true, 0.4);  // what is known is followed to the border
   EXPECT_NE(hover.phase(), Phase::kSearch);
+}
+
+// How far it flies aside by a place that is a decimetre off, with so much of the outline in view.
+double led_astray(double visible_fraction) {
+  Hover hover({0.2, 0.0, 8.0});
+  for (int i = 0; i < 100 && hover.position().z() > 1.5; ++i) hover.fly_for(0.1, true);
+  EXPECT_EQ(hover.phase(), Phase::kDescend);
+  const double before = hover.position().x();
+  hover.see_aside({0.1, 0.0, 0.0});
+  hover.fly_for(0.3, true, visible_fraction);
+  return hover.position().x() - before;
+}
+
+TEST(Controller, BelievesLessWhatNoOutlineTells) {
+  EXPECT_GT(led_astray(1.0), 0.02);
+  EXPECT_NEAR(led_astray(0.1), led_astray(1.0), 1e-9);
+  EXPECT_LT(led_astray(0.0), 0.5 * led_astray(1.0));
 }
 
 TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {

@@ -40,6 +40,12 @@ bool stands_still(const Client& client) {
   return shown_when_paused(client) >= 0;
 }
 
+// Pauses it in its course.
+bool is_paused(const Client& client) {
+  return wait_until([&] { return client.stat("frames") > 3; }) &&
+         client.post("api/pause").status == 200U && stands_still(client);
+}
+
 class SeekableSource : public testing::TestWithParam<const char*> {};
 
 TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
@@ -182,21 +188,46 @@ TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
   }
 }
 
+class LiveExchange : public testing::Test {
+ protected:
+  [[nodiscard]] guint open_again() const {
+    return client_.put("api/source", R"({"spec":")" + source_ + R"("})").status;
+  }
+  [[nodiscard]] double frames() const { return client_.stat("frames"); }
+
+  const TemporaryFolder folder_;
+  const std::string source_ = make_video(folder_, 300);
+  const LiveProgram program_{{"--source", source_, "--allow-source-change"}};
+  const Client client_{program_.url()};
+};
+
 // A sink that has not gone on from its first frame yet is told to pause again.
-TEST(LivePlayback, APauseRightAfterTheFirstFrameHolds) {
-  const TemporaryFolder folder;
-  const std::string source = make_video(folder, 300);
-  const LiveProgram program({"--source", source, "--allow-source-change"});
-  const Client client(program.url());
+TEST_F(LiveExchange, APauseRightAfterTheFirstFrameHolds) {
   for (int i = 0; i < 40; ++i) {
-    const double frames = client.stat("frames");
-    ASSERT_EQ(client.put("api/source", R"({"spec":")" + source + R"("})").status, 200U);
-    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames; }));
-    ASSERT_EQ(client.post("api/pause").status, 200U);
-    const gint64 shown = shown_when_paused(client);
+    const double before = frames();
+    ASSERT_EQ(open_again(), 200U);
+    ASSERT_TRUE(wait_until([&] { return frames() > before; }));
+    ASSERT_EQ(client_.post("api/pause").status, 200U);
+    const gint64 shown = shown_when_paused(client_);
     ASSERT_GE(shown, 0) << i;
     g_usleep(100'000);
-    ASSERT_EQ(number_in(client, "pts_ns"), shown) << i;
+    ASSERT_EQ(number_in(client_, "pts_ns"), shown) << i;
+  }
+}
+
+TEST_F(LiveExchange, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
+  for (int i = 0; i < 5; ++i) {
+    const double before = frames();
+    ASSERT_TRUE(wait_until([&] { return frames() > before + 3; }));
+    ASSERT_EQ(open_again(), 200U);
+    ASSERT_EQ(client_.post("api/pause").status, 200U);
+    ASSERT_TRUE(stands_still(client_));
+    const auto seek = [&] {
+      return client_.post("api/seek", R"({"position_ns":500000000})").status;
+    };
+    ASSERT_TRUE(wait_until([&] { return seek() == 200U; }));
+    EXPECT_EQ(shown_when_paused(client_), 500'000'000);
+    ASSERT_EQ(client_.post("api/play").status, 200U);
   }
 }
 
@@ -212,9 +243,8 @@ TEST_P(LoopedSource, ThatIsSteppedOverItsEndBeginsAgainAndStandsStill) {
                 make_pictures(folder, 6) + "/flight-%d.jpg ! jpegdec]";
   const LiveProgram program({"--source", source, "--loop"});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
-  ASSERT_EQ(client.post("api/pause").status, 200U);
-  gint64 shown = shown_when_paused(client);
+  ASSERT_TRUE(is_paused(client));
+  gint64 shown = number_in(client, "pts_ns");
   EXPECT_EQ(client.get("api/source").body.find(R"("seekable":true)") != std::string::npos,
             GetParam() == std::string("file"));
   int begins = 0;
@@ -228,26 +258,6 @@ TEST_P(LoopedSource, ThatIsSteppedOverItsEndBeginsAgainAndStandsStill) {
     shown = next;
   }
   EXPECT_GE(begins, 3);
-}
-
-TEST(LivePlayback, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
-  const TemporaryFolder folder;
-  const std::string source = make_video(folder, 300);
-  const LiveProgram program({"--source", source, "--allow-source-change"});
-  const Client client(program.url());
-  for (int i = 0; i < 5; ++i) {
-    const double frames = client.stat("frames");
-    ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 3; }));
-    ASSERT_EQ(client.put("api/source", R"({"spec":")" + source + R"("})").status, 200U);
-    ASSERT_EQ(client.post("api/pause").status, 200U);
-    ASSERT_TRUE(stands_still(client));
-    const auto seek = [&] {
-      return client.post("api/seek", R"({"position_ns":500000000})").status;
-    };
-    ASSERT_TRUE(wait_until([&] { return seek() == 200U; }));
-    EXPECT_EQ(shown_when_paused(client), 500'000'000);
-    ASSERT_EQ(client.post("api/play").status, 200U);
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(LivePlayback,
@@ -285,9 +295,7 @@ TEST(LivePlayback, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
-  ASSERT_EQ(client.post("api/pause").status, 200U);
-  ASSERT_TRUE(stands_still(client));
+  ASSERT_TRUE(is_paused(client));
   expect_greetings(program, client);
 }
 
@@ -305,9 +313,7 @@ TEST(LivePlayback, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
-  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
-  ASSERT_EQ(client.post("api/pause").status, 200U);
-  ASSERT_TRUE(stands_still(client));
+  ASSERT_TRUE(is_paused(client));
   const gint64 shown = number_in(client, "pts_ns");
   std::string text;
   std::thread watcher(
