@@ -107,7 +107,7 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
 }
 
 bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& thresholds) {
-  if (thresholds.min_contour_size < kHalfSizeContourPx) return false;
+  if (thresholds.wants_all || thresholds.min_contour_size < kHalfSizeContourPx) return false;
   const ImageView half = scaler_.reduce(luma, 2);
   detect_all(half, halved(thresholds), kLeastScore, 2);
   const auto target = select_target(detections_);
@@ -171,7 +171,7 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
 
 // The best arcs with each other first: by the sum of their ranks.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
-  const std::size_t n = arcs_.size();
+  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxPairedArcs);
   int pairs = 0;
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {

@@ -19,11 +19,11 @@ namespace ellipse {
 /// edges around the whole perimeter.
 ///
 /// Looks at the picture in half its size first, refines what it finds there on the full picture,
-/// and looks at the full size only where the answer is weak, or where contours below
-/// kHalfSizeContourPx are asked for.
+/// and looks at the full size only where the answer is weak, where contours below
+/// kHalfSizeContourPx are asked for, or where all ellipses are.
 ///
-/// Allocates nothing in the steady state. The work on one picture is bounded: the pixels, the best
-/// arcs, and so many pairs of them.
+/// Allocates nothing in the steady state. The work on one image is bounded: by its pixels, by
+/// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
 class ArcDetector final : public Detector {
  public:
   explicit ArcDetector(Simd simd = best_simd()) : map_(simd) {}

@@ -97,14 +97,22 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map, const ChainTracer& cha
     split_chain(map, begin, end, chain.is_closed);
     begin = end;
   }
-  const std::size_t count = std::min(pieces_.size(), kMostArcs);
-  std::partial_sort(pieces_.begin(),
-                    pieces_.begin() + std::ptrdiff_t(count),
-                    pieces_.end(),
-                    [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); });
+  keep_best_pieces();
   arcs_.clear();
-  for (std::size_t i = 0; i < count; ++i) arcs_.push_back(make_arc(map, pieces_[i]));
+  for (const Piece& piece : pieces_) arcs_.push_back(make_arc(map, piece));
   return arcs_;
+}
+
+void ArcSplitter::keep_best_pieces() {
+  const auto ranks_before = [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); };
+  const auto paired = pieces_.begin() + std::ptrdiff_t(std::min(pieces_.size(), kMaxPairedArcs));
+  std::partial_sort(pieces_.begin(), paired, pieces_.end(), ranks_before);
+  const auto whole = std::partition(paired, pieces_.end(), [](const Piece& piece) {
+    return std::abs(piece.turn_rad) >= kWholeTurnLeast;
+  });
+  const auto end = pieces_.begin() + std::min(whole - pieces_.begin(), std::ptrdiff_t(kMaxArcs));
+  std::partial_sort(paired, end, whole, ranks_before);
+  pieces_.erase(end, pieces_.end());
 }
 
 void ArcSplitter::unwrap(std::size_t begin, std::size_t end) {

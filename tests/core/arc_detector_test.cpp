@@ -77,6 +77,33 @@ TEST(ArcDetector, FindsCrumpledRings) {
   }
 }
 
+// Dark discs in rows, each at another place between the pixels.
+Picture board_of_discs(int columns, int rows, double radius) {
+  const int pitch = static_cast<int>(3.0 * radius);
+  Picture picture(columns * pitch, rows * pitch);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const int column = x / pitch;
+      const int row = y / pitch;
+      const double cx = (column + 0.5) * pitch + 0.1 * (column % 7);
+      const double cy = (row + 0.5) * pitch + 0.1 * (row % 5);
+      const double outside = std::hypot(x - cx, y - cy) - radius;
+      picture.at(x, y) = static_cast<std::uint8_t>(130.0 + 80.0 * std::erf(outside));
+    }
+  }
+  return picture;
+}
+
+TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
+  const Picture picture = board_of_discs(25, 16, 10.0);
+  Thresholds thresholds = detecting();
+  thresholds.wants_all = true;
+  ArcDetector detector;
+  const auto found = detector.detect(picture.view(), thresholds);
+  EXPECT_EQ(found.size(), 400U);
+  for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
+}
+
 TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
   const Picture picture = rendered(disc(), truth, 120, 100);
