@@ -11,6 +11,7 @@
 
 #include "core/coarse_search.hpp"
 #include "core/ellipse_fit.hpp"
+#include "core/pose.hpp"
 
 namespace ellipse {
 namespace {
@@ -83,16 +84,39 @@ double EdgeTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
 }
 
+// Which way a pad is tilted, its outer edge does not tell. Seen along a wrong view its inner
+// circles are smeared over several radii; the view that shows the sharpest ones is the start.
+bool EdgeTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) {
+  std::array<Eigen::Matrix3d, 3> views;
+  std::size_t count = 0;
+  views[count++] = image_from_pad(outer_edge);
+  if (const auto poses = circle_poses(camera_, outer_edge)) {
+    for (const CirclePose& pose : *poses) {
+      const Eigen::Matrix3d view = image_from_pad(camera_, pose);
+      views[count++] = view / view(2, 2);
+    }
+  }
+  double most = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto model = learn_circles(window.luma, seen_in(window, views[i]), ring_ratio_);
+    if (!model) continue;
+    double contrast = 0.0;
+    for (const PadCircle& circle : model->circles) contrast += circle.contrast;
+    if (contrast <= most) continue;
+    most = contrast;
+    model_ = std::move(*model);
+    view_ = views[i];
+  }
+  return most > 0.0;
+}
+
 bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   is_locked_ = false;
   refined_.reset();
-  frame_px_ = window.frame_px;
+  inner_count_ = 0;
+  camera_ = window.camera.value_or(usual_camera(window.frame_px));
   lens_ = window.lens;
-  view_ = image_from_pad(outer_edge);
-  const PadView local = seen_in(window, view_);
-  auto model = learn_circles(window.luma, local, ring_ratio_);
-  if (!model) return false;
-  model_ = std::move(*model);
+  if (!learn_pad(window, outer_edge)) return false;
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
@@ -110,14 +134,14 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   }
   if (attempt->support.coverage < kLockCoverage) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
-  motion_.velocity_variance = camera_noise(view_, frame_px_, kFirstTurn, kFirstShift);
+  motion_.velocity_variance = camera_noise(view_, camera_, kFirstTurn, kFirstShift);
   is_locked_ = true;
   return true;
 }
 
 PoseMotion EdgeTracker::predicted(double frames, double looseness) const {
   return motion_.after(
-      frames, surprise_ * looseness * camera_noise(view_, frame_px_, kTurnNoise, kShiftNoise));
+      frames, surprise_ * looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
 }
 
 // From a change that is about right: all edges again, near it.
@@ -233,9 +257,10 @@ std::optional<EdgeTracker::Attempt> EdgeTracker::look_wide(const LumaWindow& win
 
 std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double frames) {
   if (!is_locked_) return std::nullopt;
-  frame_px_ = window.frame_px;
+  camera_ = window.camera.value_or(usual_camera(window.frame_px));
   lens_ = window.lens;
   refined_.reset();
+  inner_count_ = 0;
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
   PoseMotion before = predicted(frames, 1.0 + 0.5 * misses_);
@@ -269,8 +294,8 @@ std::optional<EdgeTrack> EdgeTracker::track(const LumaWindow& window, double fra
   const Eigen::Matrix3d last_view = view_;
   accept(*attempt, before);
   refine(window, attempt->visible);
-  motion_.velocity =
-      carried(motion_.velocity, last_view, view_, frame_px_, kTurnNoise, kShiftNoise);
+  if (window.camera) measure_inner_edges(window);
+  motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
   learn_lines(window, *attempt);
   return told(&*attempt);
 }
@@ -309,6 +334,18 @@ void EdgeTracker::refine(const LumaWindow& window, double visible) {
   if (!view) return;
   view_ = *view;
   refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
+}
+
+void EdgeTracker::measure_inner_edges(const LumaWindow& window) {
+  if (!refined_) return;
+  const PadView view = seen_in(window, view_);
+  for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
+    const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_);
+    if (!edge) continue;
+    inner_edges_[inner_count_++] = {
+        translated(edge->ellipse, window.origin_px.x(), window.origin_px.y()),
+        {shifted(edge->uncertainty.view, window.origin_px), edge->uncertainty.information}};
+  }
 }
 
 // The outer circle is the unit; where the others are met tells their radii.
@@ -391,6 +428,7 @@ std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
   track.coverage = last_coverage_;
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
+  track.outline = attempt->support.outline;
   track.visible = attempt->visible;
   track.is_seen = track.visible >= kEnoughVisible || (motion_.centre_sigma() <= kMostCentreSigma &&
                                                       track.coverage >= kPatternCoverage);
@@ -400,11 +438,6 @@ std::optional<EdgeTrack> EdgeTracker::told(const Attempt* attempt) const {
 RingUncertainty EdgeTracker::uncertainty() const {
   if (refined_) return *refined_;
   return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
-}
-
-std::optional<TiltEvidence> EdgeTracker::tilt_evidence() const {
-  if (model_.circles.size() < 2 && model_.lines.empty()) return std::nullopt;
-  return TiltEvidence{view_, motion_.pose.bottomRightCorner<2, 2>()};
 }
 
 Rect EdgeTracker::region_after(double frames, int width, int height) const {

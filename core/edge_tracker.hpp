@@ -1,8 +1,12 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 
+#include "core/camera.hpp"
 #include "core/edge_search.hpp"
 #include "core/homography.hpp"
 #include "core/image_view.hpp"
@@ -10,7 +14,6 @@
 #include "core/line_learner.hpp"
 #include "core/outer_edge.hpp"
 #include "core/pad_model.hpp"
-#include "core/pose.hpp"
 #include "core/pose_motion.hpp"
 #include "core/pose_solver.hpp"
 
@@ -22,12 +25,14 @@ struct LumaWindow {
   Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
   Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
   LensView lens{};                      ///< Of whole frames; its camera outlives the tracking.
+  std::optional<Camera> camera{};       ///< Where it is known.
 };
 
 /// What one frame told.
 struct EdgeTrack {
   Ellipse ellipse;        ///< The outer circle [px of the frame's ideal plane].
-  double coverage = 0.0;  ///< Share of the edges in view that were met, be it too few.
+  double coverage = 0.0;  ///< Share of the pad's edges in view that were matched.
+  double outline = 0.0;   ///< The same of its outer edge alone.
   double visible = 0.0;   ///< Share of the outer circle inside the frame.
   bool is_seen = false;   ///< Else its motion was continued.
 };
@@ -59,8 +64,11 @@ class EdgeTracker {
   /// How well the outer edge is known in the last frame: by its refinement, else by all edges and
   /// the motion.
   [[nodiscard]] RingUncertainty uncertainty() const;
-  /// The same of the tilt, where there are edges within the outer one.
-  [[nodiscard]] std::optional<TiltEvidence> tilt_evidence() const;
+  /// The circles inside the outer edge as the last frame showed them [px of its ideal plane]. Empty
+  /// without a camera, and where they were not measured. Until the next call.
+  [[nodiscard]] std::span<const FittedEllipse> inner_edges() const {
+    return {inner_edges_.data(), inner_count_};
+  }
   void release() { is_locked_ = false; }
 
   /// What the next frame must show for track() to look everywhere it may want to [px].
@@ -93,6 +101,8 @@ class EdgeTracker {
                                    const PoseChange& last) const;
   void accept(const Attempt& attempt, const PoseMotion& before);
   void refine(const LumaWindow& window, double visible);
+  void measure_inner_edges(const LumaWindow& window);
+  [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
   void learn_radii(const PoseChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const PoseChange& change);
@@ -109,7 +119,9 @@ class EdgeTracker {
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
   PoseMotion motion_;
-  Eigen::Vector2d frame_px_{0.0, 0.0};
+  std::array<FittedEllipse, 2> inner_edges_;
+  std::size_t inner_count_ = 0;
+  Camera camera_;
   LensView lens_;
   double surprise_ = 1.0;  // of the motion, against its noise
   double gain_ = 1.0;      // of the picture's contrast over the model's

@@ -86,11 +86,8 @@ RingMatrix ring_changes(const Matrix3d& from_view, const Matrix3d& to_view) {
 
 // With H = K [r1 r2 t], G = K^-1 H: a motion of the camera changes G to (I + [w]x) G + v e3^T.
 Eigen::Matrix<double, 8, 6> change_by_camera(const Matrix3d& image_from_pad,
-                                             double focal_px,
-                                             const Vector2d& middle_px) {
-  Matrix3d g = image_from_pad;
-  g.row(0) = (g.row(0) - middle_px.x() * g.row(2)) / focal_px;
-  g.row(1) = (g.row(1) - middle_px.y() * g.row(2)) / focal_px;
+                                             const Matrix3d& camera_matrix) {
+  Matrix3d g = camera_matrix.inverse() * image_from_pad;
   g /= std::sqrt(0.5 * g.leftCols<2>().squaredNorm());
   const Matrix3d inverse = g.inverse();
   Eigen::Matrix<double, 8, 6> changes;

@@ -51,10 +51,9 @@ struct RingUncertainty {
 
 /// How a camera's own motion changes a view, to first order: columns are turns about its axes x, y,
 /// z [rad] and shifts along them [radii of the pad].
-/// @param focal_px  Principal point in the picture's middle.
+/// @param camera_matrix  K [HartleyZisserman2004] 6.1.
 [[nodiscard]] Eigen::Matrix<double, 8, 6> change_by_camera(const Eigen::Matrix3d& image_from_pad,
-                                                           double focal_px,
-                                                           const Eigen::Vector2d& middle_px);
+                                                           const Eigen::Matrix3d& camera_matrix);
 
 /// A place on an edge of the pad, in the picture.
 struct EdgeView {

@@ -29,38 +29,48 @@ Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
 }
 
-// What all places of an edge err by alike [radii], their number does not make less.
+// Adds an error common to all samples [radii]; averaging does not reduce it.
 RingMatrix widened(const RingMatrix& information, double sigma) {
   RingMatrix covariance = information.inverse();
   covariance.diagonal().array() += sigma * sigma;
   return covariance.inverse();
 }
 
-// The crests of both edges of a thin ring are drawn apart.
-std::optional<FittedEllipse> on_crests(const ImageView& luma,
+// The gradient maxima along a circle near its predicted image.
+std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        const PadView& view,
-                                       const PadModel& model,
-                                       const Ellipse& outer,
-                                       double ring_px,
+                                       const PadCircle& circle,
                                        double least_contrast) {
-  const double least = kCrestOfStep * least_contrast;
-  const bool is_bright_outside = model.circles.front().is_bright_outside;
-  const auto edge =
-      refined_on_picture(luma, outer, polarity_of(is_bright_outside), least, kPlaces, view.lens);
+  const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
+  if (!predicted) return std::nullopt;
+  const auto edge = refined_on_picture(luma,
+                                       *predicted,
+                                       polarity_of(circle.is_bright_outside),
+                                       kCrestOfStep * least_contrast,
+                                       kPlaces,
+                                       view.lens);
   if (!edge || edge->support < kLeastSupport) return std::nullopt;
+  return FittedEllipse{edge->ellipse, edge->uncertainty};
+}
+
+// Blur separates the gradient maxima of a thin ring's two edges.
+std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
+                                             const PadView& view,
+                                             const PadModel& model,
+                                             double ring_px,
+                                             double least_contrast) {
+  const PadCircle& outer = model.circles.front();
+  auto exact = on_maxima(luma, view, outer, least_contrast);
   const bool is_ring =
-      model.circles.size() > 1 && model.circles[1].is_bright_outside != is_bright_outside;
-  FittedEllipse exact{edge->ellipse, edge->uncertainty};
-  if (!is_ring || ring_px >= kThinRingPx) return exact;
-  const auto inner = project_circle(view.ideal_from_pad, model.circles[1].radius);
+      model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
+  if (!exact || !is_ring || ring_px >= kThinRingPx) return exact;
+  const auto inner = on_maxima(luma, view, model.circles[1], least_contrast);
   if (!inner) return exact;
-  const auto next =
-      refined_on_picture(luma, *inner, polarity_of(!is_bright_outside), least, kPlaces, view.lens);
-  if (!next || next->support < kLeastSupport) return exact;
-  exact.ellipse = without_repulsion({edge->ellipse, next->ellipse}).outer;
-  const double sigma_px = kRepulsionShare * max_difference_px(exact.ellipse, edge->ellipse);
-  const double radius_px = std::sqrt(outer.semi_major * outer.semi_minor);
-  exact.uncertainty.information = widened(exact.uncertainty.information, sigma_px / radius_px);
+  const Ellipse blurred = exact->ellipse;
+  exact->ellipse = without_repulsion({blurred, inner->ellipse}).outer;
+  const double sigma_px = kRepulsionShare * max_difference_px(exact->ellipse, blurred);
+  const double radius_px = std::sqrt(blurred.semi_major * blurred.semi_minor);
+  exact->uncertainty.information = widened(exact->uncertainty.information, sigma_px / radius_px);
   return exact;
 }
 
@@ -90,11 +100,18 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                     ring_px - kReachOfNextEdgePx,
                                     least_contrast);
   }
-  if (!exact) exact = on_crests(luma, view, model, *outer, ring_px, least_contrast);
+  if (!exact) exact = on_outer_maxima(luma, view, model, ring_px, least_contrast);
   if (!exact) return std::nullopt;
   const bool is_near =
       max_difference_px(exact->ellipse, *outer) <= kNearPx + kNearRelative * outer->semi_major;
   return is_near ? exact : std::nullopt;
+}
+
+std::optional<FittedEllipse> refined_circle(const ImageView& luma,
+                                            const PadView& view,
+                                            const PadCircle& circle,
+                                            double gain) {
+  return on_maxima(luma, view, circle, kLeastContrast * circle.contrast * gain);
 }
 
 }  // namespace ellipse

@@ -32,4 +32,12 @@ enum class Refinement {
                                                               double gain,
                                                               Refinement refinement);
 
+/// A circle of a pad inside its outer one, the same way by gradient maxima.
+///
+/// @return nullopt where the picture does not show it well enough. Allocates nothing.
+[[nodiscard]] std::optional<FittedEllipse> refined_circle(const ImageView& luma,
+                                                          const PadView& view,
+                                                          const PadCircle& circle,
+                                                          double gain);
+
 }  // namespace ellipse

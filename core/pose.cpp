@@ -17,10 +17,14 @@ using Eigen::Vector3d;
 // Found by experiment, see docs/provenance.md.
 constexpr double kStretchNoise = 2.3;
 constexpr double kTiltOfNoise = 8.0;
-constexpr double kMemory = 0.9;         // of the odds, from frame to frame
-constexpr double kMostOdds = 12.0;      // logarithm
-constexpr double kLevelRad = 0.1;       // standard deviation of a level target's normal
-constexpr double kTurnPerFrame = 0.05;  // by which a normal moves between frames [rad]
+constexpr double kMemory = 0.98;         // of the inner edges' evidence, from frame to frame
+constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance, that frames average out
+constexpr double kModelDegrees = 4.0;    // of freedom, of the scale of the errors
+constexpr double kErrorOverSigma = 0.4;  // measured, .25 to .6: stated sigmas are too large
+constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
+constexpr double kMaxInnerOdds = 12.0;   // logarithm: inner edges may belong to something else
+constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
+constexpr double kTurnPerFrame = 0.05;   // by which a normal moves between frames [rad]
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -41,11 +45,78 @@ Matrix3d camera_from_plane(const CirclePose& pose) {
   return plane;
 }
 
-// How far a solution would have to tilt the pad within its outer edge, in standard deviations.
-double mismatch(const Camera& camera, const CirclePose& pose, const TiltEvidence& evidence) {
-  const Vector3d on_pad = evidence.view.inverse() * projected_centre(camera, pose).homogeneous();
-  const Vector2d place = on_pad.hnormalized();
-  return place.dot(evidence.covariance.inverse() * place);
+using RingChange = Eigen::Matrix<double, 5, 1>;
+
+// By which a circle's image differs from the unit circle of a view, to first order.
+std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
+  const auto there = image ? with_outer_edge(view, *image) : std::nullopt;
+  if (!there) return std::nullopt;
+  Matrix3d between = view.inverse() * *there;
+  between /= between(2, 2);
+  return change_of(between - Matrix3d::Identity()).head<5>();
+}
+
+// How badly the two solutions explain the inner edges.
+struct InnerMisfit {
+  std::array<double, 2> chi_squared{};
+  double separation = 0.0;  // chi-square between the two predictions
+  int degrees = 0;
+};
+
+// Compares one inner edge with what both solutions predict for a circle of its radius, which is
+// fitted: four of its five parameters are left to tell the solutions apart.
+void add_misfit(const Camera& camera,
+                const std::array<CirclePose, 2>& poses,
+                const RingUncertainty& outer,
+                const FittedEllipse& inner,
+                InnerMisfit& misfit) {
+  const Matrix3d& view = inner.uncertainty.view;
+  const auto measured = ring_change(view, inner.ellipse);
+  const auto outer_ellipse = project_circle(outer.view, 1.0);
+  if (!measured || !outer_ellipse) return;
+  const double size_px = std::sqrt(inner.ellipse.semi_major * inner.ellipse.semi_minor);
+  // An error of the outer edge moves the prediction along.
+  const RingMatrix along = ring_changes(outer.view, view);
+  RingMatrix covariance = inner.uncertainty.information.inverse() +
+                          along * outer.information.inverse() * along.transpose();
+  covariance *= kErrorOverSigma * kErrorOverSigma;
+  covariance.diagonal().array() += std::pow(kInnerBiasPx / size_px, 2);
+  const RingMatrix information = covariance.inverse();
+
+  const double ratio = size_px / std::sqrt(outer_ellipse->semi_major * outer_ellipse->semi_minor);
+  std::array<RingChange, 2> residuals;
+  RingMatrix weights = information;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    constexpr double kStep = 1e-3;  // of the radius, for its derivative
+    constexpr int kSteps = 2;
+    const Matrix3d predicted = image_from_pad(camera, poses[k]);
+    double radius = ratio;
+    for (int step = 0; step <= kSteps; ++step) {
+      const auto here = ring_change(view, project_circle(predicted, radius));
+      const auto there = ring_change(view, project_circle(predicted, (1.0 + kStep) * radius));
+      if (!here || !there) return;
+      const RingChange by_radius = (*there - *here) / kStep;
+      residuals[k] = *measured - *here;
+      const RingChange weighted = information * by_radius;
+      radius *= 1.0 + std::clamp(weighted.dot(residuals[k]) / weighted.dot(by_radius), -0.5, 0.5);
+      weights = information - weighted * weighted.transpose() / weighted.dot(by_radius);
+    }
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    misfit.chi_squared[k] += residuals[k].dot(weights * residuals[k]);
+  }
+  const RingChange apart = residuals[1] - residuals[0];
+  misfit.separation += apart.dot(weights * apart);
+  misfit.degrees += 4;
+}
+
+// Log likelihood ratio of the first solution, with the scale of the errors unknown: Student's t. So
+// where neither fits, as on a pad that is not flat, there is little to choose between them.
+double log_odds(const InnerMisfit& misfit) {
+  const double odds =
+      0.5 * (misfit.degrees + kModelDegrees) *
+      std::log((kModelDegrees + misfit.chi_squared[1]) / (kModelDegrees + misfit.chi_squared[0]));
+  return std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
 }
 
 double from_level(const CirclePose& pose, const Vector3d& gravity) {
@@ -121,44 +192,82 @@ Matrix3d position_covariance(const Camera& camera,
   return information.inverse().topLeftCorner<3, 3>();
 }
 
-// Near the view straight on the two solutions meet, and which was which is lost.
-double PoseEstimator::carried_odds(const std::array<CirclePose, 2>& poses) const {
-  const double same =
-      angle_between(poses[0].normal, last_normal_) + angle_between(poses[1].normal, last_other_);
-  const double swapped =
-      angle_between(poses[1].normal, last_normal_) + angle_between(poses[0].normal, last_other_);
-  const double apart = angle_between(poses[0].normal, poses[1].normal) / kTurnPerFrame;
-  const double kept = kMemory * (1.0 - std::exp(-0.5 * apart * apart));
-  return (same <= swapped ? odds_ : -odds_) * kept;
+// Puts what is known of the last frame's solutions into the order of this frame's. Near the view
+// straight on the two solutions meet, and which was which is lost.
+void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
+  if (last_) {
+    const auto turn = [&](std::size_t here, std::size_t there) {
+      return angle_between(poses[here].normal, (*last_)[there].normal);
+    };
+    const double apart = angle_between(poses[0].normal, poses[1].normal) / kTurnPerFrame;
+    const double kept = 1.0 - std::exp(-0.5 * apart * apart);
+    const bool is_swapped = turn(0, 0) + turn(1, 1) > turn(0, 1) + turn(1, 0);
+    odds_ *= is_swapped ? -kept : kept;
+    inner_.odds *= is_swapped ? -kept : kept;
+    inner_.last_deviation *= is_swapped ? -1.0 : 1.0;
+    inner_.information *= kept;
+  }
+  last_ = poses;
+}
+
+double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
+  constexpr double kMaxDifferences = 30.0;
+  if (information > 0.0) {
+    differences = std::min(differences + 1.0, kMaxDifferences);
+    const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));
+    noise_share += (squared - noise_share) / differences;
+  }
+  last_deviation = deviation;
+  information = kMemory * information + separation;
+  odds += separation / information * (frame_odds - odds);
+  const double frames = std::max(1.0, information / separation);
+  const double noise = std::min(noise_share, kMaxNoiseShare);
+  return odds / (1.0 - noise + noise / frames);
+}
+
+double PoseEstimator::update_odds(const Camera& camera,
+                                  const std::array<CirclePose, 2>& poses,
+                                  const RingUncertainty& uncertainty,
+                                  std::span<const FittedEllipse> inner_edges,
+                                  const Vector3d& gravity) {
+  InnerMisfit misfit;
+  for (const FittedEllipse& inner : inner_edges) {
+    add_misfit(camera, poses, uncertainty, inner, misfit);
+  }
+  const double apart = std::sqrt(misfit.separation);
+  // In standard deviations, from where both solutions explain the inner edges equally well.
+  const double deviation = 0.5 * (misfit.chi_squared[1] - misfit.chi_squared[0]) / apart;
+  const bool has_inner = apart > 0.0 && std::isfinite(deviation);
+  const bool has_gravity = gravity.squaredNorm() > 0.0;
+  if (!has_inner && !has_gravity) return odds_;
+  double odds = inner_.odds;
+  if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation);
+  odds = std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
+  if (has_gravity) {
+    odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
+                   std::pow(from_level(poses[0], gravity), 2));
+  }
+  return odds;
 }
 
 std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
                                                   const Ellipse& ideal,
-                                                  const RingUncertainty& picture,
-                                                  const std::optional<TiltEvidence>& evidence,
+                                                  const RingUncertainty& uncertainty,
+                                                  std::span<const FittedEllipse> inner_edges,
                                                   double radius_m,
                                                   const Vector3d& gravity) {
   const Camera& camera = lens.camera();
   const auto poses = circle_poses(camera, ideal);
   if (!poses) return std::nullopt;
-  const auto& [first, second] = *poses;
-  double odds = was_known_ ? carried_odds(*poses) : 0.0;  // of the first one
-  if (evidence) {
-    odds += 0.5 * (mismatch(camera, second, *evidence) - mismatch(camera, first, *evidence));
-  }
-  if (gravity.squaredNorm() > 0.0) {
-    odds +=
-        0.5 * (std::pow(from_level(second, gravity), 2) - std::pow(from_level(first, gravity), 2));
-  }
-  if (!std::isfinite(odds)) odds = 0.0;
-  const bool is_first = odds >= 0.0;
-  const CirclePose& chosen = is_first ? first : second;
-  const CirclePose& other = is_first ? second : first;
-  // What is decided by nothing stays as it was decided.
-  odds_ = std::clamp(std::abs(odds), 1e-3, kMostOdds);
-  last_normal_ = chosen.normal;
-  last_other_ = other.normal;
-  was_known_ = true;
+  follow_solutions(*poses);
+  const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
+  // A choice that nothing decides stays as it is.
+  constexpr double kUndecided = 1e-3;
+  odds_ = std::isfinite(odds) ? odds : 0.0;
+  const bool is_first = odds_ >= 0.0;
+  odds_ = std::copysign(std::max(std::abs(odds_), kUndecided), odds_);
+  const CirclePose& chosen = (*poses)[is_first ? 0 : 1];
+  const CirclePose& other = (*poses)[is_first ? 1 : 0];
 
   TargetPose pose;
   pose.bearing = chosen.position.normalized();
@@ -169,12 +278,12 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
   pose.centre_px = bent ? bent->picture_px : centre;
   pose.normal = chosen.normal;
   pose.other_normal = other.normal;
-  pose.certainty = 1.0 / (1.0 + std::exp(-odds_));
+  pose.certainty = 1.0 / (1.0 + std::exp(-std::abs(odds_)));
   if (radius_m > 0.0) {
     pose.radius_m = radius_m;
     pose.position_m = radius_m * chosen.position;
     pose.other_position_m = radius_m * other.position;
-    pose.covariance_m2 = radius_m * radius_m * position_covariance(camera, chosen, picture);
+    pose.covariance_m2 = radius_m * radius_m * position_covariance(camera, chosen, uncertainty);
   }
   return pose;
 }

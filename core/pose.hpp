@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "core/camera.hpp"
+#include "core/ellipse_fit.hpp"
 #include "core/homography.hpp"
 
 namespace ellipse {
@@ -52,41 +54,57 @@ struct TargetPose {
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< Of the position.
 };
 
-/// What the inner edges of a target tell of its tilt.
-struct TiltEvidence {
-  Eigen::Matrix3d view;        ///< Of the pad's plane, in the ideal plane.
-  Eigen::Matrix2d covariance;  ///< Of PoseChange's B.
-};
-
-/// Tells a target's pose frame by frame: chooses between the two solutions by where the inner
-/// edges put the centre, by the direction of gravity, and by the solution that was right before.
+/// Estimates a target's pose frame by frame, and chooses between the two solutions: each predicts
+/// where a concentric inner circle appears, and how far from level the target is. Without either,
+/// the choice of the frame before is kept.
+///
 /// One object follows one target, on one thread. Allocates nothing.
 class PoseEstimator {
  public:
-  /// @param ideal      The target's outer edge, in the ideal plane.
-  /// @param picture    How well it is known.
-  /// @param evidence   Where there are inner edges.
-  /// @param radius_m   0 = not known.
-  /// @param gravity    Downwards, in the camera's frame, of any length: the target is level. 0 =
-  /// not
-  ///                   known.
+  /// @param ideal        The target's outer edge, in the ideal plane.
+  /// @param uncertainty  Of the outer edge.
+  /// @param inner_edges  Measured images of circles inside the outer one and concentric with it, of
+  ///                     any radius; in the ideal plane. May be empty.
+  /// @param radius_m     0 = not known.
+  /// @param gravity      Downwards, in the camera's frame, of any length: the target is level.
+  ///                     0 = not known.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
-                                                   const RingUncertainty& picture,
-                                                   const std::optional<TiltEvidence>& evidence,
+                                                   const RingUncertainty& uncertainty,
+                                                   std::span<const FittedEllipse> inner_edges,
                                                    double radius_m,
                                                    const Eigen::Vector3d& gravity);
 
-  /// Another target, or the same after a gap.
-  void forget() { was_known_ = false; }
+  /// Call before another target, or the same one after a gap.
+  void forget() { *this = {}; }
 
  private:
-  [[nodiscard]] double carried_odds(const std::array<CirclePose, 2>& poses) const;
+  void follow_solutions(const std::array<CirclePose, 2>& poses);
+  [[nodiscard]] double update_odds(const Camera& camera,
+                                   const std::array<CirclePose, 2>& poses,
+                                   const RingUncertainty& uncertainty,
+                                   std::span<const FittedEllipse> inner_edges,
+                                   const Eigen::Vector3d& gravity);
 
-  bool was_known_ = false;
-  double odds_ = 0.0;  // of the last normal against the other one, logarithm
-  Eigen::Vector3d last_normal_{0.0, 0.0, -1.0};
-  Eigen::Vector3d last_other_{0.0, 0.0, -1.0};
+  // The mean of the frames' log odds by inner edges, weighted by information. Averaging reduces
+  // only the part of their error that differs from frame to frame, which is measured by successive
+  // differences [VonNeumann1941]: a repeated frame is no further evidence.
+  struct OddsAverage {
+    double odds = 0.0;         // the mean
+    double information = 0.0;  // sum of the frames' squared separations
+    double noise_share = 0.0;  // of the variance, that differs from frame to frame
+    double differences = 0.0;  // number of those that it was measured by
+    double last_deviation = 0.0;
+
+    // The log odds by all frames so far, with one more in which the solutions are separation^(1/2)
+    // standard deviations apart.
+    double add(double frame_odds, double deviation, double separation);
+  };
+
+  // Log odds of the first solution against the second, in the order of the last frame.
+  double odds_ = 0.0;  // by all evidence
+  OddsAverage inner_;  // by inner edges alone
+  std::optional<std::array<CirclePose, 2>> last_;
 };
 
 }  // namespace ellipse

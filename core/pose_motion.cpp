@@ -18,27 +18,31 @@ constexpr double kMostTurn = 0.05;       // that rings alone leave unknown [rad]
 
 // The changes of a view by a camera that turns and shifts by what is usual in a frame.
 Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
-                                          const Eigen::Vector2d& frame_px,
+                                          const Camera& camera,
                                           double turn_rad,
                                           double shift) {
   Eigen::Matrix<double, 6, 1> sigmas;
   sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
-  return change_by_camera(
-             image_from_pad, kFocalOverWidth * frame_px.x(), 0.5 * (frame_px.array() - 1.0)) *
-         sigmas.asDiagonal();
+  return change_by_camera(image_from_pad, camera.matrix()) * sigmas.asDiagonal();
 }
 
 }  // namespace
+
+Camera usual_camera(const Eigen::Vector2d& frame_px) {
+  const auto width = static_cast<int>(frame_px.x());
+  const auto height = static_cast<int>(frame_px.y());
+  return Camera::with_hfov(2.0 * std::atan(0.5 / kFocalOverWidth), width, height);
+}
 
 PoseCovariance inverse_of(const PoseCovariance& matrix) {
   return matrix.ldlt().solve(PoseCovariance::Identity());
 }
 
 PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
-                            const Eigen::Vector2d& frame_px,
+                            const Camera& camera,
                             double turn_rad,
                             double shift) {
-  const auto changes = usual_changes(image_from_pad, frame_px, turn_rad, shift);
+  const auto changes = usual_changes(image_from_pad, camera, turn_rad, shift);
   return changes * changes.transpose();
 }
 
@@ -46,11 +50,11 @@ PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
 PoseChange carried(const PoseChange& velocity,
                    const Eigen::Matrix3d& from,
                    const Eigen::Matrix3d& to,
-                   const Eigen::Vector2d& frame_px,
+                   const Camera& camera,
                    double turn_rad,
                    double shift) {
-  const auto here = usual_changes(from, frame_px, turn_rad, shift);
-  const auto there = usual_changes(to, frame_px, turn_rad, shift);
+  const auto here = usual_changes(from, camera, turn_rad, shift);
+  const auto there = usual_changes(to, camera, turn_rad, shift);
   Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
   normal.diagonal().array() += kSlack * kSlack;
   const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
@@ -58,11 +62,13 @@ PoseChange carried(const PoseChange& velocity,
 }
 
 PoseMotion PoseMotion::after(double frames, const PoseCovariance& noise_per_frame) const {
+  // The covariance of an integrated white acceleration of density q after a time t: q t^3 / 3 for
+  // the position, q t^2 / 2 for both, q t for the velocity.
   const PoseCovariance noise = frames * noise_per_frame;
   PoseMotion next;
   next.velocity = velocity;
   next.pose = pose + frames * (pose_velocity + pose_velocity.transpose()) +
-              frames * frames * (velocity_variance + 0.5 * noise);
+              frames * frames * (velocity_variance + noise / 3.0);
   next.pose_velocity = pose_velocity + frames * velocity_variance + 0.5 * frames * noise;
   next.velocity_variance = velocity_variance + noise;
   const double much = kSlack * kSlack;

@@ -1,18 +1,23 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include "core/camera.hpp"
 #include "core/homography.hpp"
 #include "core/pose_solver.hpp"
 
 namespace ellipse {
 
-/// The same motion of the camera, seen from another view of the pad: a pad that leaves the picture
-/// grows longer and longer, though the camera moves evenly.
-/// @param velocity  As change of the view `from` per frame. What no camera can do stays as it is.
+/// The camera that is assumed where none is known: a pinhole of usual focal length.
+[[nodiscard]] Camera usual_camera(const Eigen::Vector2d& frame_px);
+
+/// Transports a velocity to another view, assuming that the camera moves evenly: the image of a pad
+/// that leaves the frame stretches faster and faster all the same.
+/// @param velocity  As change of the view `from` per frame. The part that no motion of a camera
+///                  explains stays as it is.
 /// Parameters as for camera_noise().
 [[nodiscard]] PoseChange carried(const PoseChange& velocity,
                                  const Eigen::Matrix3d& from,
                                  const Eigen::Matrix3d& to,
-                                 const Eigen::Vector2d& frame_px,
+                                 const Camera& camera,
                                  double turn_rad,
                                  double shift);
 
@@ -24,7 +29,7 @@ struct PoseMotion {
   PoseCovariance pose_velocity = PoseCovariance::Zero();  ///< Covariance of the two.
   PoseCovariance velocity_variance = PoseCovariance::Zero();
 
-  /// Some frames later, at the same velocity but for the noise.
+  /// Some frames later, with white noise on the acceleration.
   [[nodiscard]] PoseMotion after(double frames, const PoseCovariance& noise_per_frame) const;
 
   /// After a measurement: what tells the pose tells the velocity as well.
@@ -44,7 +49,7 @@ struct PoseMotion {
 /// @param turn_rad  Standard deviation about each axis.
 /// @param shift     And along each [radii of the pad]; less along the optical axis.
 [[nodiscard]] PoseCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
-                                          const Eigen::Vector2d& frame_px,
+                                          const Camera& camera,
                                           double turn_rad,
                                           double shift);
 

@@ -85,6 +85,7 @@ PoseSupport support_of(std::span<const EdgeSample> samples,
   }
   if (support.seen == 0) return support;
   support.coverage = static_cast<double>(support.met) / support.seen;
+  if (seen[0] > 0) support.outline = static_cast<double>(met[0]) / seen[0];
   support.weakest = 1.0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i] >= 4) {

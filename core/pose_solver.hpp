@@ -24,6 +24,7 @@ struct PoseSupport {
   int seen = 0;           ///< Samples inside the picture.
   int met = 0;            ///< Of these, with an edge where it should be.
   double coverage = 0.0;  ///< met over seen.
+  double outline = 0.0;   ///< The same of the outer circle alone; 0 where none of it is in view.
   double weakest = 0.0;   ///< Coverage of the circle with the least.
   double gain = 1.0;      ///< Median contrast over the model's.
 };

@@ -102,16 +102,25 @@ void Tracker::locate(Target& target) {
   }
   if (target.id != located_id_) pose_estimator_.forget();
   located_id_ = target.id;
-  target.pose = pose_estimator_.estimate(*lens_,
-                                         target.ellipse,
-                                         *target.uncertainty,
-                                         is_followed ? edge_tracker_.tilt_evidence() : std::nullopt,
-                                         0.5 * settings_.target_diameter_m,
-                                         Eigen::Vector3d::Map(settings_.gravity.data()));
+  target.pose = pose_estimator_.estimate(
+      *lens_,
+      target.ellipse,
+      *target.uncertainty,
+      is_followed ? edge_tracker_.inner_edges() : std::span<const FittedEllipse>(),
+      0.5 * settings_.target_diameter_m,
+      Eigen::Vector3d::Map(settings_.gravity.data()));
 }
 
 LensView Tracker::lens() const {
   return lens_ ? LensView(*lens_) : LensView();
+}
+
+LumaWindow Tracker::window_on(const PixelView& frame, const Rect& region) {
+  return {luma_reader_.read(frame, region),
+          Eigen::Vector2d(region.x, region.y),
+          Eigen::Vector2d(frame.width, frame.height),
+          lens(),
+          lens_ ? std::optional(lens_->camera()) : std::nullopt};
 }
 
 // From its edges alone: nothing else of the frame is read.
@@ -119,10 +128,7 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   search_region_ =
       intersect(edge_tracker_.region_after(elapsed, frame.width, frame.height), searchable_);
   candidates_.clear();
-  const LumaWindow window{luma_reader_.read(frame, search_region_),
-                          Eigen::Vector2d(search_region_.x, search_region_.y),
-                          Eigen::Vector2d(frame.width, frame.height),
-                          lens()};
+  const LumaWindow window = window_on(frame, search_region_);
   const auto track = edge_tracker_.track(window, elapsed);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(lens(), track->ellipse, frame.width, frame.height);
@@ -133,7 +139,7 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   target.state = track->is_seen ? TargetState::kTracked : TargetState::kPredicted;
   target.id = last_id_;
   target.contour_overlap = track->coverage;
-  target.ellipse_overlap = track->coverage;
+  target.ellipse_overlap = track->outline;
   target.visible_fraction = visible;
   target.search_region = search_region_;
   if (lens_) target.uncertainty = edge_tracker_.uncertainty();
@@ -192,11 +198,7 @@ bool Tracker::is_doubtful(const Target& target) const {
 void Tracker::lock_edges(const PixelView& frame, const Target& target) {
   edge_tracker_.release();
   if (target.visible_fraction < kEnoughToLock) return;
-  const LumaWindow window{luma_reader_.read(frame, searchable_),
-                          Eigen::Vector2d(searchable_.x, searchable_.y),
-                          Eigen::Vector2d(frame.width, frame.height),
-                          lens()};
-  (void)edge_tracker_.lock(window, target.ellipse);
+  (void)edge_tracker_.lock(window_on(frame, searchable_), target.ellipse);
 }
 
 // [Keipour2021] Algorithm 2, TrackTarget: one turn of its loop.
@@ -251,6 +253,7 @@ Thresholds Tracker::determine_thresholds(bool is_tracking) const {
   const Overlaps own =
       is_tracking ? detector_->tracking_overlaps() : detector_->detecting_overlaps();
   Thresholds thresholds = settings_.limits.at_scale(scale_);
+  thresholds.wants_all = settings_.wants_candidates;
   thresholds.contour_overlap = or_own(wanted.contour, own.contour);
   thresholds.ellipse_overlap = or_own(wanted.ellipse, own.ellipse);
   return thresholds;

@@ -26,8 +26,12 @@ struct Target {
   Ellipse ellipse;       ///< The outer edge [px]; in the ideal plane where the lens is distorted.
   std::uint64_t id = 0;  ///< The same while it is not lost, from 1.
   TargetState state = TargetState::kDetected;
-  double contour_overlap = 0.0;   ///< [Keipour2021] Eq. (1).
-  double ellipse_overlap = 0.0;   ///< [Keipour2021] Eq. (2).
+  /// [Keipour2021] Eq. (1). Where edges are followed: share of the pad's edges in view that were
+  /// matched, inner ones included.
+  double contour_overlap = 0.0;
+  /// [Keipour2021] Eq. (2). Where edges are followed: share of the outer edge in view that was
+  /// matched.
+  double ellipse_overlap = 0.0;
   double visible_fraction = 0.0;  ///< Share of the perimeter inside the frame.
   int scale = 1;                  ///< Frame scale that it was found at.
   Rect search_region;             ///< Where it was looked for [px].
@@ -97,6 +101,7 @@ class Tracker {
   [[nodiscard]] Thresholds determine_thresholds(bool is_tracking) const;
   void take_in(const PixelView& frame, const SearchScope& scope);
   void prepare_next_frame(const std::optional<Target>& target);
+  [[nodiscard]] LumaWindow window_on(const PixelView& frame, const Rect& region);
   void locate(Target& target);
   void make_lens();
 

@@ -53,8 +53,10 @@ GType gst_ellipse_state_get_type(void);
  * @semi_major: semi-major axis in px
  * @semi_minor: semi-minor axis in px
  * @angle_rad: major axis from +x towards +y, in (-pi/2, pi/2]
- * @contour_overlap: share of its contour's pixels on the ellipse, 0 to 1
- * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1
+ * @contour_overlap: share of its contour's pixels on the ellipse, 0 to 1; of a target followed by
+ *   its edges: share of all its edges in view that were matched
+ * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; of a target followed by its
+ *   edges: share of the outer edge in view that was matched
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale that it was found at, a power of two
  * @roi_x: left edge of the region that was searched, in px

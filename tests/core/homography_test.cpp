@@ -101,7 +101,7 @@ TEST(Homography, FollowsTheCamera) {
       Eigen::AngleAxisd(0.3, Vector3d(1.0, 0.5, 0.2).normalized()).toRotationMatrix().leftCols<2>();
   pose.col(2) = Vector3d(0.4, -0.3, 6.0);
   const Matrix3d view = k * pose;
-  const auto changes = change_by_camera(view / view(2, 2), kFocal, middle);
+  const auto changes = change_by_camera(view / view(2, 2), k);
   constexpr double kStep = 1e-5;
   for (int i = 0; i < 6; ++i) {
     Matrix3d after = pose;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "core/ellipse_fit.hpp"
 
@@ -184,21 +185,25 @@ View view_at(double tilt_rad, double turn_rad = 0.7) {
   return view;
 }
 
-std::optional<TargetPose> pose_of(PoseEstimator& estimator,
-                                  const View& view,
-                                  const std::optional<TiltEvidence>& evidence,
-                                  const Vector3d& gravity = Vector3d::Zero()) {
-  return estimator.estimate(
-      Lens(camera_640()), view.ideal, uncertainty_of(view.ideal, 1e-3), evidence, 0.75, gravity);
+// The image of a circle inside the target's, measured with this uncertainty [radii].
+FittedEllipse inner_edge(const CirclePose& pose, double radius = 0.8, double sigma = 1e-3) {
+  const auto image = project_circle(image_from_pad(camera_640(), pose), radius);
+  return {*image, uncertainty_of(*image, sigma)};
 }
 
-TEST(PoseEstimator, KnowsTheSolutionByWhereTheCentreIs) {
+std::optional<TargetPose> pose_of(PoseEstimator& estimator,
+                                  const View& view,
+                                  const std::vector<FittedEllipse>& inner_edges,
+                                  const Vector3d& gravity = Vector3d::Zero()) {
+  return estimator.estimate(
+      Lens(camera_640()), view.ideal, uncertainty_of(view.ideal, 1e-3), inner_edges, 0.75, gravity);
+}
+
+TEST(PoseEstimator, KnowsTheSolutionByOneInnerCircle) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
     const View view = view_at(0.5, turn);
     PoseEstimator estimator;
-    const TiltEvidence evidence{image_from_pad(camera_640(), view.truth),
-                                1e-4 * Eigen::Matrix2d::Identity()};
-    const auto pose = pose_of(estimator, view, evidence);
+    const auto pose = pose_of(estimator, view, {inner_edge(view.truth)});
     ASSERT_TRUE(pose);
     EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5);
     EXPECT_GT(angle(pose->other_normal, view.truth.normal), 0.5);
@@ -211,7 +216,7 @@ TEST(PoseEstimator, KnowsTheSolutionByGravity) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
     const View view = view_at(0.5, turn);
     PoseEstimator estimator;
-    const auto pose = pose_of(estimator, view, std::nullopt, -9.81 * view.truth.normal);
+    const auto pose = pose_of(estimator, view, {}, -9.81 * view.truth.normal);
     ASSERT_TRUE(pose);
     EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5);
     EXPECT_GT(pose->certainty, 0.99);
@@ -220,20 +225,56 @@ TEST(PoseEstimator, KnowsTheSolutionByGravity) {
 
 TEST(PoseEstimator, StaysWithTheSolutionThatWasRight) {
   PoseEstimator estimator;
-  const TiltEvidence evidence{image_from_pad(camera_640(), view_at(0.5).truth),
-                              1e-4 * Eigen::Matrix2d::Identity()};
-  (void)pose_of(estimator, view_at(0.5), evidence);
+  (void)pose_of(estimator, view_at(0.5), {inner_edge(view_at(0.5).truth)});
   for (int i = 1; i < 100; ++i) {
     const View view = view_at(0.5 + 0.2 * std::sin(0.1 * i), 0.7 + 0.05 * i);
-    const auto pose = pose_of(estimator, view, std::nullopt);
+    const auto pose = pose_of(estimator, view, {});
     ASSERT_TRUE(pose);
     EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5) << i;
+    EXPECT_GT(pose->certainty, 0.99) << i;
+  }
+}
+
+TEST(PoseEstimator, ARepeatedFrameIsNoFurtherEvidence) {
+  PoseEstimator estimator;
+  const View view = view_at(0.5);
+  const FittedEllipse inner = inner_edge(view.truth, 0.8, 0.05);
+  const auto log_odds = [&] {
+    const double certainty = pose_of(estimator, view, {inner})->certainty;
+    return std::log(certainty / (1.0 - certainty));
+  };
+  const double once = log_odds();
+  EXPECT_GT(once, 0.1);
+  double often = 0.0;
+  for (int i = 0; i < 300; ++i) often = log_odds();
+  EXPECT_NEAR(often, once, 1e-6 * once);
+}
+
+TEST(PoseEstimator, AnInnerEdgeThatFitsNeitherSolutionTellsLittle) {
+  const View view = view_at(0.5);
+  FittedEllipse strange = inner_edge(view.truth);
+  strange.ellipse.semi_major *= 1.1;
+  strange.ellipse.semi_minor /= 1.1;
+  PoseEstimator estimator;
+  EXPECT_LT(pose_of(estimator, view, {strange})->certainty, 0.9);
+}
+
+TEST(PoseEstimator, GravityOverrulesAnInnerEdge) {
+  for (double turn = 0.0; turn < 6.28; turn += 0.3) {
+    const View view = view_at(0.5, turn);
+    PoseEstimator estimator;
+    const auto poses = circle_poses(camera_640(), view.ideal);
+    const bool is_first = angle((*poses)[0].normal, view.truth.normal) < 1e-3;
+    const FittedEllipse wrong = inner_edge((*poses)[is_first ? 1 : 0]);
+    for (int i = 0; i < 20; ++i) (void)pose_of(estimator, view, {wrong});
+    const auto pose = pose_of(estimator, view, {wrong}, -view.truth.normal);
+    EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5);
   }
 }
 
 TEST(PoseEstimator, WithoutAnythingToTellByItDoesNotClaimToKnow) {
   PoseEstimator estimator;
-  const auto pose = pose_of(estimator, view_at(0.5), std::nullopt);
+  const auto pose = pose_of(estimator, view_at(0.5), {});
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->certainty, 0.5, 1e-3);
 }
@@ -244,7 +285,7 @@ TEST(PoseEstimator, WithoutADiameterTellsDirectionsOnly) {
   const auto pose = estimator.estimate(Lens(camera_640()),
                                        view.ideal,
                                        uncertainty_of(view.ideal, 1e-3),
-                                       std::nullopt,
+                                       {},
                                        0.0,
                                        -view.truth.normal);
   ASSERT_TRUE(pose);
