@@ -338,7 +338,7 @@ TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 10);
+  EXPECT_GT(refused, 0);
 }
 
 TEST(DetectionTrace, OfALoneEllipseMeasuresTheSettingThatWouldTakeIt) {

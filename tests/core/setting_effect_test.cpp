@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/detectors.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/tracker.hpp"
 #include "tests/support/picture.hpp"
@@ -23,7 +24,7 @@ using support::Picture;
 constexpr DetectorKind kDetectors[] = {DetectorKind::kContours, DetectorKind::kArcs};
 constexpr TrackingMode kTrackings[] = {
     TrackingMode::kNone, TrackingMode::kRedetect, TrackingMode::kEdges};
-constexpr int kFrames = 8;
+constexpr int kFrames = 6;
 constexpr std::int64_t kFrameNs = 33'333'333;
 
 using Sequence = std::vector<Picture>;
@@ -183,6 +184,27 @@ TEST_P(SettingEffectOf, IsWhatTheTrackerDoes) {
       EXPECT_FALSE(changes_anything(variants, base));
     }
   }
+}
+
+// The reason for elsewhere_above, on every scene once a second.
+TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
+  const auto arcs = make_detector(DetectorKind::kArcs);
+  Thresholds thresholds;
+  thresholds.contour_overlap = 0.01;
+  thresholds.ellipse_overlap = arcs->detecting_overlaps().ellipse;
+  Picture picture(640, 360);
+  int count = 0;
+  for (const NamedScene& scene : scene_catalog()) {
+    SceneRenderer renderer(scene.make(1));
+    for (int second = 0; second < 9; ++second) {
+      (void)renderer.render(0.5 + second, 0, picture.writable());
+      for (const Detection& found : arcs->detect(picture.view(), thresholds)) {
+        EXPECT_GT(found.contour_overlap, effect_of("detect-contour-overlap").elsewhere_above);
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 200);
 }
 
 // A search that the element makes coarser under load stops at max-scale.
