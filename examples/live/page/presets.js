@@ -15,7 +15,7 @@ export function setUpPresets(settings, say) {
   const refresh = async (chosen = list.value) => {
     presets = await ask("GET", "api/presets");
     list.replaceChildren(
-      make("option", { value: "" }, "Choose a preset…"),
+      make("option", { value: "" }, "Preset…"),
       ...presets.map(({ name, comment }) => make("option", { value: name, title: comment }, name)));
     list.value = presets.some(({ name }) => name === chosen) ? chosen : "";
     showWhatCanBeDone();

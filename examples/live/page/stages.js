@@ -196,7 +196,8 @@ export class Stages {
     if (this.#whole.has(group.reason) || drawable <= kBest) {
       return make("p", { className: "more" }, `and ${count} more`);
     }
-    const button = make("button", { className: "quiet rest" }, `Show ${Math.min(drawable, kMostRows)} instead of ${kBest}`);
+    const title = drawable <= kMostRows ? `Show all ${drawable}` : `Show ${kMostRows} of ${drawable}`;
+    const button = make("button", { className: "quiet rest" }, title);
     button.dataset.focus = `${group.reason} rest`;
     button.onclick = () => {
       this.#whole.add(group.reason);
