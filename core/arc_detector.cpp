@@ -301,8 +301,9 @@ Verdict ArcDetector::judge_alone(const VerifiedEllipse& found, const Thresholds&
     const Verdict flat = at_most(Reason::kLoneCutFlat, ratio, kLoneRatio);
     if (!flat.is_accepted()) return flat;
   }
-  const double excess = found.inside_fraction < 0.5 ? kLonePartSupport : kLoneSupport;
-  return at_least(Reason::kLoneOpen, support, wanted + excess);
+  const double margin = found.inside_fraction < 0.5 ? kLonePartSupport : kLoneSupport;
+  if (support >= wanted + margin) return {};
+  return below_setting(Reason::kLoneOpen, support - margin, wanted);
 }
 
 // Both edges of a painted line are partners too. So a thin ring has to stand alone.

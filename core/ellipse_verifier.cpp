@@ -96,8 +96,10 @@ Verdict judge_length(const PerimeterEvidence& evidence, const Thresholds& thresh
   return at_least(Reason::kContourTooShort, length_px, thresholds.min_contour_size);
 }
 
-Verdict judge_support(const PerimeterEvidence& evidence, double wanted) {
-  return at_least(Reason::kEllipseOverlap, evidence.support, wanted);
+// Before all steps of the fit are taken, a part of the wanted support is enough.
+Verdict judge_support(double support, double wanted, double part = 1.0) {
+  if (support >= part * wanted) return {};
+  return below_setting(Reason::kEllipseOverlap, support / part, wanted);
 }
 
 Verdict judge_count(std::span<const EdgeHit> hits, std::size_t least) {
@@ -161,11 +163,11 @@ Verdict EllipseVerifier::approach(const Request& request, Ellipse& e) {
   const auto probe = [&](int tolerance_px) {
     return probe_.probe(request.map, e, request.polarity, samples, tolerance_px);
   };
-  Verdict verdict = judge_support(probe(3), kSecondSupport * wanted);
+  Verdict verdict = judge_support(probe(3).support, wanted, kSecondSupport);
   if (verdict.is_accepted()) verdict = improve(request, e, 4.0);
   if (!verdict.is_accepted()) return verdict;
   const PerimeterEvidence evidence = probe(2);
-  verdict = judge_support(evidence, wanted);
+  verdict = judge_support(evidence.support, wanted);
   if (verdict.is_accepted()) verdict = improve(request, e, 2.5);
   if (!verdict.is_accepted()) return verdict;
   const double score = best_significance(
@@ -194,7 +196,7 @@ Verdict EllipseVerifier::verify_exact(const Request& request, VerifiedEllipse& r
   if (!verdict.is_accepted()) return verdict;
   const PerimeterEvidence found =
       probe_.probe(request.map, e, request.polarity, std::min(256, 2 * samples_for(e)), 1);
-  verdict = judge_support(found, request.thresholds.ellipse_overlap);
+  verdict = judge_support(found.support, request.thresholds.ellipse_overlap);
   if (verdict.is_accepted()) verdict = judge_count(probe_.hits(), kLeastHits);
   if (!verdict.is_accepted()) return verdict;
   const double score =
@@ -320,8 +322,8 @@ Verdict EllipseVerifier::judge_promise(const GradientMap& map,
   const double wanted = thresholds.ellipse_overlap;
   const int samples = std::max(32, samples_for(guess) / 2);
   const double first = kFirstSupport * wanted;
-  const Verdict exact = at_least(
-      Reason::kEllipseOverlap, perimeter_support(map, guess, polarity, samples, 2, first), first);
+  const double support = perimeter_support(map, guess, polarity, samples, 2, first);
+  const Verdict exact = judge_support(support, wanted, kFirstSupport);
   if (exact.is_accepted()) return exact;
   const double reach_px = crumple_px(guess);
   if (reach_px < 2.2) return exact;

@@ -50,10 +50,19 @@ struct TrackerSettings {
   bool operator==(const TrackerSettings&) const = default;
 };
 
+/// With which detector and tracking a setting changes any result; see core/setting_effect.hpp.
+struct SettingEffect {
+  std::optional<DetectorKind> detector = {};  ///< With this one only; nullopt = with any.
+  std::optional<TrackingMode> tracking = {};  ///< With this one only; nullopt = with any.
+  const char* otherwise = "";  ///< A property of the element that makes it act everywhere; or none.
+  double elsewhere_above = 0.0;  ///< With another detector, above this value only; 0 = never.
+};
+
 /// One number among the settings, as programs offer it to people.
 struct SettingInfo {
   const char* name;         ///< In kebab-case; also the name of the element's property.
   const char* description;  ///< A sentence with the unit.
+  SettingEffect effect;
   Range range;
   bool is_integer;
   bool is_controllable;  ///< May follow a curve over time.
@@ -63,6 +72,10 @@ struct SettingInfo {
 
 /// All of them, in the order in which [Keipour2021] speaks of them.
 [[nodiscard]] std::span<const SettingInfo> setting_infos();
+
+/// The effect of any setting: one of these numbers, "detector", "tracking", "refine" or
+/// "candidates". Throws std::invalid_argument where the name is none of them.
+[[nodiscard]] SettingEffect effect_of(std::string_view name);
 
 /// The nicks of the tracking modes, in their order.
 [[nodiscard]] std::span<const char* const> tracking_nicks();

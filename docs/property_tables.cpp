@@ -2,6 +2,8 @@
 //
 // Writes the tables of properties in a document from what the elements themselves say, between
 //   <!-- properties of ELEMENT -->   and   <!-- end of properties -->
+// and the matrix of the tracker's settings by detector and tracking, between
+//   <!-- effects of settings -->   and   <!-- end of effects -->
 // With --check it writes nothing, and fails where the document says something else.
 // The last column, the version that a property came with, is the document's: it is kept, and a
 // property that is new there gets the version of today. Signals are written by hand, and checked.
@@ -12,16 +14,21 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "core/setting_effect.hpp"
+
 namespace {
 
 constexpr char kBegin[] = "<!-- properties of ";
 constexpr char kEnd[] = "<!-- end of properties -->";
+constexpr char kEffectsBegin[] = "<!-- effects of settings -->";
+constexpr char kEffectsEnd[] = "<!-- end of effects -->";
 constexpr char kVersion[] = ELLIPSE_VERSION;  // major and minor
 
 std::string quoted(const std::string& text) {
@@ -176,20 +183,77 @@ std::string table_of(const std::string& name, const std::string& document) {
   return table;
 }
 
+std::string cell_of(const ellipse::SettingEffect& effect,
+                    ellipse::DetectorKind detector,
+                    ellipse::TrackingMode tracking) {
+  switch (ellipse::acts_with(effect, detector, tracking)) {
+    case ellipse::Acts::kAlways:
+      return "yes";
+    case ellipse::Acts::kAbove:
+      return "above " + number(effect.elsewhere_above);
+    case ellipse::Acts::kNever:
+      break;
+  }
+  const std::string otherwise = effect.otherwise;
+  return otherwise.empty() ? "-" : "with " + quoted(otherwise);
+}
+
+// Our detector and tracking first: they are the defaults.
+constexpr ellipse::DetectorKind kDetectors[] = {ellipse::DetectorKind::kArcs,
+                                                ellipse::DetectorKind::kContours};
+constexpr ellipse::TrackingMode kTrackings[] = {
+    ellipse::TrackingMode::kEdges, ellipse::TrackingMode::kRedetect, ellipse::TrackingMode::kNone};
+
+void write_effects_of(const std::string& name, std::ostream& table) {
+  const ellipse::SettingEffect effect = ellipse::effect_of(name);
+  table << "| " << quoted(name) << " |";
+  for (const auto detector : kDetectors) {
+    for (const auto tracking : kTrackings) {
+      table << ' ' << cell_of(effect, detector, tracking) << " |";
+    }
+  }
+  table << '\n';
+}
+
+std::string effects_table() {
+  std::ostringstream table;
+  table << "| property |";
+  for (const auto detector : kDetectors) {
+    for (const auto tracking : kTrackings) {
+      table << ' ' << quoted(ellipse::detector_nicks()[static_cast<std::size_t>(detector)]) << ", "
+            << quoted(ellipse::tracking_nicks()[static_cast<std::size_t>(tracking)]) << " |";
+    }
+  }
+  table << "\n|---|---|---|---|---|---|---|\n";
+  for (const char* name : {"refine", "candidates"}) write_effects_of(name, table);
+  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
+    write_effects_of(info.name, table);
+  }
+  return table.str();
+}
+
+// The table that belongs behind this line of the document; nullopt where none does.
+std::optional<std::string> table_behind(const std::string& line, const std::string& document) {
+  if (line == kEffectsBegin) return effects_table();
+  if (line.rfind(kBegin, 0) != 0) return std::nullopt;
+  const std::string name = line.substr(std::strlen(kBegin));
+  return table_of(name.substr(0, name.find(' ')), document);
+}
+
 std::string with_tables(const std::string& document) {
   std::istringstream lines(document);
   std::string result;
   std::string line;
   bool is_in_table = false;
   while (std::getline(lines, line)) {
-    if (line == kEnd) is_in_table = false;
+    if (line == kEnd || line == kEffectsEnd) is_in_table = false;
     if (!is_in_table) result += line + "\n";
-    if (line.rfind(kBegin, 0) != 0) continue;
-    const std::string name = line.substr(std::strlen(kBegin));
-    result += table_of(name.substr(0, name.find(' ')), document);
-    is_in_table = true;
+    if (const auto table = table_behind(line, document)) {
+      result += *table;
+      is_in_table = true;
+    }
   }
-  if (is_in_table) throw std::runtime_error(std::string("a table without ") + kEnd);
+  if (is_in_table) throw std::runtime_error("a table without its end");
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/camera_file.hpp"
+#include "core/setting_effect.hpp"
 #include "gst/track_enums.hpp"
 
 namespace {
@@ -32,22 +33,27 @@ enum {
   PROP_FIRST_NUMBER,
 };
 
+constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                   GST_PARAM_MUTABLE_PLAYING);
+// GLib keeps a copy of a blurb that is put together.
+constexpr auto kPlayingOwnBlurb = static_cast<GParamFlags>(kPlaying & ~G_PARAM_STATIC_BLURB);
+
 GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
   const double initial = info.get(ellipse::TrackerSettings{});
-  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                              GST_PARAM_MUTABLE_PLAYING |
+  const auto flags = static_cast<GParamFlags>(kPlayingOwnBlurb |
                                               (info.is_controllable ? GST_PARAM_CONTROLLABLE : 0));
+  const std::string blurb = ellipse::blurb_of(info.description, info.effect);
   if (info.is_integer) {
     return g_param_spec_uint(info.name,
                              info.name,
-                             info.description,
+                             blurb.c_str(),
                              static_cast<guint>(info.range.min),
                              static_cast<guint>(info.range.max),
                              static_cast<guint>(initial),
                              flags);
   }
   return g_param_spec_double(
-      info.name, info.name, info.description, info.range.min, info.range.max, initial, flags);
+      info.name, info.name, blurb.c_str(), info.range.min, info.range.max, initial, flags);
 }
 
 // The numbers of a vector of doubles, or of ints.
@@ -106,9 +112,6 @@ const ellipse::SettingInfo* number_info(guint which) {
   return is_number ? &infos[which - PROP_FIRST_NUMBER] : nullptr;
 }
 
-constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                   GST_PARAM_MUTABLE_PLAYING);
-
 class Installer {
  public:
   Installer(GObjectClass* object_class, guint first_id)
@@ -138,14 +141,16 @@ void install_methods(const Installer& install, const TrackProperties& initial) {
                             gst_ellipse_tracking_get_type(),
                             static_cast<gint>(initial.tracker.tracking),
                             kPlaying));
-  install(
-      PROP_REFINE,
-      g_param_spec_enum("refine",
-                        "Refine",
-                        "How exact the ellipse is made of a target that is followed by its edges",
-                        gst_ellipse_refinement_get_type(),
-                        static_cast<gint>(initial.tracker.refine),
-                        kPlaying));
+  const std::string blurb =
+      ellipse::blurb_of("How exact the ellipse is made of a target that is followed by its edges",
+                        ellipse::effect_of("refine"));
+  install(PROP_REFINE,
+          g_param_spec_enum("refine",
+                            "Refine",
+                            blurb.c_str(),
+                            gst_ellipse_refinement_get_type(),
+                            static_cast<gint>(initial.tracker.refine),
+                            kPlayingOwnBlurb));
 }
 
 void install_load(const Installer& install, const TrackProperties& initial) {

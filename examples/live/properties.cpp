@@ -109,13 +109,18 @@ void take_in(ellipse::TrackerSettings& settings, const char* name, const GValue*
   }
 }
 
-ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<Change>& changes) {
+ellipse::TrackerSettings settings_of(GstElement* tracker) {
   ellipse::TrackerSettings settings;
   for (GParamSpec* spec : tunable(tracker)) {
     Value value(spec);
     g_object_get_property(G_OBJECT(tracker), spec->name, value.get());
     take_in(settings, spec->name, value.get());
   }
+  return settings;
+}
+
+ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<Change>& changes) {
+  ellipse::TrackerSettings settings = settings_of(tracker);
   for (const Change& change : changes) take_in(settings, change.spec->name, change.value->get());
   settings.validate();
   return settings;
@@ -153,9 +158,10 @@ bool is_unset(const GParamSpec* spec, const GValue* value) {
 std::string Properties::to_json() const {
   JsonWriter json;
   json.begin_array();
+  const ellipse::TrackerSettings settings = settings_of(tracker_);
   for (GParamSpec* spec : tunable(tracker_)) {
     const bool is_camera = g_strcmp0(spec->name, kCameraFile) == 0;
-    write_property(json, tracker_, spec, !is_camera || cameras_.is_open());
+    write_property(json, tracker_, spec, !is_camera || cameras_.is_open(), settings);
   }
   return json.end_array().text() + "\n";
 }

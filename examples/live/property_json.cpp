@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/property_json.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "core/setting_effect.hpp"
 #include "examples/live/property_groups.hpp"
 #include "examples/live/ref.hpp"
 
@@ -109,6 +114,35 @@ void write_nicks(JsonWriter& json, const Values* values, guint count) {
   json.end_array();
 }
 
+template <class Enum>
+void write_nick(JsonWriter& json,
+                const char* name,
+                const std::optional<Enum>& value,
+                std::span<const char* const> nicks) {
+  json.key(name);
+  value ? json.value(nicks[static_cast<std::size_t>(*value)]) : json.null();
+}
+
+// Of one of the tracker's settings: with what it acts, and the value in force where it is 0 and
+// stands for another. Nothing of the element's other properties.
+void write_effect(JsonWriter& json, const char* name, const ellipse::TrackerSettings& settings) {
+  const auto infos = ellipse::setting_infos();
+  const auto info = std::find_if(
+      infos.begin(), infos.end(), [&](const auto& each) { return g_str_equal(name, each.name); });
+  const bool is_number = info != infos.end();
+  if (!is_number && !g_str_equal(name, "refine")) return;
+  const ellipse::SettingEffect effect = ellipse::effect_of(name);
+  json.key("effect").begin_object();
+  write_nick(json, "detector", effect.detector, ellipse::detector_nicks());
+  write_nick(json, "tracking", effect.tracking, ellipse::tracking_nicks());
+  json.member("otherwise", effect.otherwise)
+      .member("elsewhere_above", effect.elsewhere_above)
+      .end_object();
+  if (!is_number || info->get(settings) != 0.0) return;
+  const double in_force = info->get(ellipse::in_force(settings));
+  if (in_force != 0.0) json.member("in_force", in_force);
+}
+
 }  // namespace
 
 bool is_rect(const GParamSpec* spec) {
@@ -121,7 +155,11 @@ bool is_vector(const GParamSpec* spec) {
          G_IS_PARAM_SPEC_DOUBLE(GST_PARAM_SPEC_ARRAY_LIST(spec)->element_spec);
 }
 
-void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec, bool is_writable) {
+void write_property(JsonWriter& json,
+                    GstElement* object,
+                    GParamSpec* spec,
+                    bool is_writable,
+                    const ellipse::TrackerSettings& settings) {
   const char* blurb = g_param_spec_get_blurb(spec);
   json.begin_object()
       .member("name", spec->name)
@@ -149,6 +187,7 @@ void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec, bool
   json.key("value");
   write_value(json, &value);
   g_value_unset(&value);
+  write_effect(json, spec->name, settings);
   json.end_object();
 }
 

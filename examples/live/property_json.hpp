@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/tracker_settings.hpp"
 #include "examples/live/json_writer.hpp"
 
 namespace live {
@@ -15,8 +16,14 @@ namespace live {
 [[nodiscard]] bool is_vector(const GParamSpec* spec);
 
 /// Writes an object that tells all that a control needs: name, nick, blurb, type, range, default,
-/// value, unit, group, whether clients can set it.
-void write_property(JsonWriter& json, GstElement* object, GParamSpec* spec, bool is_writable);
+/// value, unit, group, whether clients can set it; of the tracker's settings also with what they
+/// act, and the value in force where a 0 stands for it.
+/// @param settings  The tracker's, all of them.
+void write_property(JsonWriter& json,
+                    GstElement* object,
+                    GParamSpec* spec,
+                    bool is_writable,
+                    const ellipse::TrackerSettings& settings);
 
 /// A property's value as one word of a gst-launch line, unquoted.
 [[nodiscard]] std::string word_of(const GParamSpec* spec, const GValue* value);

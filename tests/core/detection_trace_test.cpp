@@ -181,7 +181,7 @@ TEST_P(DetectionTraceOf, SaysEllipseOverlap) {
     t.ellipse_overlap = 1.0;
     t.min_contour_size = 20;
   });
-  EXPECT_GT(verdict.limit, 0.7);  // arcs: a part of it at the first look
+  EXPECT_EQ(verdict.limit, 1.0);
   EXPECT_LT(verdict.measured, verdict.limit);
   EXPECT_GT(verdict.measured, 0.1);
 }
@@ -320,6 +320,47 @@ TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
     });
     EXPECT_TRUE(has(look, one.reason)) << reason_info(one.reason).nick;
   }
+}
+
+// Also where a first look asks for a part of the setting, or a lone ellipse for more than it.
+TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
+  int refused = 0;
+  for (const char* name : {"approach", "glare", "oblique"}) {
+    const Look look = look_at(GetParam(), of_scene(name, 6.0), [](auto& t) {
+      t.ellipse_overlap = 0.66;
+      t.min_contour_size = 20;
+    });
+    for (const TracedCandidate& candidate : look.trace.candidates()) {
+      const Verdict& verdict = candidate.verdict;
+      if (reason_info(verdict.reason).setting != std::string_view("ellipse-overlap")) continue;
+      EXPECT_EQ(verdict.limit, 0.66) << to_text(verdict);
+      EXPECT_LT(verdict.measured, 0.66) << to_text(verdict);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST(DetectionTrace, OfALoneEllipseMeasuresTheSettingThatWouldTakeIt) {
+  const auto look_with = [](double overlap) {
+    return look_at(DetectorKind::kArcs, of_scene("glare", 6.0), [&](auto& t) {
+      t.min_contour_size = 20;
+      t.ellipse_overlap = overlap;
+    });
+  };
+  const Look look = look_with(0.55);
+  const TracedCandidate* lone = first_with(look.trace, Reason::kLoneOpen);
+  ASSERT_NE(lone, nullptr);
+  const double enough = lone->verdict.measured;
+  ASSERT_GT(enough, 0.0);
+  const auto finds_it = [&](const Look& other) {
+    return std::any_of(other.detections.begin(), other.detections.end(), [&](const auto& found) {
+      return (found.ellipse.center() - lone->ellipse->center()).norm() < 1.0 &&
+             std::abs(found.ellipse.semi_major - lone->ellipse->semi_major) < 1.0;
+    });
+  };
+  EXPECT_FALSE(finds_it(look_with(enough + 0.01)));
+  EXPECT_TRUE(finds_it(look_with(enough - 0.01)));
 }
 
 TEST(DetectionTrace, OfArcsSaysThatTheFullSizeWasLookedAtInstead) {

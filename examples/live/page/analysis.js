@@ -2,16 +2,21 @@
 // What the detector makes of the frame on the screen, apart from the pipeline.
 import { ask } from "./connection.js";
 
+/** So many refused candidates are shown until a person asks for all. */
+export const kBest = 8;
+
 /**
  * @param properties  {name: value} that differ from the settings of now.
  * @param stage       The stage whose picture is wanted, or undefined.
  * @returns what the program tells, with `image` (ImageBitmap or null) of the stage, and `groups`:
- *          one for each reason, the target's first, then by how many.
+ *          one for each reason, the target's first, then by how many; `best`: a Set of
+ *          the numbers of the kBest refused that missed their limits by the least.
  */
 export async function analyze({ properties, stage } = {}) {
   const result = await ask("POST", "api/analyze", { properties, stage });
   result.image = result.picture ? await bitmapOf(result.picture) : null;
   result.groups = groupsOf(result);
+  result.best = bestOf(result.groups);
   return result;
 }
 
@@ -41,6 +46,12 @@ function groupsOf({ candidates, reasons, counts }) {
   }
   const rank = (group) => (group.reason === "accepted" ? 2 : group.isFound ? 1 : 0);
   return [...groups.values()].sort((a, b) => rank(b) - rank(a) || b.count - a.count);
+}
+
+function bestOf(groups) {
+  const refused = groups.flatMap(({ members }) => members).filter(({ ellipse, found }) => ellipse && !found);
+  const measured = refused.filter((candidate) => Number.isFinite(missOf(candidate)));
+  return new Set(measured.sort((a, b) => missOf(a) - missOf(b)).slice(0, kBest).map(({ number }) => number));
 }
 
 /** The look of a candidate, for drawing. */

@@ -53,8 +53,10 @@ watchFrames({
   },
   onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live: trying again"),
 });
+const showPresetState = setUpPresets(settings, status.say);
 settings.onChange = () => {
   screen.draw();
+  showPresetState();
   view?.refresh();
 };
 let wasPlaying = true;
@@ -75,6 +77,5 @@ screen.canvas.addEventListener("keydown", (event) => {
 });
 at("help-button").onclick = () => at("help-dialog").showModal();
 
-setUpPresets(settings, status.say);
 settings.refresh();
 playback.refresh();

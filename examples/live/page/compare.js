@@ -72,7 +72,7 @@ export class Compare {
 
   #split(isSplit) {
     at("screen-b").hidden = at("tag-a").hidden = at("tag-b").hidden = !isSplit;
-    at("frame").classList.toggle("compares", isSplit);
+    at("frame").closest("main").classList.toggle("compares", isSplit);
   }
 
   #draw(context, { bitmap }) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One control for each kind of property. Each returns {nodes, set}: `set` shows a value; `change`
-// is called with the value that a person has chosen.
+// One control for each kind of property. Each returns {head, body, set}: `set` shows a value, and
+// the one in force where 0 stands for it; `change` is called with the value that a person has chosen.
 
 const kSteps = 1000;
 const kFarMax = 1e6;   // a slider does not go as far as what nobody wants
@@ -72,13 +72,18 @@ function numberControl(property, change) {
   // The middle of the thumb, which is 16 px wide, does not reach the ends.
   const share = toShare(property.default);
   mark.style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
+  // A 0 that stands for another value shows it.
+  let isOwn = false;
   const showInField = showWhenLeft([field], (value) => {
-    field.value = Number(value.toPrecision(12));
+    field.value = isOwn ? "" : Number(value.toPrecision(12));
   });
-  const set = (value) => {
+  const set = (value, inForce = null) => {
+    isOwn = value === 0 && inForce !== null;
+    field.placeholder = isOwn ? `0 = ${Number(inForce.toPrecision(6))}` : "";
     slider.value = Math.round(kSteps * toShare(value));
     slider.style.setProperty("--at", `${100 * toShare(value)}%`);
-    slider.setAttribute("aria-valuetext", `${value}${property.unit ? ` ${property.unit}` : ""}`);
+    const shown = isOwn ? `0, in force: ${inForce}` : value;
+    slider.setAttribute("aria-valuetext", `${shown}${property.unit ? ` ${property.unit}` : ""}`);
     showInField(value);
   };
   slider.oninput = () => {

@@ -18,7 +18,6 @@ const kLooks = {
 
 /** Makes the canvas as fine as the screen. @returns its context, in pixels of the frame. */
 export function contextOf(canvas, width, height) {
-  canvas.style.aspectRatio = `${width} / ${height}`;
   const fine = canvas.clientWidth * devicePixelRatio || width;
   const wide = Math.round(fine);
   const high = Math.round(fine * height / width);

@@ -5,23 +5,36 @@ import { make } from "./controls.js";
 
 const at = (id) => document.getElementById(id);
 
+/** @returns a function to call whenever settings have changed. */
 export function setUpPresets(settings, say) {
   const list = at("preset");
   const dialog = at("save-dialog");
   let presets = [];
+  let loaded = null;  // {name, values}: the preset that was loaded or saved last, and all values then
 
   const refresh = async (chosen = list.value) => {
     presets = await ask("GET", "api/presets");
-    list.replaceChildren(...presets.map(({ name, comment }) => {
-      return make("option", { value: name, title: comment }, name);
-    }));
-    if (presets.some(({ name }) => name === chosen)) list.value = chosen;
+    list.replaceChildren(
+      make("option", { value: "" }, "Preset…"),
+      ...presets.map(({ name, comment }) => make("option", { value: name, title: comment }, name)));
+    list.value = presets.some(({ name }) => name === chosen) ? chosen : "";
     showWhatCanBeDone();
   };
   const showWhatCanBeDone = () => {
     const preset = presets.find(({ name }) => name === list.value);
     at("preset-load").disabled = !preset;
     at("preset-delete").disabled = !preset?.is_own;
+    showState();
+  };
+  const showState = () => {
+    at("preset-state").textContent = [
+      ...(loaded ? [stateOf(loaded, settings.values())] : []),
+      ...(list.value && list.value !== loaded?.name ? [`${list.value} is chosen, not loaded`] : []),
+    ].join("; ");
+  };
+  const keep = (name) => {
+    loaded = { name, values: settings.values() };
+    showState();
   };
   const attempt = async (task) => {
     try {
@@ -36,10 +49,12 @@ export function setUpPresets(settings, say) {
   at("preset-load").onclick = () => attempt(async () => {
     await ask("POST", `${pathOf(list.value)}/load`);
     await settings.refresh();
+    keep(list.value);
     say(`${list.value} is in force`);
   });
   at("preset-delete").onclick = () => attempt(async () => {
     await ask("DELETE", pathOf(list.value));
+    if (loaded?.name === list.value) loaded = null;
     await refresh();
   });
   at("preset-save").onclick = () => {
@@ -55,6 +70,7 @@ export function setUpPresets(settings, say) {
       await ask("PUT", pathOf(name));
       dialog.close();
       await refresh(name);
+      keep(name);
       say(`Saved as ${name}`);
     } catch (error) {
       at("save-error").textContent = error.message;
@@ -71,4 +87,12 @@ export function setUpPresets(settings, say) {
     say("Copied");
   });
   attempt(refresh);
+  return showState;
+}
+
+// What of a preset is still so.
+function stateOf({ name, values }, now) {
+  const changed = Object.keys(values).filter((each) => JSON.stringify(values[each]) !== JSON.stringify(now[each]));
+  if (changed.length === 0) return `In force: ${name}`;
+  return `In force: ${name}, ${changed.length} ${changed.length === 1 ? "setting" : "settings"} changed since`;
 }

@@ -20,6 +20,7 @@ export class Screen {
   view = null;
   /** Draws over the frame's own drawing: (context) => void. */
   overlay = () => {};
+  #aspect = 0;  // of the video: width over height
 
   constructor(canvas, layerList) {
     this.canvas = canvas;
@@ -32,6 +33,12 @@ export class Screen {
   }
 
   show(frame) {
+    const { width, height } = frame.bitmap;
+    if (width / height !== this.#aspect) {
+      this.#aspect = width / height;
+      // The style sheet lays the pictures out by it.
+      this.canvas.closest("main").style.setProperty("--aspect", String(this.#aspect));
+    }
     if (this.frame && this.frame.bitmap !== frame.bitmap) this.frame.bitmap.close?.();
     this.frame = frame;
     ++this.shown;

@@ -19,9 +19,25 @@ const kOpenAtFirst = ["detection", "edges", "tracking"];
 
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
+/**
+ * Why a setting changes nothing now; empty where it acts.
+ * @param effect  As the program tells it.
+ * @param value   Of the setting; @param values  Of all.
+ */
+function idleReason(effect, value, values) {
+  if (!effect || (effect.otherwise && values[effect.otherwise] !== 0)) return "";
+  const others = ["detector", "tracking"].filter((name) => effect[name] && effect[name] !== values[name]);
+  if (others.length === 0) return "";
+  const reason = `No effect with ${others.map((name) => `${name}=${values[name]}`).join(" and ")}`;
+  if (effect.otherwise) return `${reason} unless ${effect.otherwise} is set`;
+  const { elsewhere_above: above } = effect;
+  if (!above || others.includes("tracking")) return reason;
+  return value > above ? "" : `${reason} up to ${above}`;
+}
+
 export class Settings {
   #properties = [];
-  #controls = new Map();  // by name: {property, control, node, error, value}
+  #controls = new Map();  // by name: {property, control, node, error, idle, value}
   #pending = {};
   #isSending = false;
   /** Called where any value has changed, by whomever. */
@@ -57,11 +73,15 @@ export class Settings {
     let hasChanged = false;
     for (const property of properties) {
       const entry = this.#controls.get(property.name);
-      if (!entry || isSame(entry.value, property.value)) continue;
+      if (!entry) continue;
+      const isOther = !isSame(entry.value, property.value);
+      if (!isOther && entry.property.in_force === property.in_force) continue;
+      entry.property.in_force = property.in_force;
       this.#show(entry, property.value);
-      hasChanged = true;
+      hasChanged ||= isOther;
     }
     this.#count();
+    this.#showEffects();
     if (hasChanged) this.onChange();
   }
 
@@ -70,6 +90,7 @@ export class Settings {
     Object.assign(this.#pending, values);
     for (const [name, value] of Object.entries(values)) this.#show(this.#controls.get(name), value);
     this.#count();
+    this.#showEffects();
     if (this.#isSending) return;
     this.#isSending = true;
     while (Object.keys(this.#pending).length > 0) {
@@ -127,15 +148,16 @@ export class Settings {
     reset.innerHTML = '<svg viewBox="0 0 20 20" aria-hidden="true"><use href="#i-reset"/></svg>';
     reset.onclick = () => this.set({ [name]: property.default });
     const help = make("p", { className: "help", id: `help-${name}` }, property.blurb);
+    const idle = make("p", { className: "idle", id: `idle-${name}`, hidden: true });
     const error = make("p", { className: "error", role: "alert" });
     const node = make("div", { className: "setting" },
       make("div", { className: "head" },
         make("span", { className: "name" }, name), reset, ...control.head,
         ...(property.unit ? [make("span", { className: "unit" }, property.unit)] : [])),
-      ...control.body, help, error);
+      ...control.body, idle, help, error);
     node.dataset.setting = name;
-    for (const input of node.querySelectorAll("input")) input.setAttribute("aria-describedby", help.id);
-    const entry = { property, control, node, error };
+    for (const input of node.querySelectorAll("input")) input.setAttribute("aria-describedby", `${idle.id} ${help.id}`);
+    const entry = { property, control, node, error, idle };
     this.#controls.set(name, entry);
     this.#show(entry, property.value);
     return node;
@@ -143,7 +165,7 @@ export class Settings {
 
   #show(entry, value) {
     entry.value = value;
-    entry.control.set(value);
+    entry.control.set(value, entry.property.in_force);
     entry.node.classList.toggle("changed", !this.#isDefault(entry.property, value));
   }
 
@@ -153,6 +175,18 @@ export class Settings {
     if (type === "vector") return value.every((number, i) => number === (usual[i] ?? 0));
     if (type === "flags") return isSame(value, usual) || (value === "none" && usual === "Nothing");
     return isSame(value, usual);
+  }
+
+  // What changes nothing with the detector and the tracking of now is greyed, and says so. It can be
+  // set all the same, for another detector or tracking.
+  #showEffects() {
+    const values = this.values();
+    for (const { property, node, idle, value } of this.#controls.values()) {
+      const reason = idleReason(property.effect, value, values);
+      idle.textContent = reason;
+      idle.hidden = reason === "";
+      node.classList.toggle("idle", reason !== "");
+    }
   }
 
   #count() {

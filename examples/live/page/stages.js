@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stage view: edges, chains, arcs and candidates of the frame on the screen, and why each
 // candidate is refused.
-import { analyze, lookOf, placeText } from "./analysis.js";
+import { analyze, kBest, lookOf, placeText } from "./analysis.js";
 import { newestOnly } from "./connection.js";
 import { make } from "./controls.js";
 import { distanceTo, drawEllipse, drawPicture } from "./drawing.js";
@@ -15,7 +15,7 @@ const kStages = {
 };
 // What the detector of the paper has in the place of chains and arcs.
 const kStagesOfContours = { chains: "Contours", arcs: "Parts" };
-const kMostRows = 30;
+const kMostRows = 200;
 const kPauseMs = 400;
 const kNearPx = 12;
 const at = (id) => document.getElementById(id);
@@ -26,6 +26,8 @@ export class Stages {
   #marked = null;  // the number of a candidate
   #only = null;    // a reason
   #open = new Set(["accepted"]);
+  #whole = new Set();  // reasons of which all are listed
+  #showsAll = false;   // all that were refused are on the screen
   #isOn = false;
   #timer = 0;
   #names = {};     // of the stages, as they are shown
@@ -41,6 +43,11 @@ export class Stages {
       this.#names[stage] = make("span", {}, title);
       at("stage-choices").append(make("label", { className: "pill" }, radio, this.#names[stage]));
     }
+    at("stage-all").onclick = () => {
+      this.#showsAll = !this.#showsAll;
+      this.#tellShown();
+      this.screen.draw();
+    };
     screen.canvas.addEventListener("click", (event) => this.#isOn && this.#pick(event));
   }
 
@@ -88,13 +95,11 @@ export class Stages {
       context.fillStyle = "rgb(8 10 14 / .55)";
       context.fillRect(-0.5, -0.5, bitmap.width, bitmap.height);
     }
-    const isShown = (candidate, i) => i === this.#marked || candidate.reason === this.#only ||
-      (this.#only === null && choice === "candidates");
     // What is found lies over what is refused, and what is pointed at over all.
     const rank = ({ is_target, found, number }) => (number === this.#marked ? 3 : is_target ? 2 : found ? 1 : 0);
     const shown = candidates
       .map((candidate, number) => ({ ...candidate, number }))
-      .filter((candidate) => candidate.ellipse && isShown(candidate, candidate.number))
+      .filter((candidate) => this.#isShown(candidate, candidate.number))
       .sort((a, b) => rank(a) - rank(b));
     const width = context.lineWidth;
     for (const candidate of shown) {
@@ -107,7 +112,37 @@ export class Stages {
     context.lineWidth = width;
   }
 
+  // What was found, and of the refused those that came closest; of a reason that is opened those
+  // that are listed.
+  #isShown(candidate, number) {
+    if (!candidate.ellipse) return false;
+    if (number === this.#marked) return true;
+    const { choice, best, groups } = this.#result;
+    if (this.#only !== null) {
+      const group = groups.find(({ reason }) => reason === this.#only);
+      return group !== undefined && this.#listed(group).some((each) => each.number === number);
+    }
+    return choice === "candidates" && (candidate.found || this.#showsAll || best.has(number));
+  }
+
+  #listed({ reason, members }) {
+    const most = this.#whole.has(reason) ? kMostRows : kBest;
+    return members.filter(({ ellipse }) => ellipse).slice(0, most);
+  }
+
+  #tellShown() {
+    const { candidates, best, choice } = this.#result;
+    const refused = candidates.filter(({ ellipse, found }) => ellipse && !found).length;
+    at("stage-shown").hidden = choice !== "candidates" || this.#only !== null || refused <= best.size;
+    at("stage-shown").firstChild.textContent = this.#showsAll
+      ? `All ${refused} refused are shown`
+      : `Of ${refused} refused the ${best.size} that came closest are shown`;
+    at("stage-all").textContent = this.#showsAll ? "Show the best" : "Show all";
+    at("stage-all").setAttribute("aria-pressed", this.#showsAll);
+  }
+
   #list() {
+    this.#tellShown();
     const { groups, passes, processing_ns: time, detector } = this.#result;
     for (const stage of Object.keys(kStagesOfContours)) {
       this.#names[stage].textContent = (detector === "contours" ? kStagesOfContours : kStages)[stage];
@@ -140,13 +175,12 @@ export class Stages {
       else this.#open.delete(group.reason);
       this.#only = node.open && group.reason !== "accepted" ? group.reason
         : this.#only === group.reason ? null : this.#only;
+      this.#tellShown();
       this.screen.draw();
     };
-    const rows = group.members.filter(({ ellipse }) => ellipse).slice(0, kMostRows);
+    const rows = this.#listed(group);
     node.append(make("ul", {}, ...rows.map((member) => this.#row(group, member))));
-    if (group.count > rows.length) {
-      node.append(make("p", { className: "more" }, `and ${group.count - rows.length} more`));
-    }
+    if (group.count > rows.length) node.append(this.#rest(group, group.count - rows.length));
     const setting = this.#settingOf(group);
     if (setting) {
       const button = make("button", { className: "quiet to-setting" }, `Go to ${setting}`);
@@ -154,6 +188,23 @@ export class Stages {
       node.append(button);
     }
     return node;
+  }
+
+  // How many are not listed, with the way to those that can be.
+  #rest(group, count) {
+    const drawable = group.members.filter(({ ellipse }) => ellipse).length;
+    if (this.#whole.has(group.reason) || drawable <= kBest) {
+      return make("p", { className: "more" }, `and ${count} more`);
+    }
+    const title = drawable <= kMostRows ? `Show all ${drawable}` : `Show ${kMostRows} of ${drawable}`;
+    const button = make("button", { className: "quiet rest" }, title);
+    button.dataset.focus = `${group.reason} rest`;
+    button.onclick = () => {
+      this.#whole.add(group.reason);
+      this.#list();
+      this.screen.draw();
+    };
+    return button;
   }
 
   /** Called with the name of a setting that a person wants to see. */
@@ -188,13 +239,17 @@ export class Stages {
   #pick(event) {
     if (!this.#result) return;
     const { x, y } = this.screen.placeOf(event);
-    let best = null;
-    this.#result.candidates.forEach((candidate, number) => {
-      if (!candidate.ellipse) return;
-      const distance = distanceTo(candidate.ellipse, x, y);
-      if (distance < (best?.distance ?? kNearPx)) best = { distance, candidate, number };
-    });
+    const near = this.#result.candidates
+      .map((candidate, number) => ({ candidate, number }))
+      .filter(({ candidate }) => candidate.ellipse)
+      .map((each) => ({ ...each, distance: distanceTo(each.candidate.ellipse, x, y) }))
+      .filter(({ distance }) => distance < kNearPx);
+    // Where what is shown is near, nobody means what is not.
+    const shown = near.filter(({ candidate, number }) => this.#isShown(candidate, number));
+    const [best] = (shown.length > 0 ? shown : near).sort((a, b) => a.distance - b.distance);
     if (!best) return;
+    const group = this.#result.groups.find(({ reason }) => reason === best.candidate.reason);
+    if (!this.#listed(group).some(({ number }) => number === best.number)) this.#whole.add(group.reason);
     this.#open.add(best.candidate.reason);
     this.#list();
     const row = at("reasons").querySelector(`[data-candidate="${best.number}"]`);

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Tabs by mouse and keys, as the ARIA practices have them.
 
+// Where the page has been scrolled on under the tabs, another panel begins below them.
+function showStartOf(panel, tabList) {
+  const hidden = tabList.getBoundingClientRect().bottom - panel.getBoundingClientRect().top;
+  if (hidden > 1) scrollBy(0, -hidden);
+}
+
 /**
  * @param onChange  Gets the name of the tab that is open now, as in id="tab-NAME".
  * @returns a function that opens a tab by its name.
@@ -15,6 +21,7 @@ export function setUpTabs(onChange) {
       document.getElementById(each.getAttribute("aria-controls")).hidden = !isOpen;
     }
     onChange(tab.id.replace("tab-", ""));
+    showStartOf(document.getElementById(tab.getAttribute("aria-controls")), tab.parentElement);
   };
   tabs.forEach((tab, i) => {
     tab.onclick = () => open(tab);

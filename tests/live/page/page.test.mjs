@@ -9,6 +9,7 @@ import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { kMostMs, openPage, shownBy, startBrowser, startProgram } from "./program.mjs";
+import "./layout.test.mjs";
 import { largestDistance } from "./ring.mjs";
 
 process.env.XDG_DATA_HOME = mkdtempSync(join(tmpdir(), "ellipse-live-"));
@@ -236,6 +237,56 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
+  it("greys what has no effect, and says why, for the detector and the tracking of now", async () => {
+    const page = await live.open();
+    const idle = (name) => setting(page, name).locator(".idle").textContent();
+    const once = (name, text) => page.waitForFunction(([each, wanted]) => {
+      return document.querySelector(`[data-setting=${each}] .idle`).textContent === wanted;
+    }, [name, text]);
+    await once("roi-expansion", "No effect with tracking=edges");
+    const greyed = await page.$$eval(".setting.idle", (nodes) => nodes.map((node) => node.dataset.setting));
+    assert.deepEqual(greyed.sort(), ["detect-contour-overlap", "max-scale", "max-target-size", "min-target-size",
+      "roi-expansion", "track-contour-overlap", "track-ellipse-overlap"]);
+    assert.equal(await idle("detect-contour-overlap"), "No effect with detector=arcs up to 0.95");
+    assert.equal(await idle("track-contour-overlap"), "No effect with detector=arcs and tracking=edges");
+    assert.equal(await idle("max-scale"), "No effect with tracking=edges unless max-processing-time is set");
+    assert.equal(await idle("ring-ratio"), "");
+
+    await setting(page, "tracking").getByText("redetect", { exact: true }).click();
+    await once("roi-expansion", "");
+    await once("ring-ratio", "No effect with tracking=redetect");
+    assert.equal(await idle("max-scale"), "");
+    await live.program.ask("PUT", "/api/properties", { detector: "contours", tracking: "none" });  // by another client
+    await once("track-contour-overlap", "No effect with tracking=none");
+    assert.equal(await idle("detect-contour-overlap"), "");
+    await live.program.ask("PUT", "/api/properties", { "max-processing-time": 1e9 });
+    await once("max-scale", "");
+    await page.close();
+  });
+
+  it("shows in the box of a setting that is 0 what is in force", async () => {
+    const page = await live.open();
+    const box = setting(page, "detect-ellipse-overlap").locator("input[type=number]");
+    const holds = (value, placeholder) => page.waitForFunction(([content, behind]) => {
+      const field = document.querySelector("[data-setting=detect-ellipse-overlap] input[type=number]");
+      return field.value === content && field.placeholder === behind;
+    }, [value, placeholder]);
+    await holds("", "0 = 0.55");
+    await setting(page, "detector").getByText("contours", { exact: true }).click();
+    await holds("", "0 = 0.95");
+    await box.fill("0.66");
+    await box.press("Enter");
+    await box.blur();
+    await holds("0.66", "");
+    await box.fill("0");
+    await box.press("Enter");
+    await box.blur();
+    await holds("", "0 = 0.95");
+    const { value } = (await live.program.ask("GET", "/api/properties")).find(({ name }) => name === "detect-ellipse-overlap");
+    assert.equal(value, 0);
+    await page.close();
+  });
+
   it("names the reason of each rejection, and leads to the setting", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
@@ -408,6 +459,47 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
   });
 }));
 
+// Squares, flowers and arcs: much to refuse.
+describe("a picture with much to refuse", () => withProgram(() => ["--source", "test:negative"], (live) => {
+  const countRed = (page) => page.evaluate(() => {
+    const screen = document.querySelector("#screen");
+    const { data } = screen.getContext("2d").getImageData(0, 0, screen.width, screen.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i] > data[i + 1] + 60 && data[i] > data[i + 2] + 60) ++count;
+    return count;
+  });
+
+  it("shows the best few, and the rest on demand", async () => {
+    const page = await live.open();
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await standsStill(page, live.program);
+    await page.click("#tab-stages");
+    await page.waitForSelector("#stage-shown:not([hidden])");
+    const [, refused, few] = /Of (\d+) refused the (\d+) /.exec(await page.textContent("#stage-shown"));
+    assert.equal(few, "8");
+    const { candidates } = await live.program.ask("POST", "/api/analyze", {});
+    assert.equal(Number(refused), candidates.filter(({ ellipse, found }) => ellipse && !found).length);
+    assert.ok(refused > 20, `${refused} refused`);
+    const redOfFew = await countRed(page);
+    await page.click("#stage-all");
+    await page.waitForSelector("#stage-all[aria-pressed=true]");
+    const redOfAll = await countRed(page);
+    assert.ok(redOfAll > 1.5 * redOfFew && redOfFew > 0, `${redOfFew}, then ${redOfAll} red pixels`);
+    await page.click("#stage-all");
+    assert.equal(await countRed(page), redOfFew);
+
+    const reason = page.locator(".reason").filter({ has: page.locator(".rest") }).first();
+    await reason.locator("summary").click();
+    assert.equal(await reason.locator("li").count(), 8);
+    const redOfReason = await countRed(page);
+    await reason.locator(".rest").click();
+    await page.waitForFunction(() => document.querySelector(".reason[open]:not(.accepted)").querySelectorAll("li").length > 8);
+    assert.ok(await countRed(page) > redOfReason);
+    await page.close();
+  });
+}));
+
 // Seen from straight above, so that all of its edge is sharp.
 describe("a pad that stays in the middle", () => withProgram(() => ["--source", "test:hover"], (live) => {
   it("is drawn on where the ring is: within 2 px of the screen", async () => {
@@ -429,6 +521,28 @@ describe("a pad that stays in the middle", () => withProgram(() => ["--source", 
 }));
 
 describe("presets", () => {
+  it("are said to be in force when they are", async () => {
+    const program = await startProgram("--source", "test:approach");
+    const page = await openPage(browser, program.url);
+    const once = (text) => page.waitForFunction((wanted) => {
+      return document.querySelector("#preset-state").textContent === wanted;
+    }, text);
+    assert.equal(await page.inputValue("#preset"), "");
+    assert.ok(await page.isDisabled("#preset-load"));
+    await once("");
+    await page.selectOption("#preset", "Keipour 2021");
+    await once("Keipour 2021 is chosen, not loaded");
+    await page.click("#preset-load");
+    await once("In force: Keipour 2021");
+    await setting(page, "max-axis").locator("input[type=number]").fill("650");
+    await setting(page, "max-axis").locator("input[type=number]").press("Enter");
+    await once("In force: Keipour 2021, 1 setting changed since");
+    await setting(page, "max-axis").getByRole("button", { name: "Reset max-axis" }).click();
+    await once("In force: Keipour 2021");
+    await page.close();
+    await program.stop();
+  });
+
   it("outlive the program", async () => {
     const first = await startProgram("--source", "test:approach");
     let page = await openPage(browser, first.url);
@@ -451,7 +565,7 @@ describe("presets", () => {
     await page.click("#launch-copy");
     await page.waitForFunction(() => /ellipsetrack .*min-axis=17/.test(document.querySelector("#launch-line").textContent));
     await page.click("#preset-delete");
-    await page.waitForFunction(() => document.querySelectorAll("#preset option").length === 1);
+    await page.waitForFunction(() => document.querySelectorAll("#preset option").length === 2);
     await page.close();
     await second.stop();
   });
