@@ -121,6 +121,7 @@ void add_settings(HttpServer& server, Session& session) {
   });
   server.route("PUT", "/api/properties", [&](const Request& request) {
     session.properties().set(request.body);
+    session.review();
     return done();
   });
   server.route("GET", "/api/presets", [tracker](const Request&) {
@@ -130,8 +131,9 @@ void add_settings(HttpServer& server, Session& session) {
     save_preset(tracker, request.rest);
     return done();
   });
-  server.route("POST", "/api/presets/*/load", [tracker](const Request& request) {
+  server.route("POST", "/api/presets/*/load", [tracker, &session](const Request& request) {
     load_preset(tracker, request.rest);
+    session.review();
     return done();
   });
   server.route("DELETE", "/api/presets/*", [tracker](const Request& request) {
@@ -169,6 +171,14 @@ std::string source_json(Session& session, const Options& options) {
   return json.end_object().text() + "\n";
 }
 
+// A number, or text: 30000/1001 is no JSON.
+std::string rate_in(const RequestJson& json) {
+  JsonNode* fps = json.node("fps");
+  if (fps == nullptr) return "";
+  const bool is_text = JSON_NODE_HOLDS_VALUE(fps) && json_node_get_value_type(fps) == G_TYPE_STRING;
+  return is_text ? json.text("fps") : JsonWriter().value(json.number("fps")).text();
+}
+
 void add_playback(HttpServer& server, Session& session, const Options& options) {
   server.route("GET", "/api/source", [&session, options](const Request&) {
     return Reply{.body = source_json(session, options)};
@@ -190,7 +200,8 @@ void add_playback(HttpServer& server, Session& session, const Options& options) 
     if (!options.allows_source_change) {
       return error_reply(403, "the source may be changed with --allow-source-change only");
     }
-    session.open(RequestJson(request.body).text("spec"));
+    const RequestJson json(request.body);
+    session.open(json.text("spec"), rate_in(json));
     return done();
   });
 }
@@ -248,7 +259,7 @@ ellipse::Ellipse drawn_ellipse(const RequestJson& json) {
                            json.number("cy"),
                            json.number("semi_major"),
                            json.number("semi_minor"),
-                           json.number("angle_rad")};
+                           std::remainder(json.number("angle_rad"), M_PI)};
   const bool is_one = e.semi_major >= e.semi_minor && e.semi_minor > 0.0 &&
                       std::abs(e.cx) + std::abs(e.cy) + e.semi_major < 1e5;
   if (!is_one) throw std::invalid_argument("choice: the axes must be major >= minor > 0 [px]");

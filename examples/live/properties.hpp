@@ -30,6 +30,9 @@ class Properties {
   /// Throws as set().
   [[nodiscard]] ellipse::TrackerSettings settings_with(const std::string& json) const;
 
+  /// Sets another tracker to what this one is set to.
+  void copy_to(GstElement* other) const;
+
   /// `name=value` of each that is not at its default, as gst-launch-1.0 takes them.
   [[nodiscard]] std::string launch_settings() const;
 

@@ -43,6 +43,19 @@ class RawClient {
     return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : std::string();
   }
 
+  /// Reads on. @return Whether the other side has ended the connection, rather than been silent.
+  [[nodiscard]] bool is_ended() const {
+    std::array<char, 4096> bytes;
+    GError* problem = nullptr;
+    gssize size = 0;
+    do {
+      size = g_socket_receive(socket_.get(), bytes.data(), bytes.size(), nullptr, &problem);
+    } while (size > 0);
+    const bool is_silent = g_error_matches(problem, G_IO_ERROR, G_IO_ERROR_TIMED_OUT);
+    g_clear_error(&problem);
+    return !is_silent;
+  }
+
  private:
   live::Ref<GSocket> socket_;
 };
