@@ -120,8 +120,7 @@ void add_settings(HttpServer& server, Session& session) {
     return Reply{.body = session.properties().to_json()};
   });
   server.route("PUT", "/api/properties", [&](const Request& request) {
-    session.properties().set(request.body);
-    session.review();
+    if (session.properties().set(request.body)) session.review();
     return done();
   });
   server.route("GET", "/api/presets", [tracker](const Request&) {

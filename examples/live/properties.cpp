@@ -172,11 +172,17 @@ std::string Properties::to_json() const {
   return json.end_array().text() + "\n";
 }
 
-void Properties::set(const std::string& json) {
+bool Properties::set(const std::string& json) {
   if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
   std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
   (void)settings_after(tracker_, changes);
+  std::erase_if(changes, [this](const Change& change) {
+    Value now(change.spec);
+    g_object_get_property(G_OBJECT(tracker_), change.spec->name, now.get());
+    return gst_value_compare(now.get(), change.value->get()) == GST_VALUE_EQUAL;
+  });
   make_changes(tracker_, changes);
+  return !changes.empty();
 }
 
 ellipse::TrackerSettings Properties::settings_with(const std::string& json) const {

@@ -119,6 +119,17 @@ INSTANTIATE_TEST_SUITE_P(LiveReview,
                          testing::Values("file", "live"),
                          [](const auto& info) { return std::string(info.param); });
 
+// What was followed stays followed where nothing changes.
+TEST(LiveReview, WhatIsSetToWhatItIsChangesNothing) {
+  const LiveProgram program({"--source", "test:orbit"});
+  const Client client(program.url());
+  ASSERT_TRUE(stands_at_target(client));
+  SocketClient lines(program.url(), "ws/meta");
+  ASSERT_NE(lines.next(), "");
+  set(client, R"({"min-axis":5,"detector":"arcs","overlay":"none","roi":[0,0,0,0],"roi-type":""})");
+  EXPECT_EQ(lines.next(3), "");
+}
+
 TEST(LiveReview, APresetIsSeenOnAStandingPictureToo) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
