@@ -86,6 +86,25 @@ Ref<GSocketConnection> connection_of(GSocket* socket) {
   return Ref<GSocketConnection>(g_socket_connection_factory_create_connection(socket));
 }
 
+// Hands bytes on in both directions, a few KiB at a time, until one side has ended.
+void relay(GSocket* client, GSocket* server, GAsyncReadyCallback on_end, gpointer data) {
+  g_socket_set_option(client, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
+  g_socket_set_option(client, IPPROTO_TCP, TCP_USER_TIMEOUT, kMaxUnheardMs, nullptr);
+  const Ref<GSocketConnection> outside = connection_of(client);
+  const Ref<GSocketConnection> inside = connection_of(server);
+  const Ref<GIOStream> guarded = guard_stream(
+      share(G_IO_STREAM(outside.get())),
+      [guard = RtspGuard()](std::span<const guint8> bytes) mutable { return guard.take(bytes); });
+  g_io_stream_splice_async(guarded.get(),
+                           G_IO_STREAM(inside.get()),
+                           static_cast<GIOStreamSpliceFlags>(G_IO_STREAM_SPLICE_CLOSE_STREAM1 |
+                                                             G_IO_STREAM_SPLICE_CLOSE_STREAM2),
+                           G_PRIORITY_DEFAULT,
+                           nullptr,
+                           on_end,
+                           data);
+}
+
 bool has_session(GstRTSPClient* client) {
   GList* sessions = gst_rtsp_client_session_filter(client, nullptr, nullptr);
   const bool has_one = sessions != nullptr;
@@ -141,22 +160,8 @@ void RtspDoor::let_in(Ref<GSocket> socket) {
                                       g_inet_socket_address_get_port(remote.get()),
                                       nullptr);
   if (!entering_) return;
-  g_socket_set_option(socket.get(), IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
-  g_socket_set_option(socket.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, kMaxUnheardMs, nullptr);
-  const Ref<GSocketConnection> outside = connection_of(socket.get());
-  const Ref<GSocketConnection> inside = connection_of(pair->ours.get());
-  const Ref<GIOStream> guarded = guard_stream(
-      share(G_IO_STREAM(outside.get())),
-      [guard = RtspGuard()](std::span<const guint8> bytes) mutable { return guard.take(bytes); });
-  visits_->push_back({std::move(socket), share(address), std::move(entering_)});
-  g_io_stream_splice_async(guarded.get(),
-                           G_IO_STREAM(inside.get()),
-                           static_cast<GIOStreamSpliceFlags>(G_IO_STREAM_SPLICE_CLOSE_STREAM1 |
-                                                             G_IO_STREAM_SPLICE_CLOSE_STREAM2),
-                           G_PRIORITY_DEFAULT,
-                           nullptr,
-                           on_end,
-                           new Ending{visits_, std::prev(visits_->end())});
+  visits_->push_back({share(socket.get()), share(address), std::move(entering_)});
+  relay(socket.get(), pair->ours.get(), on_end, new Ending{visits_, std::prev(visits_->end())});
 }
 
 // The programs of this machine share one address, and so do those behind a tunnel.

@@ -36,7 +36,6 @@ void on_reply_written(SoupServerMessage* message, gpointer data) {
                                     origin,
                                     nullptr,
                                     nullptr));
-  g_socket_set_timeout(opening->socket.get(), 0);
   opening->on_open(std::make_unique<WebSocket>(connection.get(), opening->socket.get()));
 }
 
@@ -50,6 +49,8 @@ void on_finished(SoupServerMessage* message, gpointer data) {
 
 void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open) {
   if (!soup_websocket_server_process_handshake(message, nullptr, nullptr, nullptr, nullptr)) return;
+  // Now, before anything waits for its bytes: what waits does so for the time that was allowed then.
+  g_socket_set_timeout(socket, 0);
   auto* opening = new Opening{share(socket), on_open};
   g_signal_connect(message, "wrote-informational", G_CALLBACK(on_reply_written), opening);
   g_signal_connect(message, "finished", G_CALLBACK(on_finished), opening);
