@@ -110,8 +110,8 @@ TEST(LiveHostile, TheNameOfTheSchemeIsWrittenInAnyCaseOverRtsp) {
 }
 
 /// A WebSocket of lines, by hand.
-std::unique_ptr<RawClient> raw_websocket(const LiveProgram& program) {
-  auto client = std::make_unique<RawClient>(program.port());
+std::unique_ptr<RawClient> raw_websocket(const LiveProgram& program, int buffer = 0) {
+  auto client = std::make_unique<RawClient>(program.port(), buffer);
   client->send(
       "GET /ws/meta HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: "
       "Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
@@ -196,12 +196,13 @@ TEST(LiveHostile, WhoTakesNoLineOfTheEventsIsDropped) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_EQ(client.put("api/properties", R"({"candidates":true})").status, 200U);
+  constexpr int kBuffer = 4096;  // full soon, however slow the program is
   std::vector<std::unique_ptr<RawClient>> silent;
   for (const char* path : {"/api/events", "/video.mjpeg"}) {
-    silent.push_back(std::make_unique<RawClient>(program.port()));
+    silent.push_back(std::make_unique<RawClient>(program.port(), kBuffer));
     silent.back()->send(std::string("GET ") + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
   }
-  silent.push_back(raw_websocket(program));
+  silent.push_back(raw_websocket(program, kBuffer));
   const auto present = [&] { return client.stat("listeners") + client.stat("viewers"); };
   ASSERT_TRUE(wait_until([&] { return present() == 3.0; }));
   EXPECT_TRUE(wait_until([&] { return present() == 0.0; }, 120)) << present();
