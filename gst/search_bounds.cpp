@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 namespace {
 
@@ -34,13 +35,18 @@ ellipse::Rect united(const ellipse::Rect& a, const ellipse::Rect& b) {
 }
 
 // One box around all: a target that goes from one region to the next stays the same target.
-ellipse::Rect box_around_regions(GstBuffer* buffer, GQuark type, const ellipse::Rect& frame) {
+// A type that no region has ever had is no quark, and must not become one: quarks stay for good.
+ellipse::Rect box_around_regions(GstBuffer* buffer,
+                                 const std::string& type,
+                                 const ellipse::Rect& frame) {
   ellipse::Rect box;
+  const GQuark wanted = type.empty() ? 0 : g_quark_try_string(type.c_str());
+  if (!type.empty() && wanted == 0) return box;
   gpointer state = nullptr;
   while (GstMeta* meta = gst_buffer_iterate_meta_filtered(
              buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
-    if (type != 0 && roi->roi_type != type) continue;
+    if (wanted != 0 && roi->roi_type != wanted) continue;
     box = united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
   }
   return box;

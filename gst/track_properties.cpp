@@ -303,7 +303,7 @@ void PropertyChange::apply_to(TrackProperties& properties) const {
   if (which_ == PROP_ROI) properties.roi = rect_from(value);
   if (which_ == PROP_ROI_TYPE) {
     const gchar* type = g_value_get_string(value);
-    properties.roi_type = type != nullptr && *type != '\0' ? g_quark_from_string(type) : 0;
+    properties.roi_type = type != nullptr ? type : "";
   }
   if (which_ == PROP_MAX_PROCESSING_TIME) {
     properties.max_processing_time = g_value_get_uint64(value);
@@ -336,9 +336,7 @@ void TrackProperties::get(guint which, GValue* value) const {
   if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
   if (which == PROP_ROI_SOURCE) g_value_set_enum(value, roi_source);
   if (which == PROP_ROI) write_rect(roi, value);
-  if (which == PROP_ROI_TYPE) {
-    g_value_set_string(value, roi_type != 0 ? g_quark_to_string(roi_type) : "");
-  }
+  if (which == PROP_ROI_TYPE) g_value_set_string(value, roi_type.c_str());
   if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
   if (which == PROP_CAMERA_FILE) g_value_set_string(value, camera_file.c_str());
   if (which == PROP_GRAVITY) write_vector(tracker.gravity, value);

@@ -19,7 +19,7 @@ struct TrackProperties {
   bool attach_roi_meta = true;
   int roi_source = ROI_SOURCE_NONE;
   ellipse::Rect roi;                     ///< [px] of the frame; clipped to it where it is used.
-  GQuark roi_type = 0;                   ///< Of the regions that count; 0 = all.
+  std::string roi_type;                  ///< Of the regions that count; empty = all.
   std::string camera_file;               ///< That tracker.camera was read from.
   GstClockTime max_processing_time = 0;  ///< [ns] a frame; 0 = any.
 

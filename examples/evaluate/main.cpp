@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "examples/evaluate/program.hpp"
+#include "examples/finite_number.hpp"
 
 namespace evaluate {
 namespace {
@@ -30,13 +31,13 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option(
          "--seconds", options.pace.seconds, "How long each of scenes:SEED and distorted:SEED is")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber)
+      ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
   app.add_option("--fps",
                  options.pace.frames_per_second,
                  "Frames a second of scenes:SEED and distorted:SEED")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber)
+      ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
   app.add_option("--set", options.settings, "property=value, as of the element ellipsetrack")
       ->allow_extra_args(false);

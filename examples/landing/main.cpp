@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "examples/finite_number.hpp"
 #include "examples/landing/report.hpp"
 #include "examples/landing/video.hpp"
 
@@ -142,12 +143,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--speed", options.speeds, "Of the platform, in m/s; several with commas")
       ->delimiter(',')
-      ->check(CLI::Range(0.0, 8.0))
+      ->check(finite_number() & CLI::Range(0.0, 8.0))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Of the first landing; each has its own")
       ->capture_default_str();
   app.add_option("--gust", options.gust, "Root mean square of the wind, in m/s")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(finite_number() & CLI::Range(0.0, 10.0))
       ->capture_default_str();
   app.add_option("--width", options.width, "Of the camera's pictures, in px")
       ->check(CLI::Range(160, 1920))

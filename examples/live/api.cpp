@@ -4,21 +4,19 @@
 #include <json-glib/json-glib.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "examples/live/analyst.hpp"
 #include "examples/live/json_writer.hpp"
-#include "examples/live/label_store.hpp"
+#include "examples/live/label_api.hpp"
 #include "examples/live/launch_line.hpp"
 #include "examples/live/metrics.hpp"
 #include "examples/live/page_files.hpp"
 #include "examples/live/presets.hpp"
 #include "examples/live/request_json.hpp"
 #include "examples/live/structure_json.hpp"
-#include "gst/ellipse/gstellipsemeta.h"
 
 namespace live {
 namespace {
@@ -120,7 +118,7 @@ void add_settings(HttpServer& server, Session& session) {
     return Reply{.body = session.properties().to_json()};
   });
   server.route("PUT", "/api/properties", [&](const Request& request) {
-    session.properties().set(request.body);
+    if (session.properties().set(request.body)) session.review();
     return done();
   });
   server.route("GET", "/api/presets", [tracker](const Request&) {
@@ -130,8 +128,9 @@ void add_settings(HttpServer& server, Session& session) {
     save_preset(tracker, request.rest);
     return done();
   });
-  server.route("POST", "/api/presets/*/load", [tracker](const Request& request) {
+  server.route("POST", "/api/presets/*/load", [tracker, &session](const Request& request) {
     load_preset(tracker, request.rest);
+    session.review();
     return done();
   });
   server.route("DELETE", "/api/presets/*", [tracker](const Request& request) {
@@ -169,6 +168,14 @@ std::string source_json(Session& session, const Options& options) {
   return json.end_object().text() + "\n";
 }
 
+// A number, or text: 30000/1001 is no JSON.
+std::string rate_in(const RequestJson& json) {
+  JsonNode* fps = json.node("fps");
+  if (fps == nullptr) return "";
+  const bool is_text = JSON_NODE_HOLDS_VALUE(fps) && json_node_get_value_type(fps) == G_TYPE_STRING;
+  return is_text ? json.text("fps") : JsonWriter().value(json.number("fps")).text();
+}
+
 void add_playback(HttpServer& server, Session& session, const Options& options) {
   server.route("GET", "/api/source", [&session, options](const Request&) {
     return Reply{.body = source_json(session, options)};
@@ -190,7 +197,8 @@ void add_playback(HttpServer& server, Session& session, const Options& options) 
     if (!options.allows_source_change) {
       return error_reply(403, "the source may be changed with --allow-source-change only");
     }
-    session.open(RequestJson(request.body).text("spec"));
+    const RequestJson json(request.body);
+    session.open(json.text("spec"), rate_in(json));
     return done();
   });
 }
@@ -227,68 +235,6 @@ void add_analysis(HttpServer& server, Session& session) {
           reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));
         });
     if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
-  });
-}
-
-/* What it shows, according to a person */
-
-ellipse::Ellipse shown_ellipse(const Frame& frame, double index) {
-  GstBuffer* buffer = gst_sample_get_buffer(frame.sample.get());
-  gpointer state = nullptr;
-  double number = 0.0;
-  while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
-    if (number++ != index) continue;
-    return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
-  }
-  throw std::invalid_argument("choice: the frame has no ellipse of this number");
-}
-
-ellipse::Ellipse drawn_ellipse(const RequestJson& json) {
-  const ellipse::Ellipse e{json.number("cx"),
-                           json.number("cy"),
-                           json.number("semi_major"),
-                           json.number("semi_minor"),
-                           json.number("angle_rad")};
-  const bool is_one = e.semi_major >= e.semi_minor && e.semi_minor > 0.0 &&
-                      std::abs(e.cx) + std::abs(e.cy) + e.semi_major < 1e5;
-  if (!is_one) throw std::invalid_argument("choice: the axes must be major >= minor > 0 [px]");
-  return e;
-}
-
-// The number of one in the frame's line, an ellipse itself, or "none".
-std::optional<ellipse::Ellipse> chosen(const RequestJson& json, const Frame& frame) {
-  JsonNode* choice = json.node("choice");
-  if (choice != nullptr && JSON_NODE_HOLDS_OBJECT(choice)) {
-    return drawn_ellipse(RequestJson(json_node_get_object(choice)));
-  }
-  if (choice != nullptr && JSON_NODE_HOLDS_VALUE(choice) &&
-      json_node_get_value_type(choice) == G_TYPE_INT64) {
-    return shown_ellipse(frame, json.number("choice"));
-  }
-  if (json.text("choice") != "none") {
-    throw std::invalid_argument("choice: a number, an ellipse or \"none\" is wanted");
-  }
-  return std::nullopt;
-}
-
-void add_labels(HttpServer& server, Session& session, const Options& options) {
-  if (options.labels.empty()) {
-    server.route("POST", "/api/snapshot", [](const Request&) {
-      return error_reply(409, "there is no folder for them: start with --labels FOLDER");
-    });
-    return;
-  }
-  const auto labels = std::make_shared<LabelStore>(options.labels);
-  server.route("POST", "/api/snapshot", [&session, labels](const Request& request) {
-    const FramePtr frame = session.store().newest();
-    if (!frame) return error_reply(409, "there is no frame yet");
-    const RequestJson json(request.body);
-    if (json.has("pts_ns") && json.time("pts_ns") != frame->pts) {
-      return error_reply(409, "another frame is shown now: pause it first");
-    }
-    const std::string image = labels->add(*frame, chosen(json, *frame));
-    return Reply{.body =
-                     JsonWriter().begin_object().member("image", image).end_object().text() + "\n"};
   });
 }
 

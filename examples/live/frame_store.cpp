@@ -15,11 +15,27 @@ void FrameStore::put(FramePtr frame) {
     const std::lock_guard lock(mutex_);
     if (is_held_ && steps_ == 0 && newest_) return;
     steps_ = std::max(0, steps_ - 1);
-    if (lines_.size() == kMostLines) lines_.pop_front();
-    lines_.push_back(frame->line);
-    old = std::exchange(newest_, std::move(frame));
+    old = take(std::move(frame));
   }
   wakeup_.raise();
+}
+
+bool FrameStore::replace(const FramePtr& before, FramePtr after) {
+  FramePtr old;
+  {
+    const std::lock_guard lock(mutex_);
+    if (newest_ != before) return false;
+    old = take(std::move(after));
+  }
+  wakeup_.raise();
+  return true;
+}
+
+// With the lock held. @return The one that was the newest.
+FramePtr FrameStore::take(FramePtr frame) {
+  if (lines_.size() == kMostLines) lines_.pop_front();
+  lines_.push_back(frame->line);
+  return std::exchange(newest_, std::move(frame));
 }
 
 FramePtr FrameStore::newest() const {

@@ -23,6 +23,10 @@ class FrameStore {
   /// Any thread; waits for nothing but a short lock.
   void put(FramePtr frame);
 
+  /// Puts another analysis of the same picture in the place of the newest frame, where that is
+  /// still `before`. @return false where it is not. Any thread.
+  bool replace(const FramePtr& before, FramePtr after);
+
   /// The newest frame, null before the first one. Any thread.
   [[nodiscard]] FramePtr newest() const;
 
@@ -40,6 +44,7 @@ class FrameStore {
 
  private:
   static constexpr std::size_t kMostLines = 64;
+  FramePtr take(FramePtr frame);
 
   mutable std::mutex mutex_;
   FramePtr newest_;

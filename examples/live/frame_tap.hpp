@@ -32,12 +32,13 @@ class FrameTap {
   static GstPadProbeReturn on_arrival(GstPad* pad, GstPadProbeInfo* info, gpointer data);
   static GstFlowReturn on_sample(GstAppSink* sink, gpointer data);
   static GstFlowReturn on_preroll(GstAppSink* sink, gpointer data);
-  void take(Ref<GstSample> theirs);
+  void take(GstSample* sample);
 
   FrameSink on_frame_;
   std::atomic<guint64> frames_{0};
   std::atomic<guint64> rendered_{0};
   FramePtr last_;
+  Ref<GstBuffer> input_;  // of the frame that is being analysed
   gint64 arrived_us_ = 0;
 };
 

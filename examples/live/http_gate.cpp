@@ -99,9 +99,10 @@ bool HttpGate::may_ask_now(SoupServerMessage* message) {
 
 bool HttpGate::has_token(SoupServerMessage* message) const {
   if (token_.empty()) return true;
+  // The name of the scheme is case-insensitive [RFC 9110, section 11.1].
   constexpr std::string_view kBearer = "Bearer ";
   const std::string authorization = header(message, "Authorization");
-  if (std::string_view(authorization).starts_with(kBearer)) {
+  if (g_ascii_strncasecmp(authorization.c_str(), kBearer.data(), kBearer.size()) == 0) {
     return is_same_secret(std::string_view(authorization).substr(kBearer.size()), token_);
   }
   return is_same_secret(cookie_of(message), token_);

@@ -8,13 +8,18 @@ namespace live {
 namespace {
 
 constexpr int kWaiting = 160;  // to be let in
-constexpr char kClientKey[] = "live-client";
 
 std::string body_of(SoupServerMessage* message) {
   const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
   gsize size = 0;
   const auto* data = static_cast<const char*>(g_bytes_get_data(bytes.get(), &size));
   return data != nullptr ? std::string(data, size) : std::string();
+}
+
+// libsoup answers as many ranges as a header names, each with a copy. No reply here is so large
+// that a client needs a part of it, and a server may ignore them [RFC 9110, section 14.2].
+void ignore_ranges(SoupServerMessage* message) {
+  soup_message_headers_remove(soup_server_message_get_request_headers(message), "Range");
 }
 
 }  // namespace
@@ -83,12 +88,8 @@ void HttpServer::route_open(const char* method,
                      std::move(handle)});
 }
 
-void HttpServer::websocket(const std::string& path,
-                           std::function<void(std::unique_ptr<WebSocket>)> on_open) {
+void HttpServer::websocket(const std::string& path, WebSocketHandler on_open) {
   websockets_[path] = std::move(on_open);
-  soup_server_add_early_handler(server_.get(), path.c_str(), on_early, this, nullptr);
-  soup_server_add_websocket_handler(
-      server_.get(), path.c_str(), nullptr, nullptr, on_websocket, this, nullptr);
 }
 
 /* Connections */
@@ -121,13 +122,13 @@ void HttpServer::on_early(SoupServer* /*server*/,
   auto* self = static_cast<HttpServer*>(data);
   ++self->counters_.requests;
   add_policy(message);
+  ignore_ranges(message);
   const bool is_refused = self->gate_.refuses(message, path);
-  if (is_refused) ++self->counters_.refused;
-  // Kept for a WebSocket, which loses sight of whose it is.
-  GSocketAddress* client = soup_server_message_get_remote_address(message);
-  if (client == nullptr) return;
-  g_object_set_data_full(G_OBJECT(message), kClientKey, g_object_ref(client), g_object_unref);
-  if (!is_refused && self->websockets_.contains(path)) self->connections_.allow_silence(client);
+  if (is_refused) {
+    ++self->counters_.refused;
+  } else if (self->websockets_.contains(path)) {
+    self->connections_.allow_silence(soup_server_message_get_remote_address(message));
+  }
 }
 
 void HttpServer::on_request(SoupServer* /*server*/,
@@ -136,8 +137,13 @@ void HttpServer::on_request(SoupServer* /*server*/,
                             GHashTable* /*query*/,
                             gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
-  self->connections_.keep(soup_server_message_get_remote_address(message));
-  self->dispatch(message, path);
+  GSocket* socket = self->connections_.keep(soup_server_message_get_remote_address(message));
+  const auto websocket = self->websockets_.find(path);
+  if (websocket == self->websockets_.end()) {
+    self->dispatch(message, path);
+  } else if (socket != nullptr) {
+    open_websocket(message, socket, websocket->second);
+  }
 }
 
 // What stands where a route has its "*"; nullopt where the path is not the route's.
@@ -175,20 +181,6 @@ void HttpServer::dispatch(SoupServerMessage* message, const std::string& path) {
   answer(message,
          is_known ? error_reply(405, "this path does not know " + method)
                   : error_reply(404, "there is nothing at this path"));
-}
-
-void HttpServer::on_websocket(SoupServer* /*server*/,
-                              SoupServerMessage* message,
-                              const char* path,
-                              SoupWebsocketConnection* connection,
-                              gpointer data) {
-  auto* self = static_cast<HttpServer*>(data);
-  GSocket* socket = self->connections_.keep(
-      static_cast<GSocketAddress*>(g_object_get_data(G_OBJECT(message), kClientKey)));
-  const auto handler = self->websockets_.find(path);
-  if (socket == nullptr || handler == self->websockets_.end()) return;
-  g_socket_set_timeout(socket, 0);
-  handler->second(std::make_unique<WebSocket>(connection, socket));
 }
 
 }  // namespace live

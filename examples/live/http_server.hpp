@@ -48,7 +48,7 @@ class HttpServer {
   void route(const char* method, const std::string& path, std::function<Reply(const Request&)>);
   /// The same, for what answers later or without an end: it has to set a status or to pause.
   void route_open(const char* method, const std::string& path, std::function<void(const Request&)>);
-  void websocket(const std::string& path, std::function<void(std::unique_ptr<WebSocket>)>);
+  void websocket(const std::string& path, WebSocketHandler on_open);
 
   [[nodiscard]] guint port() const { return port_; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -75,11 +75,6 @@ class HttpServer {
                          const char* path,
                          GHashTable* query,
                          gpointer data);
-  static void on_websocket(SoupServer* server,
-                           SoupServerMessage* message,
-                           const char* path,
-                           SoupWebsocketConnection* connection,
-                           gpointer data);
 
   static std::optional<std::string> rest_of(const std::string& path, const Route& route);
   void listen();
@@ -91,7 +86,7 @@ class HttpServer {
   Ref<GSocketService> service_;
   guint port_ = 0;
   std::vector<Route> routes_;
-  std::map<std::string, std::function<void(std::unique_ptr<WebSocket>)>> websockets_;
+  std::map<std::string, WebSocketHandler> websockets_;
   Counters counters_;
   Connections connections_;
 };

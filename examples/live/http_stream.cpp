@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/http_stream.hpp"
 
+#include <sys/socket.h>
+
 #include <utility>
 
 namespace live {
@@ -13,6 +15,8 @@ HttpStream::HttpStream(SoupServerMessage* message, const std::string& content_ty
   soup_message_headers_replace(headers, "Content-Type", content_type.c_str());
   soup_message_headers_replace(headers, "Cache-Control", "no-store");
   soup_message_body_set_accumulate(soup_server_message_get_response_body(message), FALSE);
+  GSocket* socket = soup_server_message_get_socket(message);
+  if (socket != nullptr) socket_ = share(socket);
   g_signal_connect(message, "wrote-chunk", G_CALLBACK(on_wrote_chunk), this);
   g_signal_connect(message, "finished", G_CALLBACK(on_finished), this);
 }
@@ -33,6 +37,14 @@ void HttpStream::write(GBytes* bytes) {
 void HttpStream::write(const std::string& text) {
   const Ref<GBytes> bytes(g_bytes_new(text.data(), text.size()));
   write(bytes.get());
+}
+
+void HttpStream::limit_buffer(int bytes) {
+  if (socket_) g_socket_set_option(socket_.get(), SOL_SOCKET, SO_SNDBUF, bytes, nullptr);
+}
+
+void HttpStream::end() {
+  if (socket_) g_socket_shutdown(socket_.get(), TRUE, TRUE, nullptr);
 }
 
 void HttpStream::on_wrote_chunk(SoupServerMessage* /*message*/, gpointer data) {

@@ -30,11 +30,17 @@ class HttpStream {
   void write(GBytes* bytes);
   void write(const std::string& text);
 
+  /// How much the system may keep for a client that takes nothing, so that this shows soon.
+  void limit_buffer(int bytes);
+  /// Ends the connection, whatever is still on its way.
+  void end();
+
  private:
   static void on_wrote_chunk(SoupServerMessage* message, gpointer data);
   static void on_finished(SoupServerMessage* message, gpointer data);
 
   Ref<SoupServerMessage> message_;
+  Ref<GSocket> socket_;  // null where it has gone already
   Handlers handlers_;
   bool is_open_ = true;
   bool is_writing_ = false;

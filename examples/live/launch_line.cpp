@@ -29,12 +29,14 @@ std::string for_shell(const std::string& description) {
 }  // namespace
 
 std::string launch_line(const SourceSpec& source, const Properties& properties) {
-  std::string line("gst-launch-1.0 ");
-  line +=
-      for_shell(source.description + " ! videoconvert ! ellipsetrack" +
-                properties.launch_settings() + " ! ellipseoverlay ! videoconvert ! autovideosink");
-  line += '\n';
-  return line;
+  const std::string& video = source.launch.empty() ? source.description : source.launch;
+  const std::string line =
+      "gst-launch-1.0 " +
+      for_shell(video + " ! videoconvert ! ellipsetrack" + properties.launch_settings() +
+                " ! ellipseoverlay ! videoconvert ! autovideosink");
+  // In a shell of its own, whose folder may change.
+  return source.preparation.empty() ? line + "\n"
+                                    : "(" + source.preparation + " && " + line + ")\n";
 }
 
 }  // namespace live

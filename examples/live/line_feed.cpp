@@ -10,12 +10,14 @@ constexpr guint kGlanceMs = 1000;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
 constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
 constexpr std::size_t kLongestQueue = 30;  // a second of video
+constexpr int kBufferBytes = 32 * 1024;    // a hundred lines
 
 class SocketListener : public LineFeed::Listener {
  public:
   SocketListener(std::unique_ptr<WebSocket> socket, std::function<void()> on_closed)
       : socket_(std::move(socket)) {
     socket_->listen({{}, std::move(on_closed)});
+    socket_->limit_buffer(kBufferBytes);
   }
   bool send(const std::string& line) override {
     if (!socket_->can_send()) return false;
@@ -37,6 +39,7 @@ class EventListener : public LineFeed::Listener {
                 std::function<void()> on_closed)
       : stream_(request, "text/event-stream") {
     stream_.listen({std::move(on_ready), std::move(on_closed)});
+    stream_.limit_buffer(kBufferBytes);
     write(": frames\n\n");
   }
   bool send(const std::string& line) override {
@@ -47,6 +50,7 @@ class EventListener : public LineFeed::Listener {
   void take_glance() override {
     if (stream_.is_ready() && g_get_monotonic_time() - written_us_ >= kQuietUs) write(": \n\n");
   }
+  void end() override { stream_.end(); }
 
  private:
   void write(const std::string& text) {

@@ -37,7 +37,8 @@ class LineFeed {
     virtual ~Listener() = default;
     /// @return false where it can take no more now.
     virtual bool send(const std::string& line) = 0;
-    virtual void end() {}
+    /// Closes it: it has taken nothing for too long.
+    virtual void end() = 0;
     /// Once a second, where there is nothing to send.
     virtual void take_glance() {}
 

@@ -5,6 +5,7 @@
 #include <glib-unix.h>
 #include <gst/gst.h>
 
+#include <csignal>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -23,6 +24,17 @@ using MainLoop = std::unique_ptr<GMainLoop, decltype(&g_main_loop_unref)>;
 gboolean on_signal(gpointer loop) {
   g_main_loop_quit(static_cast<GMainLoop*>(loop));
   return G_SOURCE_CONTINUE;
+}
+
+// By Ctrl-C, by a service manager, or because its terminal is gone. nohup has SIGHUP ignored, and
+// so it stays.
+void end_on_signals(GMainLoop* loop) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    sigaction(number, nullptr, &now);
+    if (number == SIGHUP && now.sa_handler == SIG_IGN) continue;
+    g_unix_signal_add(number, on_signal, loop);
+  }
 }
 
 std::string token_for(const live::Options& options) {
@@ -59,10 +71,9 @@ int run(live::Options options) {
     live::load_preset(session.pipeline().tracker(), options.preset);
   }
   live::add_api(server, session, options);
-  session.open(options.source);
+  session.open(options.source, options.fps);
   tell_addresses(options, server, session);
-  g_unix_signal_add(SIGINT, on_signal, loop.get());
-  g_unix_signal_add(SIGTERM, on_signal, loop.get());
+  end_on_signals(loop.get());
   if (!has_failed) g_main_loop_run(loop.get());
   return has_failed ? 1 : 0;
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <stdexcept>
+
+#include "examples/live/source_spec.hpp"
 
 namespace live {
 namespace {
@@ -18,6 +21,15 @@ std::string is_token(const std::string& text) {
   return is_plain ? "" : "takes letters, digits and . _ ~ - only";
 }
 
+std::string is_rate(const std::string& text) {
+  try {
+    (void)parse_rate(text);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Options parse_options(int argc, char** argv) {
@@ -29,6 +41,9 @@ Options parse_options(int argc, char** argv) {
                  "test:SCENE, a file, /dev/video0, a URI, a folder of pictures, or a piece of a "
                  "gst-launch-1.0 line in brackets")
       ->capture_default_str();
+  app.add_option(
+         "--fps", options.fps, "Pictures a second of a folder, as 10 or 30000/1001; 30 otherwise")
+      ->check(is_rate);
   app.add_flag("--loop", options.loops, "Play a file again when it ends");
   app.add_option("--port", options.port, "Of the page and its API; 0 = a free one")
       ->check(CLI::Range(0U, 65535U))

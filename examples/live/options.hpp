@@ -7,6 +7,7 @@ namespace live {
 /// What the command line asks for.
 struct Options {
   std::string source = "test:approach";
+  std::string fps;  ///< Of a folder, for parse_rate(); empty = the usual one.
   bool loops = false;
   unsigned port = 8080;
   std::string bind = "127.0.0.1";

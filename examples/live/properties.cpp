@@ -153,6 +153,18 @@ bool is_unset(const GParamSpec* spec, const GValue* value) {
   return true;
 }
 
+// Those that fit together as a whole.
+void make_changes(GstElement* tracker, std::vector<Change>& changes) {
+  std::stable_partition(changes.begin(), changes.end(), [tracker](const Change& change) {
+    Value now(change.spec);
+    g_object_get_property(G_OBJECT(tracker), change.spec->name, now.get());
+    return widens(change.spec, now.get(), change.value->get());
+  });
+  for (const Change& change : changes) {
+    g_object_set_property(G_OBJECT(tracker), change.spec->name, change.value->get());
+  }
+}
+
 }  // namespace
 
 std::string Properties::to_json() const {
@@ -166,22 +178,31 @@ std::string Properties::to_json() const {
   return json.end_array().text() + "\n";
 }
 
-void Properties::set(const std::string& json) {
+bool Properties::set(const std::string& json) {
   if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
   std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
   (void)settings_after(tracker_, changes);
-  std::stable_partition(changes.begin(), changes.end(), [this](const Change& change) {
+  std::erase_if(changes, [this](const Change& change) {
     Value now(change.spec);
     g_object_get_property(G_OBJECT(tracker_), change.spec->name, now.get());
-    return widens(change.spec, now.get(), change.value->get());
+    return gst_value_compare(now.get(), change.value->get()) == GST_VALUE_EQUAL;
   });
-  for (const Change& change : changes) {
-    g_object_set_property(G_OBJECT(tracker_), change.spec->name, change.value->get());
-  }
+  make_changes(tracker_, changes);
+  return !changes.empty();
 }
 
 ellipse::TrackerSettings Properties::settings_with(const std::string& json) const {
   return settings_after(tracker_, parse_changes(tracker_, cameras_, json));
+}
+
+void Properties::copy_to(GstElement* other) const {
+  std::vector<Change> changes;
+  for (GParamSpec* spec : tunable(tracker_)) {
+    Change change{spec, std::make_unique<Value>(spec)};
+    g_object_get_property(G_OBJECT(tracker_), spec->name, change.value->get());
+    if (!is_unset(spec, change.value->get())) changes.push_back(std::move(change));
+  }
+  make_changes(other, changes);
 }
 
 std::string Properties::launch_settings() const {

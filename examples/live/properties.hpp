@@ -23,12 +23,16 @@ class Properties {
   [[nodiscard]] std::string to_json() const;
 
   /// Sets those that an object {"name": value, ...} names: all of them, or none. They act from the
-  /// next frame on. Throws std::invalid_argument that names the property and what it takes.
-  void set(const std::string& json);
+  /// next frame on. @return Whether one has another value now. Throws std::invalid_argument that
+  /// names the property and what it takes.
+  bool set(const std::string& json);
 
   /// What the tracker works by now, with the changes of such an object, which may be empty text.
   /// Throws as set().
   [[nodiscard]] ellipse::TrackerSettings settings_with(const std::string& json) const;
+
+  /// Sets another tracker to what this one is set to.
+  void copy_to(GstElement* other) const;
 
   /// `name=value` of each that is not at its default, as gst-launch-1.0 takes them.
   [[nodiscard]] std::string launch_settings() const;

@@ -19,7 +19,9 @@ namespace {
 double number_of(const GParamSpec* spec, JsonNode* node) {
   const GType type = json_node_get_value_type(node);
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) refuse(spec, "takes a number");
-  return json_node_get_double(node);
+  const double number = json_node_get_double(node);
+  if (!std::isfinite(number)) refuse(spec, "takes a number, and this one is too large");  // 1e999
+  return number;
 }
 
 double whole_number_of(const GParamSpec* spec, JsonNode* node) {

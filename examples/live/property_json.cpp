@@ -200,6 +200,8 @@ std::string word_of(const GParamSpec* spec, const GValue* value) {
     word.back() = '>';
     return word;
   }
+  // The shortest that is read as the same number: GStreamer writes 0.2 as 0.20000000000000001.
+  if (G_VALUE_HOLDS_DOUBLE(value)) return JsonWriter().value(g_value_get_double(value)).text();
   if (G_VALUE_HOLDS_FLAGS(value)) return flag_nicks(value);
   if (G_VALUE_HOLDS_ENUM(value)) return enum_nick(value);
   const Ref<gchar> text(gst_value_serialize(value));

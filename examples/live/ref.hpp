@@ -9,9 +9,11 @@ namespace live {
 /// Gives back what GLib, GStreamer or libsoup handed out.
 struct Release {
   void operator()(GstSample* sample) const { gst_sample_unref(sample); }
+  void operator()(GstBuffer* buffer) const { gst_buffer_unref(buffer); }
   void operator()(GstCaps* caps) const { gst_caps_unref(caps); }
   void operator()(GstStructure* structure) const { gst_structure_free(structure); }
   void operator()(GBytes* bytes) const { g_bytes_unref(bytes); }
+  void operator()(GSource* source) const { g_source_unref(source); }
   void operator()(GError* error) const { g_error_free(error); }
   void operator()(gchar* text) const { g_free(text); }
   void operator()(guchar* bytes) const { g_free(bytes); }

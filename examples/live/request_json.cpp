@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/request_json.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace live {
@@ -50,7 +51,9 @@ double RequestJson::number(const char* name) const {
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) {
     throw std::invalid_argument(std::string(name) + ": a number is wanted");
   }
-  return json_node_get_double(member);
+  const double number = json_node_get_double(member);
+  if (std::isfinite(number)) return number;  // 1e999 is not
+  throw std::invalid_argument(std::string(name) + ": the number is too large");
 }
 
 GstClockTime RequestJson::time(const char* name) const {

@@ -40,19 +40,17 @@ RtspOutput::RtspOutput(const Settings& settings) : server_(gst_rtsp_server_new()
   gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // takes the factory
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server_.get()));
   gst_rtsp_session_pool_set_max_sessions(pool.get(), kMostSessions);
-  source_ = gst_rtsp_server_attach(server_.get(), nullptr);
-  if (source_ == 0) {
+  try {
+    door_.emplace(server_.get());
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error("cannot serve RTSP at " + settings.address + ":" +
-                             std::to_string(settings.port));
+                             std::to_string(settings.port) + ": " + error.what());
   }
   glance_ = g_timeout_add_seconds(kGlanceSeconds, on_glance, this);
 }
 
 RtspOutput::~RtspOutput() {
   g_source_remove(glance_);
-  g_source_remove(source_);
-  const auto end = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
-  gst_rtsp_server_client_filter(server_.get(), end, nullptr);
 }
 
 void RtspOutput::ask_for(const std::string& token, GstRTSPMediaFactory* factory) {
@@ -78,10 +76,6 @@ void RtspOutput::put(const FramePtr& frame) {
   const std::lock_guard lock(mutex_);
   newest_ = frame;
   for (const auto& inlet : inlets_) push_frame(GST_APP_SRC(inlet.get()), *frame);
-}
-
-int RtspOutput::port() const {
-  return gst_rtsp_server_get_bound_port(server_.get());
 }
 
 void RtspOutput::on_configure(GstRTSPMediaFactory* /*factory*/,

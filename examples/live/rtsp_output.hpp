@@ -3,10 +3,12 @@
 #include <gst/rtsp-server/rtsp-server.h>
 
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "examples/live/frame.hpp"
+#include "examples/live/rtsp_door.hpp"
 
 namespace live {
 
@@ -29,7 +31,7 @@ class RtspOutput {
   /// Any thread; never waits for a client.
   void put(const FramePtr& frame);
 
-  [[nodiscard]] int port() const;
+  [[nodiscard]] int port() const { return door_->port(); }
 
  private:
   static void on_configure(GstRTSPMediaFactory* factory, GstRTSPMedia* media, gpointer data);
@@ -38,12 +40,12 @@ class RtspOutput {
 
   void ask_for(const std::string& token, GstRTSPMediaFactory* factory);
 
-  Ref<GstRTSPServer> server_;
-  guint source_ = 0;
-  guint glance_ = 0;
   std::mutex mutex_;
   std::vector<Ref<GstElement>> inlets_;  // of the media that are being made now
   FramePtr newest_;
+  Ref<GstRTSPServer> server_;
+  guint glance_ = 0;
+  std::optional<RtspDoor> door_;  // last: its clients go before what their media write to
 };
 
 }  // namespace live

@@ -18,7 +18,9 @@ Session::Session(const Options& options, std::function<void()> on_failure)
                                  << (trouble.empty() ? "is back" : trouble) << std::endl;
                      },
                  .on_failure = std::move(on_failure)}),
-      properties_(pipeline_.tracker(), CameraFolder(options.cameras)) {
+      properties_(pipeline_.tracker(), CameraFolder(options.cameras)),
+      review_(
+          [this](const FramePtr& before, FramePtr after) { on_review(before, std::move(after)); }) {
   if (options.rtsp_port >= 0) {
     rtsp_.emplace(RtspOutput::Settings{options.bind, options.rtsp_port, options.token});
   }
@@ -35,8 +37,9 @@ void Session::on_frame(FramePtr frame) {
   store_.put(std::move(frame));
 }
 
-void Session::open(const std::string& source) {
-  SourceSpec spec = parse_source(source);
+void Session::open(const std::string& source, const std::string& fps) {
+  SourceSpec spec =
+      parse_source(source, fps.empty() ? std::nullopt : std::optional(parse_rate(fps)));
   pipeline_.close();
   store_.clear();  // what is held, analysed or labelled from now on is of the new one
   pipeline_.open(std::move(spec), loops_);
@@ -69,6 +72,20 @@ bool Session::seek(GstClockTime position) {
 
 bool Session::is_playing() const {
   return pipeline_.state() == PlayState::kPlaying && !store_.is_held();
+}
+
+void Session::review() {
+  if (is_playing()) return;
+  reviews_again_ = review_.is_busy();
+  if (reviews_again_) return;
+  if (const FramePtr frame = store_.newest()) review_.begin(frame, properties_);
+}
+
+// RTSP shows what a live source sends meanwhile. A recording has each picture once.
+void Session::on_review(const FramePtr& before, FramePtr after) {
+  const bool is_shown = after && store_.replace(before, after);
+  if (is_shown && rtsp_ && !pipeline_.source().is_live) rtsp_->put(after);
+  if (std::exchange(reviews_again_, false)) review();
 }
 
 void Session::on_change() {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "examples/live/frame_review.hpp"
 #include "examples/live/frame_store.hpp"
 #include "examples/live/line_feed.hpp"
 #include "examples/live/live_pipeline.hpp"
@@ -24,7 +25,8 @@ class Session {
   Session(const Options& options, std::function<void()> on_failure);
 
   /// Plays another source. Throws std::invalid_argument where it is none.
-  void open(const std::string& source);
+  /// @param fps  Of a folder, for parse_rate(); empty = the usual one.
+  void open(const std::string& source, const std::string& fps);
 
   /* A file is paused itself. A live source goes on, and the view of it is held. */
   void play();
@@ -33,6 +35,9 @@ class Session {
   /// [ns]. @return false where the source cannot be sought.
   bool seek(GstClockTime position);
   [[nodiscard]] bool is_playing() const;
+  /// To be called when settings have changed: a frame that stands still is analysed again with
+  /// them, as a seek to it would, and is shown in the place of the old one.
+  void review();
 
   [[nodiscard]] FrameStore& store() { return store_; }
   [[nodiscard]] LivePipeline& pipeline() { return pipeline_; }
@@ -44,6 +49,7 @@ class Session {
  private:
   void on_frame(FramePtr frame);
   void on_change();
+  void on_review(const FramePtr& before, FramePtr after);
 
   bool loops_;
   FrameStore store_;
@@ -53,6 +59,8 @@ class Session {
   std::optional<Recorder> recorder_;
   LivePipeline pipeline_;  // last of those who get frames: it stops before they are gone
   Properties properties_;
+  FrameReview review_;
+  bool reviews_again_ = false;  // settings have changed since the review began
 };
 
 }  // namespace live

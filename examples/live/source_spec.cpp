@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/source_spec.hpp"
 
-#include <glib/gstdio.h>
 #include <gst/gst.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <map>
+#include <charconv>
+#include <filesystem>
 #include <stdexcept>
-#include <vector>
 
+#include "examples/live/folder_source.hpp"
 #include "examples/live/ref.hpp"
 
 namespace live {
@@ -21,16 +18,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw std::invalid_argument("source \"" + text + "\": " + why);
-}
-
-// As a value in a gst-launch line.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
 }
 
 std::string scene_names(GEnumClass* scenes) {
@@ -57,71 +44,6 @@ std::string test_description(const std::string& text, const std::string& scene) 
 void check_readable(const std::string& text, const std::string& path, const std::string& what) {
   if (!fs::exists(path)) refuse(text, "there is no such " + what);
   if (access(path.c_str(), R_OK) != 0) refuse(text, "this " + what + " may not be read");
-}
-
-// So that an extension finds its pictures whatever their names: 000001.png, 000002.png ...
-// Not from 0: imagesequencesrc 1.22 does not stop behind a stop-index of 0.
-class NumberedFolder {
- public:
-  NumberedFolder() {
-    const Ref<gchar> path(g_dir_make_tmp("ellipse-live-XXXXXX", nullptr));
-    if (!path) throw std::runtime_error("a temporary folder cannot be made");
-    path_ = path.get();
-  }
-  ~NumberedFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  NumberedFolder(const NumberedFolder&) = delete;
-  NumberedFolder& operator=(const NumberedFolder&) = delete;
-
-  void add(std::size_t number, const fs::path& picture, const std::string& extension) const {
-    std::array<char, 32> name;
-    std::snprintf(name.data(), name.size(), "%06zu", number);
-    fs::create_symlink(fs::absolute(picture), path_ / (name.data() + extension));
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-// The pictures of the kind that most of them are, in the order of their names, 9 before 10.
-std::vector<fs::path> pictures_in(const std::string& text) {
-  std::map<std::string, std::vector<fs::path>> by_extension;
-  for (const fs::directory_entry& entry : fs::directory_iterator(text)) {
-    std::string extension = entry.path().extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), g_ascii_tolower);
-    if (extension == ".jpeg") extension = ".jpg";
-    if (extension == ".png" || extension == ".jpg") by_extension[extension].push_back(entry.path());
-  }
-  if (by_extension.empty()) refuse(text, "there is no .png and no .jpg in this folder");
-  auto& pictures =
-      std::max_element(by_extension.begin(), by_extension.end(), [](const auto& a, const auto& b) {
-        return a.second.size() < b.second.size();
-      })->second;
-  std::sort(pictures.begin(), pictures.end(), [](const fs::path& a, const fs::path& b) {
-    const Ref<gchar> left(g_utf8_collate_key_for_filename(a.filename().c_str(), -1));
-    const Ref<gchar> right(g_utf8_collate_key_for_filename(b.filename().c_str(), -1));
-    return std::string_view(left.get()) < std::string_view(right.get());
-  });
-  return pictures;
-}
-
-SourceSpec folder_source(const std::string& text) {
-  const std::vector<fs::path> pictures = pictures_in(text);
-  const bool is_png = pictures.front().extension().string().ends_with("ng") ||
-                      pictures.front().extension().string().ends_with("NG");
-  const std::string extension = is_png ? ".png" : ".jpg";
-  const auto folder = std::make_shared<NumberedFolder>();
-  for (std::size_t i = 0; i < pictures.size(); ++i) folder->add(i + 1, pictures[i], extension);
-  SourceSpec spec{.kind = SourceKind::kFolder, .text = text};
-  spec.description = "imagesequencesrc framerate=30/1 start-index=1 stop-index=" +
-                     std::to_string(pictures.size()) +
-                     " location=" + quoted((folder->path() / ("%06d" + extension)).string()) +
-                     (is_png ? " ! pngdec" : " ! jpegdec");
-  spec.numbered = std::shared_ptr<const fs::path>(folder, &folder->path());
-  return spec;
 }
 
 SourceSpec uri_source(const std::string& text) {
@@ -183,8 +105,41 @@ const char* nick_of(SourceKind kind) {
   return "unknown";
 }
 
-SourceSpec parse_source(const std::string& text) {
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "\"";
+}
+
+FrameRate parse_rate(const std::string& text) {
+  constexpr double kFastest = 1000.0;
+  FrameRate rate{.n = 0, .d = 1};
+  const char* end = text.data() + text.size();
+  const auto whole = std::from_chars(text.data(), end, rate.n);
+  if (whole.ec == std::errc{} && whole.ptr != end && *whole.ptr == '/') {
+    const auto part = std::from_chars(whole.ptr + 1, end, rate.d);
+    if (part.ec != std::errc{} || part.ptr != end) rate.n = 0;
+  } else {
+    double number = 0.0;
+    const auto all = std::from_chars(text.data(), end, number);
+    const bool is_one =
+        all.ec == std::errc{} && all.ptr == end && number > 0.0 && number <= kFastest;
+    rate = {.n = 0, .d = 1};
+    if (is_one) gst_util_double_to_fraction(number, &rate.n, &rate.d);
+  }
+  if (rate.n > 0 && rate.d > 0 && rate.n <= kFastest * rate.d) return rate;
+  throw std::invalid_argument("\"" + text +
+                              "\" is no number of frames a second, as 10 or 30000/1001");
+}
+
+SourceSpec parse_source(const std::string& text, std::optional<FrameRate> rate) {
   if (text.empty()) refuse(text, "is empty");
+  std::error_code ignored;  // what cannot be read is told below
+  const bool is_folder = text.find("://") == std::string::npos && fs::is_directory(text, ignored);
+  if (rate && !is_folder) refuse(text, "a frame rate is given to a folder of pictures only");
   if (text.starts_with('[') && text.ends_with(']')) return fragment_source(text);
   if (text.starts_with("test:")) {
     return {.kind = SourceKind::kTest,
@@ -201,7 +156,7 @@ SourceSpec parse_source(const std::string& text) {
   }
   if (text.find("://") != std::string::npos) return uri_source(text);
   check_readable(text, text, "file or folder");
-  return fs::is_directory(text) ? folder_source(text) : file_source(text);
+  return is_folder ? folder_source(text, rate.value_or(FrameRate{})) : file_source(text);
 }
 
 }  // namespace live

@@ -100,6 +100,7 @@ class StreamViewer : public Viewer {
 
   void take_glance(const Picture& picture) override {
     const gint64 quiet_us = g_get_monotonic_time() - written_us_;
+    if (!is_ready() && quiet_us > kPatienceUs) stream_.end();
     if (!is_ready() || quiet_us < (has_second_ ? kQuietUs : kFollowedUs)) return;
     if (is_first_) {
       write("\r\n");  // before the first part anything may stand

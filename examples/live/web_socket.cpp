@@ -1,22 +1,64 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/web_socket.hpp"
 
+#include <sys/socket.h>
+
 #include <utility>
+
+#include "examples/live/frame_guard.hpp"
+#include "examples/live/guarded_input.hpp"
 
 namespace live {
 namespace {
 
-constexpr guint64 kLargestMessage = 1024;  // an acknowledgement has some 30 bytes
-constexpr double kMessagesPerSecond = 250.0;
 constexpr guint kKeepaliveSeconds = 20;
+
+// A request that becomes a WebSocket once the reply to it is written.
+struct Opening {
+  Ref<GSocket> socket;
+  WebSocketHandler on_open;
+};
+
+// Without extensions: a compressed message has no bound that is seen before it is unpacked.
+void on_reply_written(SoupServerMessage* message, gpointer data) {
+  const std::unique_ptr<Opening> opening(static_cast<Opening*>(data));
+  g_signal_handlers_disconnect_by_data(message, data);
+  const Ref<SoupServerMessage> kept = share(message);
+  const Ref<GIOStream> stream = guard_stream(
+      Ref<GIOStream>(soup_server_message_steal_connection(message)),
+      [guard = FrameGuard()](std::span<const guint8> bytes) mutable { return guard.take(bytes); });
+  const char* origin =
+      soup_message_headers_get_one(soup_server_message_get_request_headers(message), "Origin");
+  const Ref<SoupWebsocketConnection> connection(
+      soup_websocket_connection_new(stream.get(),
+                                    soup_server_message_get_uri(message),
+                                    SOUP_WEBSOCKET_CONNECTION_SERVER,
+                                    origin,
+                                    nullptr,
+                                    nullptr));
+  opening->on_open(std::make_unique<WebSocket>(connection.get(), opening->socket.get()));
+}
+
+// The client left before.
+void on_finished(SoupServerMessage* message, gpointer data) {
+  g_signal_handlers_disconnect_by_data(message, data);
+  delete static_cast<Opening*>(data);
+}
 
 }  // namespace
 
+void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open) {
+  if (!soup_websocket_server_process_handshake(message, nullptr, nullptr, nullptr, nullptr)) return;
+  // Now, before anything waits for its bytes: what waits does so for the time that was allowed then.
+  g_socket_set_timeout(socket, 0);
+  auto* opening = new Opening{share(socket), on_open};
+  g_signal_connect(message, "wrote-informational", G_CALLBACK(on_reply_written), opening);
+  g_signal_connect(message, "finished", G_CALLBACK(on_finished), opening);
+}
+
 WebSocket::WebSocket(SoupWebsocketConnection* connection, GSocket* socket)
-    : connection_(share(connection)),
-      socket_(share(socket)),
-      allowance_(kMessagesPerSecond, 2.0 * kMessagesPerSecond) {
-  soup_websocket_connection_set_max_incoming_payload_size(connection, kLargestMessage);
+    : connection_(share(connection)), socket_(share(socket)) {
+  soup_websocket_connection_set_max_incoming_payload_size(connection, FrameGuard::kMaxMessage);
   soup_websocket_connection_set_keepalive_interval(connection, kKeepaliveSeconds);
   g_signal_connect(connection, "message", G_CALLBACK(on_message), this);
   g_signal_connect(connection, "closed", G_CALLBACK(on_closed), this);
@@ -49,15 +91,15 @@ void WebSocket::close(const char* why) {
   soup_websocket_connection_close(connection_.get(), SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION, why);
 }
 
+void WebSocket::limit_buffer(int bytes) {
+  g_socket_set_option(socket_.get(), SOL_SOCKET, SO_SNDBUF, bytes, nullptr);
+}
+
 void WebSocket::on_message(SoupWebsocketConnection* /*connection*/,
                            gint type,
                            GBytes* message,
                            gpointer data) {
   auto* self = static_cast<WebSocket*>(data);
-  if (!self->allowance_.take()) {
-    self->close("too many messages");
-    return;
-  }
   if (type != SOUP_WEBSOCKET_DATA_TEXT || !self->handlers_.on_text) return;
   gsize size = 0;
   const auto* text = static_cast<const char*>(g_bytes_get_data(message, &size));

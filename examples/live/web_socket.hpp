@@ -3,10 +3,10 @@
 #include <libsoup/soup.h>
 
 #include <functional>
+#include <memory>
 #include <string_view>
 
 #include "examples/live/ref.hpp"
-#include "examples/live/security.hpp"
 
 namespace live {
 
@@ -31,6 +31,8 @@ class WebSocket {
   void send_binary(GBytes* bytes);
   void send_text(const char* text);
   void close(const char* why);
+  /// How much the system may keep for a client that takes nothing, so that this shows soon.
+  void limit_buffer(int bytes);
 
  private:
   static void on_message(SoupWebsocketConnection* connection,
@@ -42,7 +44,13 @@ class WebSocket {
   Ref<SoupWebsocketConnection> connection_;
   Ref<GSocket> socket_;
   Handlers handlers_;
-  Allowance allowance_;
 };
+
+using WebSocketHandler = std::function<void(std::unique_ptr<WebSocket>)>;
+
+/// Answers a request for a WebSocket, and hands it over once the answer is written. What the client
+/// sends passes a FrameGuard. A request that is none is answered with what is wrong.
+/// @param socket  The client's.
+void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open);
 
 }  // namespace live

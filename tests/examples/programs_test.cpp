@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "examples/evaluate/dataset.hpp"
@@ -69,6 +70,27 @@ TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
   const Outcome demo = run("ellipse-demo", video + " --out " + (folder_ / "out").string());
   EXPECT_EQ(demo.status, 0) << demo.text;
   EXPECT_NE(demo.text.find("frames                      20"), std::string::npos) << demo.text;
+}
+
+// A check of a range alone lets "nan" pass.
+TEST_F(Programs, NumbersThatAreNotFiniteAreRefusedByName) {
+  const std::string evaluate = "ellipse-evaluate scenes:1 ";
+  const std::pair<std::string, std::string> commands[] = {{"ellipse-landing ", "--speed"},
+                                                          {"ellipse-landing ", "--gust"},
+                                                          {"ellipse-landing ", "--runs"},
+                                                          {"ellipse-landing ", "--width"},
+                                                          {"ellipse-demo ", "--frames"},
+                                                          {evaluate, "--seconds"},
+                                                          {evaluate, "--fps"}};
+  for (const auto& [command, option] : commands) {
+    for (const char* number : {"nan", "inf", "-nan", "1e999"}) {
+      const Outcome outcome = run(command, option + " " + number);
+      EXPECT_NE(outcome.status, 0) << command << option << number;
+      EXPECT_NE(outcome.text.find(option), std::string::npos) << outcome.text;
+    }
+  }
+  const Outcome second = run("ellipse-landing", "--speed 0,nan");
+  EXPECT_NE(second.text.find("--speed"), std::string::npos) << second.text;
 }
 
 TEST_F(Programs, DemoSaysInOneLineWhatIsWrong) {

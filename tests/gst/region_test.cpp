@@ -157,6 +157,16 @@ TEST(EllipseTrackRegion, CountsRegionsOfItsTypeOnly) {
   expect_at(push(harness, std::move(buffer)), kRight);
 }
 
+// A quark stays for good: a program that sets types from outside would grow.
+TEST(EllipseTrackRegion, ATypeThatNoRegionHasLeavesNothingBehind) {
+  const auto harness = tracker("roi-source=meta");  // what a launch line says is made a quark
+  g_object_set(element_of(harness), "roi-type", "never-seen-before", nullptr);
+  auto buffer = two_rings();
+  add_region(buffer, "face", {0, 0, 160, 240});
+  EXPECT_EQ(target_on(push(harness, std::move(buffer))), nullptr);
+  EXPECT_EQ(g_quark_try_string("never-seen-before"), 0U);
+}
+
 TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
   const auto harness = tracker("roi-source=meta");
   auto buffer = gray_buffer_of(ring_picture());  // its box: 103 to 197, 71 to 149

@@ -3,7 +3,6 @@
 // What a client may not take from others: memory, connections, time.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,15 +45,6 @@ TEST(LiveLimits, WhatIsTooLargeIsRefused) {
   EXPECT_EQ(client.get("api/target").status, 200U);
 }
 
-// The most memory that a program has had until now [KiB].
-int peak_memory_kib(const LiveProgram& program) {
-  std::ifstream status("/proc/" + program.id() + "/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::stoi(line.substr(6));
-  }
-  return 0;
-}
-
 // Sends a body of 50 MB, whether it is wanted or not. @return What was answered.
 std::string send_body(const LiveProgram& program, bool is_chunked, const std::string& path) {
   constexpr int kPieces = 800;
@@ -73,9 +63,7 @@ std::string send_body(const LiveProgram& program, bool is_chunked, const std::st
 }
 
 TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer has a memory of its own";
-#endif
+  if (!support::kHasPlainMemory) GTEST_SKIP() << "a sanitizer has a memory of its own";
   const LiveProgram program({"--token", "sesame"});
   const Client client(program.url().substr(0, program.url().find('?')));
   const auto frames = [&] {
@@ -83,11 +71,11 @@ TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
     return json_object_get_int_member(stats.object(), "frames");
   };
   ASSERT_TRUE(wait_until([&] { return frames() > 30; }));
-  const int before_kib = peak_memory_kib(program);
+  const long before_kib = program.memory_kib("VmHWM");
   EXPECT_NE(send_body(program, false, "/api/properties").find(" 401 "), std::string::npos);
   EXPECT_NE(send_body(program, true, "/api/properties").find(" 401 "), std::string::npos);
   EXPECT_NE(send_body(program, false, "/?token=sesame").find(" 303 "), std::string::npos);
-  EXPECT_LT(peak_memory_kib(program), before_kib + 10 * 1024);
+  EXPECT_LT(program.memory_kib("VmHWM"), before_kib + 10 * 1024);
 }
 
 // All requests are there before an answer is waited for: the client holds nothing up.

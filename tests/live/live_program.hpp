@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@
 namespace support {
 
 using live::Ref;
+
+/// Whether the program's memory is its own: a sanitizer keeps what was freed.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kHasPlainMemory = false;
+#else
+inline constexpr bool kHasPlainMemory = true;
+#endif
 
 /// The program, from its start until this goes away or the tests are killed.
 class LiveProgram {
@@ -36,9 +44,9 @@ class LiveProgram {
   LiveProgram(const LiveProgram&) = delete;
   LiveProgram& operator=(const LiveProgram&) = delete;
 
-  /// Ends it as Ctrl-C does. @return its exit status.
-  int stop() {
-    g_subprocess_send_signal(process_, SIGINT);
+  /// Ends it as Ctrl-C does, or another signal. @return its exit status.
+  int stop(int signal = SIGINT) {
+    g_subprocess_send_signal(process_, signal);
     return wait();
   }
   int wait() {
@@ -61,7 +69,14 @@ class LiveProgram {
   /// With the slash at its end.
   [[nodiscard]] const std::string& url() const { return url_; }
   [[nodiscard]] int port() const { return std::stoi(url_.substr(url_.rfind(':') + 1)); }
-  [[nodiscard]] std::string id() const { return g_subprocess_get_identifier(process_); }
+  /// What "VmRSS", its memory now, or "VmHWM", the most until now, says [KiB].
+  [[nodiscard]] long memory_kib(const std::string& field) const {
+    std::ifstream status(std::string("/proc/") + g_subprocess_get_identifier(process_) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with(field + ":")) return std::stol(line.substr(field.size() + 1));
+    }
+    return 0;
+  }
 
  private:
   // SIGINT ends it by itself where it comes before the program has begun to listen.

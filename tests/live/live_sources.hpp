@@ -57,4 +57,25 @@ inline gint64 number_in(const Client& client, const char* member) {
   return answer.object() != nullptr ? json_object_get_int_member(answer.object(), member) : -1;
 }
 
+/// The frame that is shown once it is paused; -1 where that does not come to be.
+inline gint64 shown_when_paused(const Client& client) {
+  Answer answer;
+  const bool is_paused = wait_until([&] {
+    answer = client.get("api/source");
+    return answer.object() != nullptr &&
+           json_object_get_string_member(answer.object(), "state") == std::string("paused");
+  });
+  return is_paused ? json_object_get_int_member(answer.object(), "pts_ns") : -1;
+}
+
+inline bool stands_still(const Client& client) {
+  return shown_when_paused(client) >= 0;
+}
+
+/// Pauses it in its course.
+inline bool is_paused(const Client& client) {
+  return wait_until([&] { return client.stat("frames") > 3; }) &&
+         client.post("api/pause").status == 200U && stands_still(client);
+}
+
 }  // namespace support

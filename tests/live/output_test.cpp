@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -86,12 +88,15 @@ TEST(LiveOutput, RtspAsksForTheTokenToo) {
   EXPECT_NE(support::run_pipeline("rtspsrc location=" + bare + rest), "");
 }
 
-TEST(LiveOutput, ARecordingIsAWholeFileWithItsLines) {
+class EndOfRecording : public testing::TestWithParam<int> {};
+
+// SIGHUP comes where the terminal goes: an ssh that drops.
+TEST_P(EndOfRecording, LeavesAWholeFileWithItsLines) {
   const TemporaryFolder folder;
   LiveProgram program({"--record", folder.file("flight.mkv")});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 40; }));
-  EXPECT_EQ(program.stop(), 0);
+  EXPECT_EQ(program.stop(GetParam()), 0);
   const int frames = count_frames("filesrc location=" + folder.file("flight.mkv") +
                                   " ! matroskademux ! avdec_h264 ! fakesink name=end");
   gint64 first = -1;
@@ -112,6 +117,11 @@ TEST(LiveOutput, ARecordingIsAWholeFileWithItsLines) {
   EXPECT_GT(frames, 0);
   EXPECT_LE(frames, last - first + 1);
 }
+
+INSTANTIATE_TEST_SUITE_P(LiveOutput,
+                         EndOfRecording,
+                         testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         [](const auto& info) { return std::string(sigabbrev_np(info.param)); });
 
 TEST(LiveOutput, ARecordingGoesOnInAnotherFileWhereTheSizeChanges) {
   const TemporaryFolder folder;
@@ -186,6 +196,13 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
         R"({})",
         R"({"choice":{"cx":1,"cy":2,"semi_major":3,"semi_minor":4,"angle_rad":0}})"}) {
     EXPECT_EQ(client.post("api/snapshot", wrong).status, 400U) << wrong;
+  }
+  for (const std::string field : {"cx", "cy", "semi_major", "semi_minor", "angle_rad"}) {
+    std::string body = R"({"choice":{"cx":1,"cy":2,"semi_major":4,"semi_minor":3,"angle_rad":0}})";
+    body.insert(body.find(field) + field.size() + 2, "1e999,\"was\":");
+    const Answer answer = client.post("api/snapshot", body);
+    EXPECT_EQ(answer.status, 400U) << body;
+    EXPECT_NE(answer.body.find(field), std::string::npos) << answer.body;
   }
   EXPECT_EQ(client.post("api/snapshot", R"({"choice":"none","pts_ns":1})").status, 409U);
   const evaluate::Dataset dataset = evaluate::read_dataset(folder.file("labels"));

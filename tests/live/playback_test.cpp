@@ -14,37 +14,19 @@ namespace {
 
 using support::Answer;
 using support::Client;
+using support::is_paused;
 using support::Line;
 using support::LiveProgram;
 using support::make_mp4;
 using support::make_pictures;
 using support::make_video;
 using support::number_in;
+using support::shown_when_paused;
 using support::SocketClient;
+using support::stands_still;
 using support::TemporaryFolder;
 using support::text_in;
 using support::wait_until;
-
-// The frame that is shown once it is paused; -1 where that does not come to be.
-gint64 shown_when_paused(const Client& client) {
-  Answer answer;
-  const bool is_paused = wait_until([&] {
-    answer = client.get("api/source");
-    return answer.object() != nullptr &&
-           json_object_get_string_member(answer.object(), "state") == std::string("paused");
-  });
-  return is_paused ? json_object_get_int_member(answer.object(), "pts_ns") : -1;
-}
-
-bool stands_still(const Client& client) {
-  return shown_when_paused(client) >= 0;
-}
-
-// Pauses it in its course.
-bool is_paused(const Client& client) {
-  return wait_until([&] { return client.stat("frames") > 3; }) &&
-         client.post("api/pause").status == 200U && stands_still(client);
-}
 
 class SeekableSource : public testing::TestWithParam<const char*> {};
 

@@ -15,15 +15,17 @@ namespace support {
 /// A client that writes what no library for HTTP would. Gives up after a minute of silence.
 class RawClient {
  public:
-  RawClient(const std::string& address, int port)
+  /// @param buffer  What the system may keep of what this does not read [bytes]; 0 = the usual.
+  RawClient(const std::string& address, int port, int buffer = 0)
       : socket_(g_socket_new(
             G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_DEFAULT, nullptr)) {
     g_socket_set_timeout(socket_.get(), 60);
+    if (buffer > 0) g_socket_set_option(socket_.get(), SOL_SOCKET, SO_RCVBUF, buffer, nullptr);
     const live::Ref<GSocketAddress> there(
         g_inet_socket_address_new_from_string(address.c_str(), static_cast<guint>(port)));
     g_socket_connect(socket_.get(), there.get(), nullptr, nullptr);
   }
-  explicit RawClient(int port) : RawClient("127.0.0.1", port) {}
+  explicit RawClient(int port, int buffer = 0) : RawClient("127.0.0.1", port, buffer) {}
 
   /// @return false where the other side takes no more.
   bool send(const std::string& bytes) const {
@@ -41,6 +43,19 @@ class RawClient {
     const gssize size =
         g_socket_receive(socket_.get(), bytes.data(), bytes.size(), nullptr, nullptr);
     return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : std::string();
+  }
+
+  /// Reads on. @return Whether the other side has ended the connection, rather than been silent.
+  [[nodiscard]] bool is_ended() const {
+    std::array<char, 4096> bytes;
+    GError* problem = nullptr;
+    gssize size = 0;
+    do {
+      size = g_socket_receive(socket_.get(), bytes.data(), bytes.size(), nullptr, &problem);
+    } while (size > 0);
+    const bool is_silent = g_error_matches(problem, G_IO_ERROR, G_IO_ERROR_TIMED_OUT);
+    g_clear_error(&problem);
+    return !is_silent;
   }
 
  private:

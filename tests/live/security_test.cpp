@@ -93,6 +93,9 @@ TEST(LiveSecurity, TheTokenIsAskedForEverywhere) {
     return client.ask("GET", "api/stats", "", {{name, value}}).status;
   };
   EXPECT_EQ(with("Authorization", "Bearer sesame"), 200U);
+  EXPECT_EQ(with("Authorization", "bearer sesame"), 200U);
+  EXPECT_EQ(with("Authorization", "BEARER sesame"), 200U);
+  EXPECT_EQ(with("Authorization", "Bearer SESAME"), 401U);
   EXPECT_EQ(with("Authorization", "Bearer sesame2"), 401U);
   EXPECT_EQ(with("Cookie", "a=b; ellipse_token=sesame; c=d"), 200U);
   EXPECT_EQ(with("Cookie", "not_ellipse_token=sesame"), 401U);

@@ -77,6 +77,11 @@ TEST(LiveSettings, SetsAllPropertiesOrNone) {
   refused(R"({"min-axis":20,"overlay":7})", "overlay");
   refused(R"({"min-axis":20,"roi":[1,2,3]})", "roi");
   refused(R"({"min-axis":20,"stats":1})", "stats");
+  refused(R"({"min-axis":1e999})", "min-axis");
+  refused(R"({"min-axis":20,"interval":1e999})", "interval");
+  refused(R"({"min-axis":20,"max-processing-time":1e999})", "max-processing-time");
+  refused(R"({"min-axis":20,"gravity":[1e999,0,0]})", "gravity");
+  refused(R"({"min-axis":20,"roi":[1,2,-1e999,4]})", "roi");
   refused(R"({"min-axis":20,"nonsense":1})", "nonsense");
   refused(R"({"min-axis":{"a":[1]}})", "min-axis");
   refused(R"({"min-axis":20)", "JSON");
@@ -230,10 +235,14 @@ TEST(LiveSettings, TheLaunchLineBuildsThisVeryElement) {
         R"({"max-target-size":30,"min-target-size":10})",
         R"({"max-axis":4,"min-axis":2})",
         R"({"edge-high":9,"edge-low":5})",
+        R"({"detect-contour-overlap":0.2,"fx":577.3333333333334})",
         R"({"edge-high":50,"edge-low":40})"}) {
     ASSERT_EQ(client.put("api/properties", body).status, 200U) << body;
     EXPECT_EQ(built_by(client.get("api/launch-line").body), client.get("api/properties").body);
   }
+  const std::string line = client.get("api/launch-line").body;
+  EXPECT_NE(line.find(" detect-contour-overlap=0.2 "), std::string::npos) << line;
+  EXPECT_NE(line.find(" fx=577.3333333333334 "), std::string::npos) << line;
 }
 
 }  // namespace

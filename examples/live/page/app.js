@@ -39,9 +39,11 @@ const openTab = setUpTabs((name) => {
   view?.start();
 });
 
+let plotted = null;  // the time stamp of the last line in the plots
 watchFrames({
   onFrame: (frame) => {
-    const isAnother = frame.pts !== screen.frame?.pts;
+    // Another picture, or another analysis of the one that stands still.
+    const isAnother = frame.pts !== screen.frame?.pts || frame.line !== screen.frame.line;
     screen.show(frame);
     status.takeFrame();
     playback.showFrame(frame.pts);
@@ -49,7 +51,8 @@ watchFrames({
   },
   onLine: (line) => {
     status.takeLine(line);
-    plots.add(line);
+    if (line.pts_ns !== plotted) plots.add(line);
+    plotted = line.pts_ns;
   },
   onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live: trying again"),
 });

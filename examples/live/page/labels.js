@@ -18,6 +18,7 @@ export class Labels {
   #chosen = null;     // a number, "drawn" or "none"
   #points = [];       // clicked on the edge of what no choice tells
   #pts = null;        // of the frame that they are of
+  #line = null;       // what was found in it
   #saved = 0;
   #isOn = false;
   #isWaiting = false; // for the choices of another frame
@@ -51,11 +52,13 @@ export class Labels {
     this.screen.draw();
   }
 
-  /** The choices of another frame. */
+  /** The choices of another frame, or of another analysis of this one, which keeps what was drawn. */
   refresh = newestOnly(async () => {
     const { frame } = this.screen;
-    if (!this.#isOn || !frame || frame.pts === this.#pts) return;
+    const isSame = frame?.pts === this.#pts;
+    if (!this.#isOn || !frame || (isSame && frame.line === this.#line)) return;
     this.#pts = frame.pts;
+    this.#line = frame.line;
     this.#wait();
     const target = targetOf(frame.line);
     let found = [];
@@ -68,8 +71,9 @@ export class Labels {
     }
     if (!this.#isOn) return;
     this.#choices = withoutDoubles([target, ...found].filter(Boolean)).slice(0, kMostChoices);
-    this.#chosen = target ? 0 : null;
-    this.#points = [];
+    const isDrawn = isSame && this.#chosen === "drawn";
+    if (!isSame) this.#points = [];
+    if (!isDrawn) this.#chosen = target ? 0 : null;
     this.#list();
     this.screen.draw();
   });

@@ -25,6 +25,7 @@ export class Playback {
     at("scrub").oninput = () => this.#seek(at("scrub").value / 1000 * this.source.duration_ns);
     at("source-change").onclick = () => {
       at("source-spec").value = this.source.spec;
+      at("source-fps").value = this.source.kind === "folder" ? this.source.fps : "";
       at("source-error").textContent = "";
       at("source-dialog").showModal();
     };
@@ -76,8 +77,10 @@ export class Playback {
 
   async #changeSource(event) {
     event.preventDefault();
+    const spec = at("source-spec").value.trim();
+    const fps = at("source-fps").value.trim();
     try {
-      await ask("PUT", "api/source", { spec: at("source-spec").value.trim() });
+      await ask("PUT", "api/source", fps ? { spec, fps } : { spec });
       at("source-dialog").close();
     } catch (error) {
       at("source-error").textContent = error.message;

@@ -3,7 +3,7 @@
 // The page in a real browser, over the program as it is.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
@@ -593,6 +593,30 @@ describe("a file", () => withProgram(() => {
     await page.close();
   });
 
+  it("shows at once what a setting changes while it is paused", async () => {
+    const page = await live.open();
+    await page.click("#play");
+    await page.waitForSelector("#play[aria-label=Play]");
+    await scrubTo(page, "500");
+    await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 1e9) < 1e8);
+    const pts = await standsStill(page, live.program);
+    const isFound = () => page.waitForSelector("#state:is([data-state=tracked], [data-state=detected])");
+    await isFound();
+    const slider = setting(page, "max-axis").locator("input[type=range]");
+    await slider.fill("200");
+    await stateIs(page, "lost");
+    await page.click("#tab-label");
+    const choices = page.locator("#label-choices input");
+    await eventually("no choice but those of a person", async () => (await choices.count() === 2) || undefined);
+    await page.click("#tab-tune");
+    await setting(page, "max-axis").getByRole("button", { name: "Reset max-axis" }).click();
+    await isFound();
+    await page.click("#tab-label");
+    await eventually("the choice is back", async () => (await choices.count() > 2) || undefined);
+    assert.equal(await standsStill(page, live.program), pts);
+    await page.close();
+  });
+
   it("becomes a data set, frame by frame", async () => {
     const page = await live.open();
     await page.click("#tab-label");
@@ -671,6 +695,28 @@ it("changes the source where that is allowed", async () => {
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.querySelector("#source-name").textContent === "test:orbit");
   await stateIs(page, "tracked");
+  await page.close();
+  await program.stop();
+});
+
+it("plays a folder at the rate that is asked for", async () => {
+  const folder = join(process.env.XDG_DATA_HOME, "pictures");
+  mkdirSync(folder);
+  const made = spawnSync("gst-launch-1.0", ["-q", "ellipsetestsrc", "num-buffers=20", "!", "videoconvert", "!",
+    "jpegenc", "!", "multifilesink", `location=${folder}/%d.jpg`]);
+  assert.equal(made.status, 0);
+  const program = await startProgram("--source", folder, "--fps", "10", "--loop", "--allow-source-change");
+  const page = await openPage(browser, program.url);
+  await page.click("#source-change");
+  assert.equal(await page.inputValue("#source-fps"), "10");
+  await page.fill("#source-fps", "fast");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /fast/.test(document.querySelector("#source-error").textContent));
+  await page.fill("#source-fps", "12.5");
+  await page.keyboard.press("Enter");
+  await eventually("12.5 frames a second", async () => {
+    return (await program.ask("GET", "/api/source")).fps === 12.5 || undefined;
+  });
   await page.close();
   await program.stop();
 });
