@@ -2,6 +2,7 @@
 //
 // Data sets, the twin and the reading of pictures.
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
 
 #include <gst/gst.h>
 #include <gtest/gtest.h>

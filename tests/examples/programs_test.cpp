@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/twin.hpp"
 #include "tests/examples/terminal.hpp"
 
