@@ -175,6 +175,7 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
     const SeenFrame& seen = evaluation.frames[i];
     const Result& result = evaluation.methods[method].results[i];
+    if (!seen.frame->truth.is_labelled) continue;
     out << "{\"dataset\":" << std::quoted(seen.sequence->dataset)
         << ",\"image\":" << std::quoted(seen.frame->name) << ",\"size\":[" << seen.size.width << ','
         << seen.size.height << "],\"target\":";
@@ -187,8 +188,7 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
     }
     out << ",\"visible\":" << visible_part(seen.frame->truth, seen.size) << ",\"ms\":["
         << json_number(result.processing_ms) << "],\"outcome\":\""
-        << kOutcomeNames[static_cast<std::size_t>(result.outcome)]
-        << (seen.frame->truth.is_labelled ? "\"}\n" : "\",\"ignored\":true}\n");
+        << kOutcomeNames[static_cast<std::size_t>(result.outcome)] << "\"}\n";
   }
 }
 

@@ -59,10 +59,10 @@ struct Evaluation {
 [[nodiscard]] std::vector<std::string> sequences_of(const Evaluation& evaluation,
                                                     const std::string& dataset);
 
-/// One JSON line a frame, of one method:
-/// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,"ms":[..],
-/// "outcome":"TP"}, visible being the share of the true perimeter inside the frame, target of the
-/// ideal plane where a lens bends the picture. A frame that cannot be judged has "ignored":true.
+/// One JSON line for each frame that can be judged, of one method:
+/// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,
+/// "ms":[..],"outcome":"TP"}, visible being the share of the true perimeter inside the frame,
+/// target of the ideal plane where a lens bends the picture.
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method);
 
 }  // namespace evaluate

@@ -89,8 +89,9 @@ void add_options(CLI::App& app, Options& options) {
                        "NAME=COMMAND: a program that reads image paths and answers JSON lines")
             ->allow_extra_args(false),
         app.add_option("--report", options.report_folder, "Write a page with everything in it"),
-        app.add_option(
-            "--frames", options.frames_file, "Write one JSON line a frame, of the first method"),
+        app.add_option("--frames",
+                       options.frames_file,
+                       "Write one JSON line for each frame that is judged, of the first method"),
         app.add_flag("--all",
                      options.all_ellipses,
                      "Also compare all ellipses of each frame, not the target alone"),

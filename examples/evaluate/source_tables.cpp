@@ -230,7 +230,11 @@ void write_json_sources(std::ostream& out, const Evaluation& evaluation) {
           << ",\"grade\":" << json_number(grade.grade) << ",\"interval\":";
       write_json_interval(out, grade.interval);
       out << ",\"difference_from_first\":";
-      write_json_interval(out, grade.difference.value_or(Interval{}));
+      if (grade.difference) {
+        write_json_interval(out, *grade.difference);
+      } else {
+        out << "null";
+      }
       out << ",\"is_best_peer\":" << (source.best_peer == i ? "true" : "false") << '}';
       separator = ",";
     }

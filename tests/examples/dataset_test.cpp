@@ -2,7 +2,6 @@
 //
 // Data sets, the twin and the reading of pictures.
 #include "examples/evaluate/dataset.hpp"
-#include "examples/evaluate/dataset_writer.hpp"
 
 #include <gst/gst.h>
 #include <gtest/gtest.h>
@@ -18,6 +17,8 @@
 
 #include "core/scene/catalog.hpp"
 #include "examples/evaluate/breakdown.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"
