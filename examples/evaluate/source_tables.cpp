@@ -205,7 +205,8 @@ Table all_ellipses_table(const Evaluation& evaluation) {
   table.note =
       "Matched one to one at IoU >= 0.8. True ellipses with less than 30 % of the perimeter "
       "in the frame, and what matches them, do not count. Axes: the larger difference of "
-      "the semi-axes. Methods that look for one target are left out.";
+      "the semi-axes. Methods that look for one target are left out. Where the truth lists the "
+      "target alone, other ellipses that are really there count as mistaken.";
   return table;
 }
 
