@@ -20,6 +20,26 @@ void on_interrupt(int /*signal*/) {
   std::signal(SIGINT, SIG_DFL);  // the second time in earnest
 }
 
+CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* datasets) {
+  CLI::Option* choose = app.add_option("--choose",
+                                       options.choices,
+                                       "PROPERTY=VALUE:VALUE... or PROPERTY=FROM:TO:STEP; several "
+                                       "make a grid")
+                            ->allow_extra_args(false);
+  CLI::Option* leave = app.add_flag("--leave-one-out",
+                                    options.leave_one_out,
+                                    "For each data set: choose on the others, report on this one")
+                           ->needs(datasets)
+                           ->needs(choose);
+  choose->needs(leave);
+  app.add_option("--groups",
+                 options.groups_file,
+                 "Which data sets are left out together: lines GROUP: NAME NAME..., with * and ?; "
+                 "none = airlab-*; all rendered ones")
+      ->needs(leave);
+  return leave;
+}
+
 void add_options(CLI::App& app, Options& options) {
   CLI::Option* datasets = app.add_option(
       "DATASET",
@@ -54,22 +74,7 @@ void add_options(CLI::App& app, Options& options) {
       ->needs(sweep);
   app.add_option("--ground", options.ground_file, "A picture to lie under the twin's scenes")
       ->excludes(datasets);
-  CLI::Option* choose = app.add_option("--choose",
-                                       options.choices,
-                                       "PROPERTY=VALUE:VALUE... or PROPERTY=FROM:TO:STEP; several "
-                                       "make a grid")
-                            ->allow_extra_args(false);
-  CLI::Option* leave = app.add_flag("--leave-one-out",
-                                    options.leave_one_out,
-                                    "For each data set: choose on the others, report on this one")
-                           ->needs(datasets)
-                           ->needs(choose);
-  choose->needs(leave);
-  app.add_option("--groups",
-                 options.groups_file,
-                 "Which data sets are left out together: lines GROUP: NAME NAME..., with * and ?; "
-                 "none = airlab-*; all rendered ones")
-      ->needs(leave);
+  CLI::Option* leave = add_leave_one_out(app, options, datasets);
   CLI::Option* make =
       app.add_option(
              "--make-dataset", options.dataset_folder, "Write the twin: pictures and gt.csv")

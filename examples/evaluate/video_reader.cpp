@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr GstClockTime kPatience = 20 * GST_SECOND;
+constexpr GstClockTime kErrorInterval =
+    GST_SECOND / 10;  // an error does not end the wait for a frame
 
 constexpr std::array kExtensions = {
     ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", ".ogv", ".mpg", ".mpeg", ".ts"};
@@ -61,11 +63,13 @@ class VideoReader::Pipeline {
 
   /// Owned by the caller; nullptr after the last frame.
   GstSample* next() {
-    GstSample* sample = gst_app_sink_try_pull_sample(out_, kPatience);
-    if (sample != nullptr) return sample;
-    throw_error();
-    if (!gst_app_sink_is_eos(out_)) fail(file_, "gives no frame");
-    return nullptr;
+    for (GstClockTime waited = 0; waited < kPatience; waited += kErrorInterval) {
+      GstSample* sample = gst_app_sink_try_pull_sample(out_, kErrorInterval);
+      if (sample != nullptr) return sample;
+      throw_error();
+      if (gst_app_sink_is_eos(out_)) return nullptr;
+    }
+    fail(file_, "gives no frame");
   }
 
  private:

@@ -8,9 +8,12 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
 
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/frame_files.hpp"
 #include "examples/evaluate/video_reader.hpp"
 #include "tests/examples/programs.hpp"
@@ -157,6 +160,27 @@ TEST_F(Footage, PicturesWithoutATimeFollowAtTheGivenRate) {
   write("1.png", "");
   write("2.png", "");
   EXPECT_EQ(read_dataset(folder_.path(), 10.0).sequences[0].frames[1].pts_ns, 100'000'000);
+}
+
+TEST_F(Footage, PicturesOfOneSetMayDifferInSize) {
+  write("gt.csv", std::string(kHeader) + "1.png,80,60,30,30,0\n2.png,200,150,80,80,0\n");
+  for (const auto& [name, width, radius] : {std::tuple{"1.png", 160, 30}, {"2.png", 400, 80}}) {
+    cv::Mat picture(width * 3 / 4, width, CV_8U, cv::Scalar(40));
+    cv::circle(picture, {width / 2, width * 3 / 8}, radius, cv::Scalar(200), -1, cv::LINE_AA);
+    cv::imwrite(file(name).string(), picture);
+  }
+  const Dataset dataset = read();
+  std::vector<std::unique_ptr<Method>> methods;
+  for (const char* name : {"arcs+edges", "canny-fit"}) methods.push_back(make_method(name, {}));
+  const Evaluation evaluation =
+      evaluate(dataset.sequences, methods, Rule::kIou, [](const Frame& /*frame*/) { return true; });
+  ASSERT_EQ(evaluation.frames.size(), 2U);
+  EXPECT_EQ(evaluation.frames[1].size.width, 400);
+  for (const MethodResults& method : evaluation.methods) {
+    for (const Result& result : method.results) {
+      EXPECT_EQ(result.outcome, Outcome::kTruePositive) << method.name;
+    }
+  }
 }
 
 }  // namespace
