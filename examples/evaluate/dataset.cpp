@@ -138,7 +138,7 @@ class Reader {
         row.fail("image " + frame.name + " has the same ellipse in a line before");
       }
     }
-    frame.truth.others.push_back({*truth.target, truth.visible_fraction});
+    for (const TrueEllipse& one : ellipses_of(truth)) frame.truth.others.push_back(one);
   }
 
   void add(const Row& row, Frame frame, const std::string& dataset) {

@@ -80,11 +80,12 @@ struct Dataset {
 };
 
 /// Reads a data set from a folder with `gt.csv` (columns image, cx, cy, semi_major, semi_minor,
-/// angle_rad and, if there, visible_fraction, pts_ns, noise, crumple, dataset; images named
-/// relative to the folder), or with the `ground_truth.txt` of the published AirLab data set, in the
-/// folder itself or in folders below.
+/// angle_rad and, if there, visible_fraction (or visible), inner_semi_major, pts_ns, noise,
+/// crumple, dataset; images named relative to the folder), or with the `ground_truth.txt` of the
+/// published AirLab data set, in the folder itself or in folders below.
 ///
 /// `gt.csv` has one row per ellipse; an image without an ellipse has one row with empty fields.
+/// With inner_semi_major the row also stands for the inner edge of a ring, concentric and alike.
 /// Where the folder has a video `eye.mp4` (any container), `images/eye/frame_0012.png` is its frame
 /// 12, counted from 0 in the order of decoding, with the time that the video gives it. Images may
 /// differ in size. An optional `ignore.txt` names one image a line that is shown to trackers and

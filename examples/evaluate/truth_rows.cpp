@@ -13,6 +13,16 @@ void check_axes(const Row& row, const ellipse::Ellipse& e) {
   }
 }
 
+// Of a ring: concentric and of the same shape.
+ellipse::Ellipse inner_edge(const Row& row, ellipse::Ellipse outer, double semi_major) {
+  if (!(semi_major > 0.0 && semi_major < outer.semi_major)) {
+    row.fail("inner_semi_major must be above 0 and below semi_major");
+  }
+  outer.semi_minor *= semi_major / outer.semi_major;
+  outer.semi_major = semi_major;
+  return outer;
+}
+
 }  // namespace
 
 Truth truth_of_csv(const Row& row) {
@@ -30,8 +40,12 @@ Truth truth_of_csv(const Row& row) {
                                   row.number("angle_rad")};
   check_axes(row, *truth.target);
   truth.visible_fraction = row.optional_number("visible_fraction");
+  if (!truth.visible_fraction) truth.visible_fraction = row.optional_number("visible");
   const double visible = truth.visible_fraction.value_or(1.0);
   if (visible < 0.0 || visible > 1.0) row.fail("visible_fraction must be from 0 to 1");
+  if (const auto inner = row.optional_number("inner_semi_major")) {
+    truth.others.push_back({inner_edge(row, *truth.target, *inner), truth.visible_fraction});
+  }
   return truth;
 }
 

@@ -73,6 +73,21 @@ TEST_F(Footage, AnImageCannotBothHaveAnEllipseAndNone) {
   EXPECT_NE(dataset.problems[0].find("gt.csv:3: "), std::string::npos) << dataset.problems[0];
 }
 
+TEST_F(Footage, TheInnerEdgeOfARingIsAnEllipseOfItsOwn) {
+  write("gt.csv",
+        "image,cx,cy,semi_major,semi_minor,angle_rad,visible,inner_semi_major\n"
+        "a.png,10,20,8,4,0.5,0.7,6\nb.png,10,20,8,4,0.5,,9\n");
+  write("a.png", "");
+  write("b.png", "");
+  const Dataset dataset = read();
+  const auto ellipses = ellipses_of(dataset.sequences.at(0).frames.at(0).truth);
+  ASSERT_EQ(ellipses.size(), 2U);
+  EXPECT_EQ(ellipses[1].ellipse, (ellipse::Ellipse{10.0, 20.0, 6.0, 3.0, 0.5}));
+  EXPECT_EQ(ellipses[1].visible_fraction, 0.7);
+  ASSERT_EQ(dataset.problems.size(), 1U);
+  EXPECT_NE(dataset.problems[0].find("gt.csv:3: inner_semi_major"), std::string::npos);
+}
+
 TEST_F(Footage, IgnoredImagesStayInTheirSequence) {
   write("gt.csv", std::string(kHeader) + "1.png,,,,,\n2.png,9,9,5,4,0\n");
   write("ignore.txt", "# hidden by the lid\n2.png\r\n3.png\n4.png\n");
