@@ -59,6 +59,7 @@ GridChooser::GridChooser(const std::vector<Property>& grid,
     methods.push_back(make_tracker_method(point.choice.name, point.choice.settings));
   }
   const Evaluation evaluation = evaluate(sequences, methods, rule, advance);
+  problems_ = evaluation.problems;
   for (const std::string& source : datasets_of(evaluation)) {
     sources_.push_back(source);
     for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -53,6 +53,9 @@ class GridChooser : public Chooser {
 
   [[nodiscard]] Choice choose(const std::vector<std::string>& sources) override;
 
+  /// Each names a frame that was left out, and why.
+  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
+
  private:
   struct Point {
     Choice choice;
@@ -63,6 +66,7 @@ class GridChooser : public Chooser {
 
   std::vector<Point> points_;
   std::vector<std::string> sources_;
+  std::vector<std::string> problems_;
 };
 
 }  // namespace evaluate

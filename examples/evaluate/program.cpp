@@ -142,14 +142,17 @@ class Program {
         rule_,
         [&](const Frame& frame) { return advance(progress, frame); },
         options_.all_ellipses);
-    for (const std::string& problem : evaluation.problems) {
-      const bool is_known =
-          std::find(problems_.begin(), problems_.end(), problem) != problems_.end();
-      if (is_known) continue;  // by the sweep before
+    note_missing(evaluation.problems);
+    return evaluation;
+  }
+
+  // Each problem names a frame; the same one comes up in every run over the frames.
+  void note_missing(const std::vector<std::string>& problems) {
+    for (const std::string& problem : problems) {
+      if (std::ranges::find(problems_, problem) != problems_.end()) continue;
       problems_.push_back(problem);
       ++missing_frames_;
     }
-    return evaluation;
   }
 
   std::vector<std::unique_ptr<Method>> make_methods() {
@@ -198,6 +201,7 @@ class Program {
     ProgressBar progress(2 * frames_of(sequences_));  // choosing, then judging
     const auto next = [&](const Frame& frame) { return advance(progress, frame); };
     GridChooser chooser(grid, settings, sequences_, rule_, next);
+    note_missing(chooser.problems());
     if (interrupted) return;
     const auto results = leave_one_out(sequences_, groups, chooser, settings, rule_, next);
     if (results.empty()) return;

@@ -93,6 +93,18 @@ TEST(LeaveOneOut, GridTakesTheBestPointOfTheGivenSources) {
                std::invalid_argument);
 }
 
+TEST(LeaveOneOut, GridNamesTheFramesThatCannotBeRead) {
+  class Broken : public PictureSource {
+   public:
+    cv::Mat picture(const Frame& frame) override { throw std::runtime_error(frame.name); }
+  };
+  auto sequences = sources({"a"});
+  sequences[0].pictures = std::make_shared<Broken>();
+  const GridChooser chooser({{"min-axis", {"5"}}}, {}, sequences, Rule::kIou, go_on);
+  ASSERT_EQ(chooser.problems().size(), 3U);
+  EXPECT_EQ(chooser.problems()[0], sequences[0].frames[0].name);
+}
+
 TEST(LeaveOneOut, PropertiesHaveValuesOrRanges) {
   using Values = std::vector<std::string>;
   EXPECT_EQ(parse_property("x=0.8:0.85:0.9").values, (Values{"0.8", "0.85", "0.9"}));
