@@ -6,60 +6,18 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <stdexcept>
 
 #include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/rows.hpp"
+#include "examples/evaluate/truth_rows.hpp"
+#include "examples/evaluate/video_frames.hpp"
 
 namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
-
-void check_axes(const Row& row, const ellipse::Ellipse& e) {
-  if (!(e.semi_major >= e.semi_minor && e.semi_minor > 0.0)) {
-    row.fail("the axes must be major >= minor > 0");
-  }
-}
-
-Truth truth_of_csv(const Row& row) {
-  Truth truth;
-  int empty = 0;
-  for (const char* column : {"cx", "cy", "semi_major", "semi_minor", "angle_rad"}) {
-    empty += row.text(column).empty() ? 1 : 0;
-  }
-  if (empty == 5) return truth;
-  if (empty > 0) row.fail("has a part of an ellipse only");
-  truth.target = ellipse::Ellipse{row.number("cx"),
-                                  row.number("cy"),
-                                  row.number("semi_major"),
-                                  row.number("semi_minor"),
-                                  row.number("angle_rad")};
-  check_axes(row, *truth.target);
-  truth.visible_fraction = row.optional_number("visible_fraction");
-  const double visible = truth.visible_fraction.value_or(1.0);
-  if (visible < 0.0 || visible > 1.0) row.fail("visible_fraction must be from 0 to 1");
-  return truth;
-}
-
-// The published form: full axes, width <= height, the angle is that of the width [degrees].
-Truth truth_of_published(const Row& row) {
-  Truth truth;
-  if (row.number("HasTarget") == 0.0) return truth;
-  truth.is_labelled = row.number("TargetWidth") >= 0.0;
-  if (!truth.is_labelled) return truth;
-  const double major_rad = (row.number("TargetAngle") + 90.0) * std::numbers::pi / 180.0;
-  truth.target = ellipse::Ellipse{row.number("TargetCenterX"),
-                                  row.number("TargetCenterY"),
-                                  row.number("TargetHeight") / 2.0,
-                                  row.number("TargetWidth") / 2.0,
-                                  std::remainder(major_rad, std::numbers::pi)};
-  check_axes(row, *truth.target);
-  return truth;
-}
 
 // frame9 before frame10: a run of digits counts by its value.
 bool natural_less(const std::string& a, const std::string& b) {
@@ -81,9 +39,9 @@ bool natural_less(const std::string& a, const std::string& b) {
 }
 
 // By the names of data set and sequence.
-using FramesBySequence = std::map<std::pair<std::string, std::string>, std::vector<Frame>>;
+using SequenceKey = std::pair<std::string, std::string>;
+using FramesBySequence = std::map<SequenceKey, std::vector<Frame>>;
 
-constexpr std::int64_t kFrameNs = 33'333'333;
 constexpr std::int64_t kNoTime = -1;
 
 class FilePictures : public PictureSource {
@@ -97,7 +55,8 @@ class FilePictures : public PictureSource {
 // Reads one folder with its tables.
 class Reader {
  public:
-  explicit Reader(const fs::path& folder) : folder_(fs::canonical(folder)) {}
+  Reader(const fs::path& folder, double frames_per_second)
+      : folder_(fs::canonical(folder)), frame_ns_(1e9 / frames_per_second), videos_(folder_) {}
 
   Dataset read() {
     bool has_table = fs::exists(folder_ / "gt.csv");
@@ -116,18 +75,26 @@ class Reader {
     if (frames_.empty() && dataset_.problems.empty()) {
       throw std::runtime_error(folder_.string() + ": its table names no picture");
     }
+    read_ignored(folder_ / "ignore.txt");
     note_images_without_rows();
     collect();
     return std::move(dataset_);
   }
 
  private:
+  // Where a frame is among frames_.
+  struct Place {
+    SequenceKey sequence;
+    std::size_t index = 0;
+  };
+
   void read_csv(const fs::path& file) {
     const auto use = [&](const Row& row) {
-      const fs::path image = named(row, folder_ / row.text("image"));
       Frame frame;
-      frame.image = image;
+      frame.image = (folder_ / row.text("image")).lexically_normal();
+      named_.insert(frame.image);
       frame.truth = truth_of_csv(row);
+      if (Frame* before = find(frame.image)) return add_ellipse(row, *before, frame.truth);
       frame.conditions = {row.optional_number("noise"), row.optional_number("crumple")};
       frame.pts_ns = static_cast<std::int64_t>(row.optional_number("pts_ns").value_or(kNoTime));
       add(row, std::move(frame), row.has("dataset") ? row.text("dataset") : own_name());
@@ -138,7 +105,10 @@ class Reader {
   void read_published(const fs::path& file) {
     const auto use = [&](const Row& row) {
       Frame frame;
-      frame.image = named(row, file.parent_path() / row.text("Filename"));
+      frame.image = (file.parent_path() / row.text("Filename")).lexically_normal();
+      if (!named_.insert(frame.image).second) {
+        row.fail("image " + frame.image.string() + " has a line before");
+      }
       frame.truth = truth_of_published(row);
       frame.pts_ns = kNoTime;
       add(row, std::move(frame), own_name());
@@ -153,18 +123,45 @@ class Reader {
 
   [[nodiscard]] std::string own_name() const { return folder_.filename().string(); }
 
-  // Also an image whose line is broken has a line.
-  fs::path named(const Row& row, const fs::path& image) {
-    const bool is_new = named_.insert(image.lexically_normal()).second;
-    if (!is_new) row.fail("image " + image.string() + " has a line before");
-    return image;
+  Frame* find(const fs::path& image) {
+    const auto place = places_.find(image);
+    return place == places_.end() ? nullptr : &frames_[place->second.sequence][place->second.index];
+  }
+
+  // A further row of an image.
+  static void add_ellipse(const Row& row, Frame& frame, const Truth& truth) {
+    if (!truth.target || !frame.truth.target) {
+      row.fail("image " + frame.name + " has a line before, and one of them has no ellipse");
+    }
+    for (const TrueEllipse& known : ellipses_of(frame.truth)) {
+      if (known.ellipse == *truth.target) {
+        row.fail("image " + frame.name + " has the same ellipse in a line before");
+      }
+    }
+    for (const TrueEllipse& one : ellipses_of(truth)) frame.truth.others.push_back(one);
   }
 
   void add(const Row& row, Frame frame, const std::string& dataset) {
-    if (!fs::exists(frame.image)) row.fail("image " + frame.image.string() + " is not there");
-    const std::string sequence = sequence_of(frame.image);
-    frame.name = sequence + "/" + frame.image.filename().string();
-    frames_[{dataset, sequence}].push_back(std::move(frame));
+    try {
+      add(std::move(frame), dataset);
+    } catch (const std::runtime_error& error) {
+      row.fail(error.what());
+    }
+  }
+
+  void add(Frame frame, const std::string& dataset) {
+    const fs::path image = frame.image;
+    if (!fs::exists(image)) {
+      const auto place = videos_.find(image);
+      if (!place) throw std::runtime_error("image " + image.string() + " is not there");
+      frame.image.clear();
+      if (frame.pts_ns == kNoTime) frame.pts_ns = place->pts_ns;
+    }
+    const SequenceKey key{dataset, sequence_of(image)};
+    frame.name = key.second + "/" + image.filename().string();
+    folders_[key] = image.parent_path();
+    places_[image] = {key, frames_[key].size()};
+    frames_[key].push_back(std::move(frame));
   }
 
   // A sequence is a folder of pictures, named by its path inside the data set.
@@ -173,6 +170,35 @@ class Reader {
     const std::string inside = folder.lexically_relative(folder_).generic_string();
     if (inside == ".") return own_name();
     return inside.starts_with("images/") ? inside.substr(7) : inside;
+  }
+
+  // Images that stay in their sequence and are not judged; they need no row in the table.
+  void read_ignored(const fs::path& file) {
+    if (!fs::exists(file)) return;
+    std::ifstream in(file);
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (line.empty() || line.front() == '#') continue;
+      try {
+        ignore((folder_ / line).lexically_normal());
+      } catch (const std::runtime_error& error) {
+        dataset_.problems.push_back(file.string() + ":" + std::to_string(number) + ": " +
+                                    error.what());
+      }
+    }
+    if (in.bad()) throw std::runtime_error(file.string() + ": cannot be read");
+  }
+
+  void ignore(const fs::path& image) {
+    named_.insert(image);
+    if (find(image) == nullptr) {
+      Frame frame;
+      frame.image = image;
+      frame.pts_ns = kNoTime;
+      add(std::move(frame), own_name());
+    }
+    find(image)->truth.is_labelled = false;
   }
 
   void note_images_without_rows() {
@@ -187,93 +213,65 @@ class Reader {
         dataset_.problems.push_back(entry.path().string() + ": has no line in the table");
       }
     }
+    for (const std::string& line : videos_.unnamed_frames()) dataset_.problems.push_back(line);
   }
 
   void collect() {
-    const auto pictures = std::make_shared<FilePictures>();
-    for (auto& [names, list] : frames_) {
+    const auto files = std::make_shared<FilePictures>();
+    for (auto& [key, list] : frames_) {
       std::stable_sort(list.begin(), list.end(), [](const Frame& a, const Frame& b) {
         return natural_less(a.name, b.name);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         list[i].number = i;
-        if (list[i].pts_ns == kNoTime) list[i].pts_ns = static_cast<std::int64_t>(i) * kFrameNs;
+        if (list[i].pts_ns == kNoTime) {
+          list[i].pts_ns = std::llround(static_cast<double>(i) * frame_ns_);
+        }
       }
-      dataset_.sequences.push_back({names.first, names.second, std::move(list), pictures});
+      std::shared_ptr<PictureSource> pictures = files;
+      if (std::ranges::any_of(list, [](const Frame& frame) { return frame.image.empty(); })) {
+        pictures = videos_.pictures_of(folders_[key]);
+      }
+      dataset_.sequences.push_back({key.first, key.second, std::move(list), pictures});
     }
   }
 
   fs::path folder_;
+  double frame_ns_;
+  VideoFrames videos_;
   FramesBySequence frames_;
+  std::map<SequenceKey, fs::path> folders_;
+  std::map<fs::path, Place> places_;  // by image
   std::set<fs::path> named_;
   Dataset dataset_;
 };
 
-void write_row(std::ostream& out,
-               const fs::path& image,
-               const Frame& frame,
-               const std::string& dataset) {
-  const auto number = [&](const std::optional<double>& value) {
-    out << ',';
-    if (value) out << *value;
-  };
-  const auto& target = frame.truth.target;
-  out << image.generic_string();
-  if (target) {
-    for (const double value :
-         {target->cx, target->cy, target->semi_major, target->semi_minor, target->angle_rad}) {
-      number(value);
-    }
-  } else {
-    out << ",,,,,";
-  }
-  number(frame.truth.visible_fraction);
-  out << ',' << frame.pts_ns;
-  number(frame.conditions.noise);
-  number(frame.conditions.crumple);
-  out << ',' << dataset << '\n';
-}
-
-void check_written(std::ofstream& out, const fs::path& file) {
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw std::runtime_error(folder.string() + ": " + error.message());
-}
-
 }  // namespace
 
-Dataset read_dataset(const fs::path& folder) {
+std::vector<TrueEllipse> ellipses_of(const Truth& truth) {
+  std::vector<TrueEllipse> ellipses;
+  if (truth.target) ellipses.push_back({*truth.target, truth.visible_fraction});
+  ellipses.insert(ellipses.end(), truth.others.begin(), truth.others.end());
+  return ellipses;
+}
+
+Dataset read_dataset(const fs::path& folder, double frames_per_second) {
   if (!fs::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": is no folder that can be read");
   }
-  return Reader(folder).read();
+  return Reader(folder, frames_per_second).read();
 }
 
-void write_dataset(const std::vector<Sequence>& sequences,
-                   const fs::path& folder,
-                   const std::function<bool(const Frame&)>& advance) {
-  make_folder(folder);
-  const fs::path table = folder / "gt.csv";
-  std::ofstream out(table);
-  out.precision(17);
-  out << "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction,pts_ns,noise,crumple,"
-         "dataset\n";
-  for (const Sequence& sequence : sequences) {
-    make_folder(folder / "images" / sequence.name);
-    for (const Frame& frame : sequence.frames) {
-      const fs::path image = fs::path("images") / frame.name;
-      if (!cv::imwrite((folder / image).string(), sequence.pictures->picture(frame))) {
-        throw std::runtime_error((folder / image).string() + ": cannot be written");
-      }
-      write_row(out, image, frame, sequence.dataset);
-      if (!advance(frame)) return check_written(out, table);
+std::vector<fs::path> dataset_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  if (fs::is_directory(folder) && !fs::exists(folder / "gt.csv")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (fs::exists(entry.path() / "gt.csv")) folders.push_back(entry.path());
     }
   }
-  check_written(out, table);
+  std::sort(folders.begin(), folders.end());
+  if (folders.empty()) folders.push_back(folder);
+  return folders;
 }
 
 }  // namespace evaluate

@@ -46,16 +46,17 @@ Result judged(const Answer& answer, const SeenFrame& seen, double reference_ms, 
   result.outcome = answer.is_given ? Outcome::kNotJudged
                                    : judge(answer.target, seen.frame->truth, seen.size, rule);
   if (result.outcome == Outcome::kTruePositive) {
-    result.centre_error_px = (answer.target->center() - seen.frame->truth.target->center()).norm();
+    const auto truth = matched_ellipse(*answer.target, seen.frame->truth, seen.size, rule);
+    result.centre_error_px = (answer.target->center() - truth->center()).norm();
   }
   return result;
 }
 
 class Run {
  public:
-  Run(const std::vector<std::unique_ptr<Method>>& methods, Rule rule)
-      : methods_(methods), rule_(rule) {
-    for (const auto& method : methods) evaluation_.methods.push_back({method->name(), {}});
+  Run(const std::vector<std::unique_ptr<Method>>& methods, Rule rule, bool wants_all)
+      : methods_(methods), rule_(rule), wants_all_(wants_all) {
+    for (const auto& method : methods) evaluation_.methods.push_back({method->name(), {}, {}});
     answers_.resize(methods.size());
     order_.resize(methods.size() + 1);  // the last one is the reference
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -87,6 +88,7 @@ class Run {
         answers_[i].target = seen.size.bent->to_ideal(*answers_[i].target);
       }
       evaluation_.methods[i].results.push_back(judged(answers_[i], seen, reference_ms, rule_));
+      if (wants_all_) compare_all_of(i, seen);
     }
     evaluation_.frames.push_back(seen);
   }
@@ -101,8 +103,18 @@ class Run {
     }
   }
 
+  void compare_all_of(std::size_t method, const SeenFrame& seen) {
+    auto found = methods_[method]->all_found();
+    if (!found) return;
+    if (seen.size.bent != nullptr && !methods_[method]->knows_lens()) {
+      for (ellipse::Ellipse& e : *found) e = seen.size.bent->to_ideal(e);
+    }
+    evaluation_.methods[method].all.push_back(compare_all(*found, seen.frame->truth, seen.size));
+  }
+
   const std::vector<std::unique_ptr<Method>>& methods_;
   Rule rule_;
+  bool wants_all_;
   Reference reference_;
   Evaluation evaluation_;
   ellipse::Random random_{1};
@@ -119,8 +131,9 @@ void add_new(std::vector<std::string>& names, const std::string& name) {
 Evaluation evaluate(const std::vector<Sequence>& sequences,
                     const std::vector<std::unique_ptr<Method>>& methods,
                     Rule rule,
-                    const std::function<bool(const Frame&)>& advance) {
-  Run run(methods, rule);
+                    const std::function<bool(const Frame&)>& advance,
+                    bool wants_all) {
+  Run run(methods, rule, wants_all);
   Evaluation& evaluation = run.evaluation();
   for (const Sequence& sequence : sequences) evaluation.planned_frames += sequence.frames.size();
   for (const Sequence& sequence : sequences) {
@@ -162,7 +175,9 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
     const SeenFrame& seen = evaluation.frames[i];
     const Result& result = evaluation.methods[method].results[i];
-    out << "{\"image\":" << std::quoted(seen.frame->name) << ",\"size\":[" << seen.size.width << ','
+    if (!seen.frame->truth.is_labelled) continue;
+    out << "{\"dataset\":" << std::quoted(seen.sequence->dataset)
+        << ",\"image\":" << std::quoted(seen.frame->name) << ",\"size\":[" << seen.size.width << ','
         << seen.size.height << "],\"target\":";
     if (result.answer) {
       const ellipse::Ellipse& e = *result.answer;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "examples/evaluate/all_ellipses.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"
@@ -24,6 +25,7 @@ struct SeenFrame {
 struct MethodResults {
   std::string name;
   std::vector<Result> results;
+  std::vector<AllResult> all;  ///< Where all ellipses are asked for, of methods that find them.
 };
 
 struct Evaluation {
@@ -40,10 +42,12 @@ struct Evaluation {
 ///
 /// @param sequences  Borrowed by the result.
 /// @param advance    Called after each frame; false ends it early.
+/// @param wants_all  Whether all ellipses of a frame are compared, too.
 [[nodiscard]] Evaluation evaluate(const std::vector<Sequence>& sequences,
                                   const std::vector<std::unique_ptr<Method>>& methods,
                                   Rule rule,
-                                  const std::function<bool(const Frame&)>& advance);
+                                  const std::function<bool(const Frame&)>& advance,
+                                  bool wants_all = false);
 
 /// The measures of one method over the frames for which the claim holds.
 [[nodiscard]] Measures measures_of(const Evaluation& evaluation,
@@ -55,10 +59,10 @@ struct Evaluation {
 [[nodiscard]] std::vector<std::string> sequences_of(const Evaluation& evaluation,
                                                     const std::string& dataset);
 
-/// One JSON line a frame, of one method:
-/// {"image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,"ms":[..],
-/// "outcome":"TP"}, visible being the share of the true perimeter inside the frame, target of the
-/// ideal plane where a lens bends the picture.
+/// One JSON line for each frame that can be judged, of one method:
+/// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,
+/// "ms":[..],"outcome":"TP"}, visible being the share of the true perimeter inside the frame,
+/// target of the ideal plane where a lens bends the picture.
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method);
 
 }  // namespace evaluate

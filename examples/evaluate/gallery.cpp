@@ -59,12 +59,16 @@ bool is_bad(Outcome outcome) {
 }
 
 // The larger the worse. The n-th bad frame of a sequence counts less than the first of another.
-std::vector<double> badness(const Evaluation& evaluation, std::size_t method) {
+std::vector<double> badness(const Evaluation& evaluation,
+                            std::size_t method,
+                            const std::string& dataset) {
   std::vector<double> result;
   std::map<std::string, int> seen_in;
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
     const Result& one = evaluation.methods[method].results[i];
-    if (is_bad(one.outcome)) {
+    if (evaluation.frames[i].sequence->dataset != dataset) {
+      result.push_back(0.0);
+    } else if (is_bad(one.outcome)) {
       const int before = seen_in[evaluation.frames[i].sequence->name]++;
       result.push_back(1e6 / (1.0 + before));
     } else {
@@ -84,7 +88,7 @@ Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
       draw(exhibit.picture, e, color);
     }
   };
-  if (seen.frame->truth.target) show(*seen.frame->truth.target, kTruthColor);
+  for (const TrueEllipse& one : ellipses_of(seen.frame->truth)) show(one.ellipse, kTruthColor);
   if (result.answer) show(*result.answer, kAnswerColor);
   exhibit.caption = std::string(kOutcomeNames[static_cast<std::size_t>(result.outcome)]) + "  " +
                     seen.frame->name;
@@ -98,8 +102,9 @@ Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
 
 std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
                                   std::size_t method,
+                                  const std::string& dataset,
                                   std::size_t most) {
-  const std::vector<double> bad = badness(evaluation, method);
+  const std::vector<double> bad = badness(evaluation, method, dataset);
   std::vector<std::size_t> order(bad.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(

@@ -15,10 +15,11 @@ struct Exhibit {
   cv::Mat picture;  ///< Colour; the truth in green, the answer in orange.
 };
 
-/// The worst frames of one method: wrong, false and missed ones, spread over the sequences, then
-/// right ones with the largest error of the centre.
+/// The worst frames of one method on one data set: wrong, false and missed ones, spread over the
+/// sequences, then right ones with the largest error of the centre.
 [[nodiscard]] std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
                                                 std::size_t method,
+                                                const std::string& dataset,
                                                 std::size_t most);
 
 }  // namespace evaluate

@@ -21,11 +21,32 @@ void on_interrupt(int /*signal*/) {
   std::signal(SIGINT, SIG_DFL);  // the second time in earnest
 }
 
+CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* datasets) {
+  CLI::Option* choose = app.add_option("--choose",
+                                       options.choices,
+                                       "PROPERTY=VALUE:VALUE... or PROPERTY=FROM:TO:STEP; several "
+                                       "make a grid")
+                            ->allow_extra_args(false);
+  CLI::Option* leave = app.add_flag("--leave-one-out",
+                                    options.leave_one_out,
+                                    "For each data set: choose on the others, report on this one")
+                           ->needs(datasets)
+                           ->needs(choose);
+  choose->needs(leave);
+  app.add_option("--groups",
+                 options.groups_file,
+                 "Which data sets are left out together: lines GROUP: NAME NAME..., with * and ?; "
+                 "none = airlab-*; all rendered ones")
+      ->needs(leave);
+  return leave;
+}
+
 void add_options(CLI::App& app, Options& options) {
   CLI::Option* datasets = app.add_option(
       "DATASET",
       options.datasets,
-      "Folders with gt.csv or ground_truth.txt; scenes:SEED, scenes:FROM-TO or a "
+      "Folders with gt.csv or ground_truth.txt, or folders of such; scenes:SEED, scenes:FROM-TO or "
+      "a "
       "list of them = all scenes of the catalog; distorted:SEED and so on = the same "
       "through lenses that bend the picture; none = the rendered twin");
   app.add_option(
@@ -35,7 +56,7 @@ void add_options(CLI::App& app, Options& options) {
       ->needs(datasets);
   app.add_option("--fps",
                  options.pace.frames_per_second,
-                 "Frames a second of scenes:SEED and distorted:SEED")
+                 "Frames a second of scenes:SEED, distorted:SEED, and pictures without a time")
       ->capture_default_str()
       ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
@@ -54,25 +75,34 @@ void add_options(CLI::App& app, Options& options) {
       ->needs(sweep);
   app.add_option("--ground", options.ground_file, "A picture to lie under the twin's scenes")
       ->excludes(datasets);
+  CLI::Option* leave = add_leave_one_out(app, options, datasets);
   CLI::Option* make =
       app.add_option(
              "--make-dataset", options.dataset_folder, "Write the twin: pictures and gt.csv")
           ->excludes(datasets)
           ->excludes(sweep);
+  leave->excludes(sweep)->excludes(make);
+  app.add_option("--methods",
+                 options.methods,
+                 "Separated by commas; none = all but those that are told the target, with "
+                 "--leave-one-out the default and its detector")
+      ->delimiter(',')
+      ->excludes(sweep)
+      ->excludes(make);
   for (CLI::Option* option :
-       {app.add_option("--methods",
-                       options.methods,
-                       "Separated by commas; none = all but those that are told the target")
-            ->delimiter(','),
-        app.add_option("--peer",
+       {app.add_option("--peer",
                        options.peers,
                        "NAME=COMMAND: a program that reads image paths and answers JSON lines")
             ->allow_extra_args(false),
         app.add_option("--report", options.report_folder, "Write a page with everything in it"),
-        app.add_option(
-            "--frames", options.frames_file, "Write one JSON line a frame, of the first method"),
+        app.add_option("--frames",
+                       options.frames_file,
+                       "Write one JSON line for each frame that is judged, of the first method"),
+        app.add_flag("--all",
+                     options.all_ellipses,
+                     "Also compare all ellipses of each frame, not the target alone"),
         app.add_option("--json", options.json_file, "Write all measures as JSON")}) {
-    option->excludes(sweep)->excludes(make);
+    option->excludes(sweep)->excludes(make)->excludes(leave);
   }
 }
 

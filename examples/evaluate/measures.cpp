@@ -10,8 +10,6 @@
 namespace evaluate {
 namespace {
 
-constexpr double kLeastIou = 0.8;
-
 double ratio(int part, int whole) {
   return whole > 0 ? static_cast<double>(part) / whole : std::numeric_limits<double>::quiet_NaN();
 }
@@ -33,35 +31,62 @@ bool is_within_tenth(double answer, double truth) {
 
 }  // namespace
 
-double visible_part(const Truth& truth, const FrameSize& frame) {
-  if (!truth.target) return 0.0;
+double visible_part(const TrueEllipse& truth, const FrameSize& frame) {
   return truth.visible_fraction.value_or(
-      ellipse::visible_fraction(*truth.target, frame.width, frame.height));
+      ellipse::visible_fraction(truth.ellipse, frame.width, frame.height));
+}
+
+double visible_part(const Truth& truth, const FrameSize& frame) {
+  return truth.target ? visible_part(TrueEllipse{*truth.target, truth.visible_fraction}, frame)
+                      : 0.0;
+}
+
+bool is_in_view(const TrueEllipse& truth, const FrameSize& frame) {
+  if (visible_part(truth, frame) > 0.0) return true;
+  // Without any of its perimeter the frame is inside or outside as a whole.
+  const ellipse::Interval inside = chord(truth.ellipse, 0.5 * (frame.height - 1));
+  const double middle = 0.5 * (frame.width - 1);
+  return inside.begin < middle && middle < inside.end;
 }
 
 bool is_in_view(const Truth& truth, const FrameSize& frame) {
-  if (!truth.target) return false;
-  if (visible_part(truth, frame) > 0.0) return true;
-  // Without any of its perimeter the frame is inside or outside as a whole.
-  const ellipse::Interval inside = chord(*truth.target, 0.5 * (frame.height - 1));
-  const double middle = 0.5 * (frame.width - 1);
-  return inside.begin < middle && middle < inside.end;
+  return std::ranges::any_of(ellipses_of(truth),
+                             [&](const TrueEllipse& one) { return is_in_view(one, frame); });
+}
+
+double iou_of(const ellipse::Ellipse& answer,
+              const ellipse::Ellipse& truth,
+              const FrameSize& frame) {
+  return frame.bent != nullptr ? frame.bent->iou(answer, truth)
+                               : ellipse::iou_inside(answer, truth, frame.width, frame.height);
 }
 
 bool is_right(const ellipse::Ellipse& answer,
               const ellipse::Ellipse& truth,
               const FrameSize& frame,
               Rule rule) {
-  if (rule == Rule::kIou) {
-    const double iou = frame.bent != nullptr
-                           ? frame.bent->iou(answer, truth)
-                           : ellipse::iou_inside(answer, truth, frame.width, frame.height);
-    return iou >= kLeastIou;
-  }
+  if (rule == Rule::kIou) return iou_of(answer, truth, frame) >= kLeastIou;
   const double apart = (answer.center() - truth.center()).norm();
   return apart <= 0.1 * 2.0 * truth.semi_minor &&
          is_within_tenth(answer.semi_major, truth.semi_major) &&
          is_within_tenth(answer.semi_minor, truth.semi_minor);
+}
+
+std::optional<ellipse::Ellipse> matched_ellipse(const ellipse::Ellipse& answer,
+                                                const Truth& truth,
+                                                const FrameSize& frame,
+                                                Rule rule) {
+  std::optional<ellipse::Ellipse> nearest;
+  const auto distance = [&](const ellipse::Ellipse& e) {
+    return (answer.center() - e.center()).norm();
+  };
+  for (const TrueEllipse& one : ellipses_of(truth)) {
+    if (nearest && distance(one.ellipse) >= distance(*nearest)) continue;
+    if (visible_part(one, frame) > 0.0 && is_right(answer, one.ellipse, frame, rule)) {
+      nearest = one.ellipse;
+    }
+  }
+  return nearest;
 }
 
 Outcome judge(const std::optional<ellipse::Ellipse>& answer,
@@ -72,13 +97,12 @@ Outcome judge(const std::optional<ellipse::Ellipse>& answer,
   if (!is_in_view(truth, frame)) {
     return answer ? Outcome::kFalsePositive : Outcome::kTrueNegative;
   }
-  const double visible = visible_part(truth, frame);
-  const bool may_go_unseen = visible < kLeastVisible;
+  const auto is_visible = [&](const TrueEllipse& one) {
+    return visible_part(one, frame) >= kLeastVisible;
+  };
+  const bool may_go_unseen = std::ranges::none_of(ellipses_of(truth), is_visible);
   if (!answer) return may_go_unseen ? Outcome::kTrueNegative : Outcome::kFalseNegative;
-  // Where the target is larger than the frame, anything larger overlaps it.
-  if (visible > 0.0 && is_right(*answer, *truth.target, frame, rule)) {
-    return Outcome::kTruePositive;
-  }
+  if (matched_ellipse(*answer, truth, frame, rule)) return Outcome::kTruePositive;
   return may_go_unseen ? Outcome::kNotJudged : Outcome::kWrong;
 }
 

@@ -29,6 +29,9 @@ enum class Rule {
   kPublished,  ///< Centre within 10 % of the smaller full axis, each axis within 10 %.
 };
 
+/// Answers match from this intersection over union on [Rule::kIou].
+inline constexpr double kLeastIou = 0.8;
+
 /// A target with less of its perimeter than this inside the frame may go unseen.
 inline constexpr double kLeastVisible = 0.3;
 
@@ -41,17 +44,38 @@ struct FrameSize {
   const BentFrame* bent = nullptr;  ///< Where a lens bends it. Borrowed.
 };
 
-/// Share of the target's perimeter inside the frame, 0 to 1; 0 where there is no target.
+/// Share of the perimeter inside the frame, 0 to 1.
+[[nodiscard]] double visible_part(const TrueEllipse& ellipse, const FrameSize& frame);
+
+/// Of the target; 0 where there is no target.
 [[nodiscard]] double visible_part(const Truth& truth, const FrameSize& frame);
 
-/// Whether the frame shows anything of the target: a part of its perimeter, or its inside alone.
+/// Whether the frame shows anything of an ellipse: a part of its perimeter, or its inside alone.
+[[nodiscard]] bool is_in_view(const TrueEllipse& ellipse, const FrameSize& frame);
+
+/// Whether that holds for one of the true ellipses.
 [[nodiscard]] bool is_in_view(const Truth& truth, const FrameSize& frame);
+
+/// Intersection over union inside the frame.
+[[nodiscard]] double iou_of(const ellipse::Ellipse& answer,
+                            const ellipse::Ellipse& truth,
+                            const FrameSize& frame);
 
 [[nodiscard]] bool is_right(const ellipse::Ellipse& answer,
                             const ellipse::Ellipse& truth,
                             const FrameSize& frame,
                             Rule rule);
 
+/// The true ellipse for which an answer is right, the one with the nearest centre where there are
+/// several; nullopt where it is right for none. An ellipse without any perimeter in the frame
+/// matches nothing: whatever is larger overlaps it.
+[[nodiscard]] std::optional<ellipse::Ellipse> matched_ellipse(const ellipse::Ellipse& answer,
+                                                              const Truth& truth,
+                                                              const FrameSize& frame,
+                                                              Rule rule);
+
+/// Where the truth has several ellipses, an answer that matches any of them is right, and a miss
+/// counts unless all of them are hardly visible.
 [[nodiscard]] Outcome judge(const std::optional<ellipse::Ellipse>& answer,
                             const Truth& truth,
                             const FrameSize& frame,

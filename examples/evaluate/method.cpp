@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 
 #include "core/target_selection.hpp"
 #include "examples/evaluate/box_peers.hpp"
@@ -17,6 +18,12 @@ namespace evaluate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+std::vector<ellipse::Ellipse> outlines_of(std::span<const ellipse::Detection> detections) {
+  std::vector<ellipse::Ellipse> outlines;
+  for (const ellipse::Detection& detection : detections) outlines.push_back(detection.ellipse);
+  return outlines;
+}
 
 class TrackerMethod : public Method {
  public:
@@ -51,6 +58,11 @@ class TrackerMethod : public Method {
       answer.scale = target->scale;
     }
     return answer;
+  }
+
+  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() const override {
+    if (settings_.tracking != ellipse::TrackingMode::kNone) return std::nullopt;
+    return outlines_of(tracker_.candidates());
   }
 
  private:
@@ -106,21 +118,30 @@ class CommandMethod : public Method {
     const auto found = answers_.find(frame.image.string());
     Answer answer;
     answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
+    detections_.clear();
     if (found == answers_.end()) return answer;
     answer.processing_ms = found->second.ms;
-    std::vector<ellipse::Detection> detections = found->second.detections;
-    std::erase_if(detections, [](const ellipse::Detection& detection) {
+    detections_ = found->second.detections;
+    std::erase_if(detections_, [](const ellipse::Detection& detection) {
       return !ellipse::Thresholds().admit_axes_of(detection.ellipse);
     });
-    if (const auto target = ellipse::select_target(detections)) {
+    if (const auto target = ellipse::select_target(detections_)) {
       answer.target = target->ellipse;
     }
     return answer;
   }
 
+  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() const override {
+    return outlines_of(detections_);
+  }
+
  private:
   std::map<std::string, PeerAnswer> answers_;
+  std::vector<ellipse::Detection> detections_;  // of the last frame
 };
+
+constexpr std::string_view kPapersDetector = "contours";
+constexpr std::string_view kOurTracking = "edges";
 
 struct OwnMethod {
   std::string name;
@@ -158,18 +179,38 @@ std::vector<std::string> unaided_method_names() {
   return names;
 }
 
+std::vector<std::string> default_method_names() {
+  const OwnMethod tracked = own_methods().front();
+  return {tracked.name, std::string(tracked.detector) + "+none"};
+}
+
 std::vector<std::string> method_names() {
   std::vector<std::string> names = unaided_method_names();
   for (const char* peer : box_peer_names()) names.emplace_back(peer);
   return names;
 }
 
-std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSettings settings) {
+bool is_ours(const std::string& name) {
+  for (const OwnMethod& own : own_methods()) {
+    const bool is_named = own.name == name;
+    if (is_named) return own.detector != kPapersDetector || own.tracking == kOurTracking;
+  }
+  return false;
+}
+
+ellipse::TrackerSettings settings_of(const std::string& name, ellipse::TrackerSettings settings) {
   for (const OwnMethod& own : own_methods()) {
     if (own.name != name) continue;
     ellipse::set_by_name(settings, "detector", own.detector);
     ellipse::set_by_name(settings, "tracking", own.tracking);
-    return make_tracker_method(name, settings);
+    return settings;
+  }
+  throw std::invalid_argument("method \"" + name + "\" has no settings");
+}
+
+std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSettings settings) {
+  for (const OwnMethod& own : own_methods()) {
+    if (own.name == name) return make_tracker_method(name, settings_of(name, settings));
   }
   for (const char* peer : peer_names()) {
     if (name != peer) continue;

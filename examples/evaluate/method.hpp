@@ -38,6 +38,11 @@ class Method {
   [[nodiscard]] virtual Answer find(const Frame& frame,
                                     const cv::Mat& picture,
                                     std::int64_t pts_ns) = 0;
+  /// All ellipses that it found in the last frame, as those of find(); nullopt where it looks for
+  /// its target only.
+  [[nodiscard]] virtual std::optional<std::vector<ellipse::Ellipse>> all_found() const {
+    return std::nullopt;
+  }
 
  private:
   std::string name_;
@@ -51,8 +56,21 @@ class Method {
 /// the packaged detectors.
 [[nodiscard]] std::vector<std::string> unaided_method_names();
 
-/// The names of all methods: those, then the packaged trackers, which are told their target.
+/// Of those, the default pair of detector and tracking mode, and its detector on single frames.
+[[nodiscard]] std::vector<std::string> default_method_names();
+
+/// The names of all methods: those that find their target themselves, then the packaged trackers,
+/// which are told their target.
 [[nodiscard]] std::vector<std::string> method_names();
+
+/// Whether the name is that of our detector or our tracker, alone or with a part of the paper's.
+/// All others, the paper's method among them, are peers.
+[[nodiscard]] bool is_ours(const std::string& name);
+
+/// The settings of one of ours, by its name. Throws std::invalid_argument where it is none of ours
+/// or the paper's: others have no settings.
+[[nodiscard]] ellipse::TrackerSettings settings_of(const std::string& name,
+                                                   ellipse::TrackerSettings settings);
 
 /// One of them by its name. The packaged detectors look at single frames, and choose their target
 /// as ours do. The packaged trackers are told the truth in the first frame that shows at least

@@ -2,13 +2,14 @@
 #include "examples/evaluate/picture_reader.hpp"
 
 #include <gst/app/app.h>
-#include <gst/video/video.h>
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "examples/evaluate/luma_sample.hpp"
 
 namespace evaluate {
 namespace {
@@ -39,23 +40,6 @@ bool is_whole_jpeg(GBytes* bytes) {
   const std::string_view text(data, size);
   return text.starts_with("\xff\xd8") &&
          text.substr(size - std::min<gsize>(size, 4096)).find(kEnd) != std::string_view::npos;
-}
-
-cv::Mat copy_of(GstSample* sample) {
-  GstVideoInfo info;
-  GstVideoFrame frame;
-  if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
-      !gst_video_frame_map(&frame, &info, gst_sample_get_buffer(sample), GST_MAP_READ)) {
-    return {};
-  }
-  cv::Mat picture = cv::Mat(GST_VIDEO_FRAME_HEIGHT(&frame),
-                            GST_VIDEO_FRAME_WIDTH(&frame),
-                            CV_8UC1,
-                            GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
-                            static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)))
-                        .clone();
-  gst_video_frame_unmap(&frame);
-  return picture;
 }
 
 }  // namespace
@@ -92,7 +76,7 @@ class PictureReader::JpegPipeline {
     gst_app_src_push_buffer(in_, buffer);
     GstSample* sample = gst_app_sink_try_pull_sample(out_, kPatience);
     if (sample == nullptr) return {};
-    cv::Mat picture = copy_of(sample);
+    cv::Mat picture = luma_of(sample);
     gst_sample_unref(sample);
     return picture;
   }

@@ -3,22 +3,23 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <optional>
 #include <stdexcept>
 
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/evaluation.hpp"
+#include "examples/evaluate/frame_files.hpp"
+#include "examples/evaluate/leave_one_out.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"
 #include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/progress.hpp"
 #include "examples/evaluate/report.hpp"
 #include "examples/evaluate/scenes.hpp"
+#include "examples/evaluate/source_tables.hpp"
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
@@ -38,12 +39,6 @@ std::atomic<bool> interrupted = false;
 bool advance(ProgressBar& progress, const Frame& frame) {
   progress.advance(frame.name);
   return !interrupted;
-}
-
-std::size_t frames_of(const std::vector<Sequence>& sequences) {
-  std::size_t frames = 0;
-  for (const Sequence& sequence : sequences) frames += sequence.frames.size();
-  return frames;
 }
 
 std::ofstream open_for_writing(const std::string& file) {
@@ -71,46 +66,6 @@ ellipse::TrackerSettings settings_from(const Options& options) {
   return settings;
 }
 
-bool is_rendered(const Sequence& sequence) {
-  return !sequence.frames.empty() && sequence.frames.front().image.empty();
-}
-
-// Writes rendered frames to files, where another program needs files.
-void write_files(std::vector<Sequence>& sequences, const fs::path& folder) {
-  std::vector<Sequence> rendered;
-  std::copy_if(sequences.begin(), sequences.end(), std::back_inserter(rendered), is_rendered);
-  if (rendered.empty()) return;
-  ProgressBar progress(frames_of(rendered));
-  write_dataset(rendered, folder, [&](const Frame& frame) { return advance(progress, frame); });
-  for (Sequence& sequence : sequences) {
-    if (!is_rendered(sequence)) continue;
-    for (Frame& frame : sequence.frames) frame.image = folder / "images" / frame.name;
-  }
-  if (interrupted) {
-    throw std::runtime_error("interrupted while frames were written to " + folder.string());
-  }
-}
-
-// A folder of its own that is gone in the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(fs::temp_directory_path() / "ellipse-evaluate-XXXXXX") {
-    std::string name = path_.string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 // One call of the program.
 class Program {
  public:
@@ -123,9 +78,13 @@ class Program {
     std::vector<Sweep> sweeps;
     for (const std::string& text : options_.sweeps) sweeps.push_back(parse_sweep(text));
     for (const std::string& text : options_.peers) peers_.push_back(parse_peer(text));
+    std::vector<Property> grid;
+    for (const std::string& text : options_.choices) grid.push_back(parse_property(text));
     gather();
     if (!options_.dataset_folder.empty()) {
-      write_files(sequences_, options_.dataset_folder);
+      write_frame_files(options_.dataset_folder);
+    } else if (options_.leave_one_out) {
+      judge_left_out(grid);
     } else if (!sweeps.empty()) {
       for (const Sweep& sweep : sweeps) run_sweep(sweep);
     } else {
@@ -143,13 +102,17 @@ class Program {
       if (!options_.ground_file.empty()) ground = PictureReader().read(options_.ground_file);
       sequences_ = make_twin(ground);
     }
-    for (const std::string& name : options_.datasets) {
-      Dataset dataset = dataset_by_name(name);
-      make_names_unique(dataset, name);
-      missing_frames_ += dataset.missing_frames;
-      problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
-      for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
+    for (const std::string& given : options_.datasets) {
+      for (const fs::path& name : dataset_folders(given)) gather(name.string());
     }
+  }
+
+  void gather(const std::string& name) {
+    Dataset dataset = dataset_by_name(name);
+    make_names_unique(dataset, name);
+    missing_frames_ += dataset.missing_frames;
+    problems_.insert(problems_.end(), dataset.problems.begin(), dataset.problems.end());
+    for (Sequence& sequence : dataset.sequences) sequences_.push_back(std::move(sequence));
   }
 
   [[nodiscard]] Dataset dataset_by_name(const std::string& name) const {
@@ -157,7 +120,7 @@ class Program {
     if (const auto seeds = scene_seeds(name, "distorted")) {
       return {make_distorted(*seeds, options_.pace), {}, 0};
     }
-    return read_dataset(name);
+    return read_dataset(name, options_.pace.frames_per_second);
   }
 
   // Figures are given by the data set's name: two of one name must not become one.
@@ -174,15 +137,22 @@ class Program {
   Evaluation evaluate_all(const std::vector<std::unique_ptr<Method>>& methods) {
     ProgressBar progress(frames_of(sequences_));
     Evaluation evaluation = evaluate(
-        sequences_, methods, rule_, [&](const Frame& frame) { return advance(progress, frame); });
-    for (const std::string& problem : evaluation.problems) {
-      const bool is_known =
-          std::find(problems_.begin(), problems_.end(), problem) != problems_.end();
-      if (is_known) continue;  // by the sweep before
+        sequences_,
+        methods,
+        rule_,
+        [&](const Frame& frame) { return advance(progress, frame); },
+        options_.all_ellipses);
+    note_missing(evaluation.problems);
+    return evaluation;
+  }
+
+  // Each problem names a frame; the same one comes up in every run over the frames.
+  void note_missing(const std::vector<std::string>& problems) {
+    for (const std::string& problem : problems) {
+      if (std::ranges::find(problems_, problem) != problems_.end()) continue;
       problems_.push_back(problem);
       ++missing_frames_;
     }
-    return evaluation;
   }
 
   std::vector<std::unique_ptr<Method>> make_methods() {
@@ -192,7 +162,7 @@ class Program {
     for (const std::string& name : names) methods.push_back(make_method(name, settings_));
     if (!peers_.empty()) {
       files_.emplace();
-      write_files(sequences_, files_->path());
+      write_frame_files(files_->path());
     }
     for (const PeerCommand& peer : peers_) {
       try {
@@ -206,6 +176,39 @@ class Program {
     return methods;
   }
 
+  // Where another program, or a person, needs files.
+  void write_frame_files(const fs::path& folder) {
+    ProgressBar progress(frames_without_files(sequences_));
+    write_files(sequences_, folder, [&](const Frame& frame) { return advance(progress, frame); });
+    if (interrupted) {
+      throw std::runtime_error("interrupted while frames were written to " + folder.string());
+    }
+  }
+
+  void judge_left_out(const std::vector<Property>& grid) {
+    const SourceGroups groups =
+        options_.groups_file.empty() ? SourceGroups() : SourceGroups(options_.groups_file);
+    std::vector<std::string> methods = options_.methods;
+    if (methods.empty()) methods = default_method_names();
+    for (const std::string& method : methods) judge_left_out(grid, groups, method);
+  }
+
+  void judge_left_out(const std::vector<Property>& grid,
+                      const SourceGroups& groups,
+                      const std::string& method) {
+    if (interrupted) return;
+    const ellipse::TrackerSettings settings = settings_of(method, settings_);
+    ProgressBar progress(2 * frames_of(sequences_));  // choosing, then judging
+    const auto next = [&](const Frame& frame) { return advance(progress, frame); };
+    GridChooser chooser(grid, settings, sequences_, rule_, next);
+    note_missing(chooser.problems());
+    if (interrupted) return;
+    const auto results = leave_one_out(sequences_, groups, chooser, settings, rule_, next);
+    if (results.empty()) return;
+    print(std::cout, left_out_table(method, results));
+    print(std::cout, in_sample_table(method, results));
+  }
+
   void compare() {
     std::ofstream frames_out;
     if (!options_.frames_file.empty()) frames_out = open_for_writing(options_.frames_file);
@@ -217,6 +220,7 @@ class Program {
     for (const std::string& dataset : datasets_of(evaluation)) {
       for (const Table& table : all_tables(evaluation, dataset)) print(std::cout, table);
     }
+    for (const Table& table : source_tables(evaluation)) print(std::cout, table);
     if (frames_out.is_open()) write_frames(frames_out, evaluation, 0);
     if (json_out.is_open()) write_json(json_out, evaluation);
     check_written(frames_out, options_.frames_file);
@@ -264,7 +268,7 @@ class Program {
   std::vector<Sequence> sequences_;
   std::vector<std::string> problems_;
   std::size_t missing_frames_ = 0;
-  std::optional<TemporaryFolder> files_;
+  std::optional<TemporaryFolder> files_;  // for other programs
 };
 
 }  // namespace

@@ -14,6 +14,10 @@ struct Options {
   std::vector<std::string> peers;
   std::vector<std::string> settings;
   std::vector<std::string> sweeps;
+  std::vector<std::string> choices;
+  std::string groups_file;
+  bool leave_one_out = false;
+  bool all_ellipses = false;
   ScenePace pace;
   std::string rule = "iou";
   std::string ground_file;
@@ -25,7 +29,7 @@ struct Options {
   std::string command;
 };
 
-/// Does it: writes a data set, sweeps a property, or compares methods.
+/// Does it: writes a data set, sweeps a property, leaves sources out, or compares methods.
 /// @return The program's exit status: 2 where frames are missing, 130 where it was interrupted.
 /// Throws std::exception with a text for people, where it cannot.
 int run(const Options& options);

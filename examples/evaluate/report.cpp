@@ -14,6 +14,7 @@
 #include "examples/evaluate/breakdown.hpp"
 #include "examples/evaluate/gallery.hpp"
 #include "examples/evaluate/plots.hpp"
+#include "examples/evaluate/source_tables.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/text.hpp"
 #include "examples/evaluate/tracking_tables.hpp"
@@ -21,7 +22,8 @@
 namespace evaluate {
 namespace {
 
-constexpr std::size_t kExhibits = 18;
+constexpr std::size_t kExhibits = 18;          // of one data set
+constexpr std::size_t kExhibitsOfSeveral = 6;  // of each, where there are several
 
 constexpr const char* kStyle = R"(
 :root { --ink: #1c2228; --soft: #5c6873; --line: #d9dee3; --paper: #ffffff; --accent: #0b6e4f; }
@@ -110,12 +112,15 @@ std::string inline_svg(const std::string& svg) {
   return begin == std::string::npos ? svg : svg.substr(begin);
 }
 
-void write_gallery(std::ostream& out, const Evaluation& evaluation) {
-  out << "<h2>The worst frames of " << escaped(evaluation.methods[0].name)
-      << "</h2>\n<p class=\"note\"><span class=\"truth\">Truth</span> and <span class=\"answer\">"
+void write_gallery(std::ostream& out,
+                   const Evaluation& evaluation,
+                   const std::string& dataset,
+                   std::size_t most) {
+  out << "<h3>The worst frames of " << escaped(evaluation.methods[0].name)
+      << "</h3>\n<p class=\"note\"><span class=\"truth\">Truth</span> and <span class=\"answer\">"
          "answer</span>. WD: wrong target, FP: none is there, FN: missed, TP: right, but far "
          "off.</p>\n<div class=\"gallery\">\n";
-  for (const Exhibit& exhibit : worst_frames(evaluation, 0, kExhibits)) {
+  for (const Exhibit& exhibit : worst_frames(evaluation, 0, dataset, most)) {
     cv::Mat small = exhibit.picture;
     if (small.cols > 640) {
       cv::resize(small, small, {640, 640 * small.rows / small.cols}, 0.0, 0.0, cv::INTER_AREA);
@@ -160,7 +165,11 @@ void write_report(const Evaluation& evaluation,
       << evaluation.frames.size() << " frames, " << evaluation.methods.size()
       << " methods in the same run. <code>" << escaped(command) << "</code></p>\n";
   write_problems(out, evaluation, problems);
-  for (const std::string& dataset : datasets_of(evaluation)) {
+  out << "<h2>All sources</h2>\n";
+  for (const Table& table : source_tables(evaluation)) write_table(out, table, false);
+  const std::vector<std::string> datasets = datasets_of(evaluation);
+  const std::size_t exhibits = datasets.size() > 1 ? kExhibitsOfSeveral : kExhibits;
+  for (const std::string& dataset : datasets) {
     out << "<h2>" << escaped(dataset) << "</h2>\n";
     write_tiles(out, evaluation, dataset);
     write_table(out, measures_table(evaluation, dataset), false);
@@ -171,8 +180,8 @@ void write_report(const Evaluation& evaluation,
         << inline_svg(plot(breakdown(evaluation, dataset), PlotFormat::kSvg)) << '\n';
     write_table(out, times_table(evaluation, dataset), false);
     write_table(out, centre_table(evaluation, dataset), false);
+    write_gallery(out, evaluation, dataset, exhibits);
   }
-  if (!evaluation.frames.empty()) write_gallery(out, evaluation);
   out << "</body></html>\n";
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <ostream>
 
+#include "examples/evaluate/source_tables.hpp"
 #include "examples/evaluate/text.hpp"
 #include "examples/evaluate/tracking_tables.hpp"
 
@@ -242,7 +243,9 @@ void write_json(std::ostream& out, const Evaluation& evaluation) {
       separator = ",";
     }
   }
-  out << "\n]}\n";
+  out << "\n],";
+  write_json_sources(out, evaluation);
+  out << "}\n";
 }
 
 }  // namespace evaluate

@@ -28,11 +28,12 @@ struct Verdict {
 
 Verdict verdict_on(const Result& result, const SeenFrame& seen) {
   if (!result.answer) return {};
-  const ellipse::Ellipse& truth = *seen.frame->truth.target;
+  const auto matched = matched_ellipse(*result.answer, seen.frame->truth, seen.size, Rule::kIou);
+  const ellipse::Ellipse truth = matched.value_or(*seen.frame->truth.target);
   const double error_px = (result.answer->center() - truth.center()).norm();
-  return {is_right(*result.answer, truth, seen.size, Rule::kIou),
-          error_px,
-          error_px / truth.semi_major};
+  // Unlike in judge(), a target that is larger than the frame can be matched.
+  const bool is_matched = matched || is_right(*result.answer, truth, seen.size, Rule::kIou);
+  return {is_matched, error_px, error_px / truth.semi_major};
 }
 
 // Goes through one sequence at a time.

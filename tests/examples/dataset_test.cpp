@@ -17,6 +17,8 @@
 
 #include "core/scene/catalog.hpp"
 #include "examples/evaluate/breakdown.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"

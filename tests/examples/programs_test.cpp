@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/twin.hpp"
 #include "tests/examples/terminal.hpp"
 
@@ -187,6 +188,64 @@ TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   const std::size_t place = json.find("\"method\":\"always wrong\"");
   ASSERT_NE(place, std::string::npos) << json;
   EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", place), std::string::npos) << json;
+}
+
+TEST_F(Programs, EvaluateReadsAFolderOfDataSetsIntoOneTable) {
+  write_dataset(folder_ / "sets/one", 3);
+  write_dataset(folder_ / "sets/two", 2);
+  const fs::path page = folder_ / "page";
+  const Outcome outcome =
+      run("ellipse-evaluate",
+          (folder_ / "sets").string() +
+              " --all --methods arcs+edges,arcs+none,canny-fit --report " + page.string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  // The second set has the name of the first: the twin's.
+  for (const char* part : {"\nF1 by source",
+                           "\ntwin                ",
+                           "sets/two:twin",
+                           "\nmean of 2 with ellipses",
+                           "\n95 % intervals of F1 by source",
+                           "\nAll ellipses by source"}) {
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
+  }
+  std::ifstream in(page / "index.html");
+  const std::string html((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::size_t second = html.find("<h2>" + (folder_ / "sets/two").string());
+  ASSERT_NE(second, std::string::npos);
+  EXPECT_LT(html.find("The worst frames of arcs+edges"), second);
+  EXPECT_NE(html.find("The worst frames of arcs+edges", second), std::string::npos);
+}
+
+TEST_F(Programs, EvaluateChoosesOnOtherSources) {
+  for (const char* name : {"one", "two"}) write_dataset(folder_ / name, 2);
+  const std::string sets = (folder_ / "one").string() + " " + (folder_ / "two").string();
+  std::ofstream(folder_ / "apart.txt") << "first: twi?\n";
+  const std::string choose = "--leave-one-out " + sets + " --choose min-axis=600:5 ";
+  // By default all rendered sources are of one group.
+  const Outcome together = run("ellipse-evaluate", choose);
+  EXPECT_EQ(together.status, 1) << together.text;
+  EXPECT_NE(together.text.find("\"rendered\""), std::string::npos) << together.text;
+  fs::rename(folder_ / "two/gt.csv", folder_ / "two/old.csv");
+  std::ifstream in(folder_ / "two/old.csv");
+  std::ofstream out(folder_ / "two/gt.csv");
+  for (std::string line; std::getline(in, line);) {
+    if (line.ends_with(",twin")) line.replace(line.size() - 4, 4, "other");
+    out << line << '\n';
+  }
+  out.close();
+  const Outcome apart =
+      run("ellipse-evaluate",
+          choose + "--methods arcs+none --groups " + (folder_ / "apart.txt").string());
+  EXPECT_EQ(apart.status, 0) << apart.text;
+  for (const char* part : {"\nLeft out: arcs+none on sources that the choice has not seen",
+                           "\nIn sample: arcs+none on sources that the choice was made on",
+                           "first",
+                           "min-axis=5"}) {
+    EXPECT_NE(apart.text.find(part), std::string::npos) << part << apart.text;
+  }
+  const Outcome nothing = run("ellipse-evaluate", "--leave-one-out " + sets);
+  EXPECT_NE(nothing.status, 0);
+  EXPECT_NE(nothing.text.find("--choose"), std::string::npos) << nothing.text;
 }
 
 TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {

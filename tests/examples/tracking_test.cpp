@@ -55,7 +55,7 @@ Result result_of(const Step& step) {
 class Told {
  public:
   explicit Told(const std::vector<std::vector<Step>>& steps) {
-    evaluation_.methods.push_back({"told", {}});
+    evaluation_.methods.push_back({"told", {}, {}});
     for (const auto& list : steps) sequences_.push_back({"hand", "made", frames_of(list), {}});
     for (std::size_t i = 0; i < steps.size(); ++i) {
       for (std::size_t k = 0; k < steps[i].size(); ++k) {

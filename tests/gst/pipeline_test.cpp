@@ -134,10 +134,12 @@ TEST(Pipeline, LeaksNothing) {
 }
 
 TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
-  const char* folder_name = std::getenv("ELLIPSE_AIRLAB_DATA");
+  const char* sources = std::getenv("ELLIPSE_REAL_SOURCES");
   const char* evaluate = std::getenv("ELLIPSE_EVALUATE");
-  if (folder_name == nullptr || evaluate == nullptr || !std::filesystem::exists(folder_name)) {
-    GTEST_SKIP() << "the AirLab frames are not here: set ELLIPSE_AIRLAB_DATA to their folder";
+  const std::string folder_name = std::string(sources != nullptr ? sources : "") + "/airlab-mbzirc";
+  if (sources == nullptr || evaluate == nullptr || !std::filesystem::exists(folder_name)) {
+    GTEST_SKIP() << "the AirLab frames are not here: set ELLIPSE_REAL_SOURCES to the folder of "
+                    "airlab-mbzirc";
   }
   const TemporaryFolder folder;
   const std::string expected_file = folder.file("expected.ndjson");
@@ -158,8 +160,8 @@ TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
     while (next < expected.size() && name_of(next).starts_with(sequence + "/")) ++next;
     const int number = std::stoi(name_of(first).substr(name_of(first).find("frame") + 5));
     const std::string found_file = folder.file(sequence);
-    ASSERT_EQ(run_pipeline("multifilesrc location=" + std::string(folder_name) + "/images/" +
-                           sequence + "/frame%04d.jpg start-index=" + std::to_string(number) +
+    ASSERT_EQ(run_pipeline("multifilesrc location=" + folder_name + "/images/" + sequence +
+                           "/frame%04d.jpg start-index=" + std::to_string(number) +
                            " stop-index=" + std::to_string(number + int(next - first) - 1) +
                            " caps=image/jpeg,framerate=30/1 ! jpegdec ! videoconvert ! "
                            "video/x-raw,format=GRAY8 ! ellipsetrack ! ellipsejson ! filesink "

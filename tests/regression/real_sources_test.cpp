@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// The default method on real footage, tracked and by single frames; README.md says which.
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "examples/evaluate/evaluation.hpp"
+
+namespace evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What was measured when the row was written last. A better result raises the limit.
+struct Limits {
+  int min_right = 0;     ///< Frames with the right target, or rightly none.
+  int max_mistaken = 0;  ///< Frames with a target that is wrong or not there.
+};
+
+struct Source {
+  const char* name;
+  Limits tracked;
+  Limits single;
+};
+
+constexpr Source kSources[] = {
+    {"airlab-mbzirc", {631, 0}, {629, 0}},
+    {"airlab-deformed", {160, 9}, {155, 12}},
+    {"airlab-gascola", {445, 3}, {423, 6}},
+    {"pupil-infrared", {855, 21}, {808, 0}},
+    {"pupil-blinks", {250, 2}, {244, 0}},
+    {"calibration-discs", {20, 0}, {20, 0}},
+    {"large-cut-ellipse", {50, 0}, {32, 0}},
+    {"octagon-negative", {137, 4}, {136, 5}},
+    {"road-negative", {221, 0}, {221, 0}},
+};
+
+/// All ellipses of calibration-discs, by single frames.
+constexpr int kMinRightDiscs = 998;
+constexpr int kMaxMistakenDiscs = 0;
+
+void PrintTo(const Source& source, std::ostream* out) {
+  *out << source.name;
+}
+
+/// The folder of a source; empty where it is not there.
+fs::path folder_of(const std::string& name) {
+  const char* data = std::getenv("ELLIPSE_REAL_SOURCES");
+  const fs::path folder = data != nullptr ? fs::path(data) / name : fs::path();
+  return data != nullptr && fs::exists(folder / "gt.csv") ? folder : fs::path();
+}
+
+Evaluation evaluation_of(const std::vector<Sequence>& sequences, bool wants_all) {
+  std::vector<std::unique_ptr<Method>> methods;
+  for (const std::string& name : default_method_names()) methods.push_back(make_method(name, {}));
+  return evaluate(
+      sequences, methods, Rule::kIou, [](const Frame& /*frame*/) { return true; }, wants_all);
+}
+
+void check(const std::string& what, int right, int mistaken, const Limits& limits) {
+  EXPECT_GE(right, limits.min_right) << what;
+  EXPECT_LE(mistaken, limits.max_mistaken) << what;
+  if (right > limits.min_right || mistaken < limits.max_mistaken) {
+    std::cout << what << ": " << right << " right, " << mistaken
+              << " mistaken; better than the limits, which can be raised\n";
+  }
+}
+
+void check(const Evaluation& evaluation, std::size_t method, const Limits& limits) {
+  const Measures m = measures_of(evaluation, method, [](const SeenFrame&) { return true; });
+  check(evaluation.methods[method].name,
+        m.count(Outcome::kTruePositive) + m.count(Outcome::kTrueNegative),
+        m.count(Outcome::kFalsePositive) + m.count(Outcome::kWrong),
+        limits);
+}
+
+class RealSources : public testing::TestWithParam<Source> {
+ protected:
+  void SetUp() override {
+    gst_init(nullptr, nullptr);
+    folder_ = folder_of(GetParam().name);
+    if (folder_.empty()) {
+      GTEST_SKIP() << GetParam().name << " is not here: set ELLIPSE_REAL_SOURCES to its parent";
+    }
+  }
+
+  fs::path folder_;
+};
+
+TEST_P(RealSources, ShowTheirTargetAndNoOther) {
+  const Dataset dataset = read_dataset(folder_);
+  EXPECT_TRUE(dataset.problems.empty()) << dataset.problems[0];
+  const Evaluation evaluation = evaluation_of(dataset.sequences, false);
+  EXPECT_EQ(evaluation.missing_frames, 0U);
+  check(evaluation, 0, GetParam().tracked);
+  check(evaluation, 1, GetParam().single);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RealSources, testing::ValuesIn(kSources), [](const auto& info) {
+  std::string name = info.param.name;
+  std::erase(name, '-');
+  return name;
+});
+
+TEST(RealDiscs, AreAllFound) {
+  gst_init(nullptr, nullptr);
+  const fs::path folder = folder_of("calibration-discs");
+  if (folder.empty()) GTEST_SKIP() << "calibration-discs is not here: set ELLIPSE_REAL_SOURCES";
+  const Dataset dataset = read_dataset(folder);
+  const Evaluation evaluation = evaluation_of(dataset.sequences, true);
+  FrameCounts sum;
+  for (const AllResult& one : evaluation.methods[1].all) sum += one.counts;
+  check(evaluation.methods[1].name, sum.right, sum.mistaken, {kMinRightDiscs, kMaxMistakenDiscs});
+}
+
+}  // namespace
+}  // namespace evaluate
