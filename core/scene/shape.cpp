@@ -186,7 +186,8 @@ double ShapeEdge::coverage(const Vector2d& place,
   if (outline_ == Outline::kMesh) return mesh_coverage(place, place_per_px, blur_px);
   const Nearness edge = at(place);
   const double per_px = (place_per_px.transpose() * edge.gradient).norm();
-  const double sigma = std::hypot(blur_px * per_px, softness_);
+  const double blur = blur_px * per_px;
+  const double sigma = std::sqrt(blur * blur + softness_ * softness_);
   const double whole = blurred_step(edge.distance / sigma);
   if (!(hole_ > 0.0) || whole <= 0.0) return whole;
   return whole - blurred_step(hole_ * at(place / hole_).distance / sigma);

@@ -57,6 +57,32 @@ void mix(float& light, double share, double level) {
   light += static_cast<float>(share * (level - light));
 }
 
+// The exact edges of a disc or a ring.
+class RoundEdges {
+ public:
+  RoundEdges(const Matrix3d& shape_from_image, const Shape& shape)
+      : outer_(shape_from_image, 1.0), softness_(shape.softness) {
+    if (shape.hole > 0.0) inner_.emplace(shape_from_image, shape.hole);
+  }
+
+  [[nodiscard]] double coverage(const Vector2d& px,
+                                const Matrix2d& at_shape_per_px,
+                                double blur_px) const {
+    double blur = blur_px;
+    if (softness_ > 0.0) {
+      const double soft_px = softness_ / std::sqrt(std::abs(at_shape_per_px.determinant()));
+      blur = std::sqrt(blur * blur + soft_px * soft_px);
+    }
+    const double share = outer_.coverage(px, blur);
+    return inner_ && share > 0.0 ? share - inner_->coverage(px, blur) : share;
+  }
+
+ private:
+  CircularEdge outer_;
+  std::optional<CircularEdge> inner_;
+  double softness_;
+};
+
 }  // namespace
 
 struct SheetPicture::Sample {
@@ -159,7 +185,7 @@ void SheetPicture::paint_shape(std::size_t shape,
       const std::optional<double> share = even_coverage(shape, view, block);
       if (share && *share <= 0.0) continue;
       if (!share || !is_plain) {
-        paint_block(shape, view, block, image);
+        paint_block(shape, view, block, share.has_value(), image);
         continue;
       }
       for (int y = top; y < top + block.height; ++y) {
@@ -202,33 +228,27 @@ std::optional<double> SheetPicture::even_coverage(std::size_t shape,
 void SheetPicture::paint_block(std::size_t shape,
                                const SheetView& view,
                                const Patch& block,
+                               bool is_covered,
                                const LightImage& image) const {
-  const Shape& what = sheet_.shapes[shape];
-  std::optional<CircularEdge> outer;
-  std::optional<CircularEdge> inner;
+  const double opacity = sheet_.shapes[shape].paint.opacity;
+  std::optional<RoundEdges> edges;
   for (int y = block.top; y < block.top + block.height; ++y) {
-    if (is_exact(shape) && (view.is_rolling() || y == block.top)) {
+    const bool is_new_view = y == block.top || view.is_rolling();
+    if (!is_covered && is_exact(shape) && is_new_view) {
       const Matrix3d shape_from_image = shape_from_sheet_[shape].matrix() * view.at_row(y);
-      outer.emplace(shape_from_image, 1.0);
-      if (what.hole > 0.0) inner.emplace(shape_from_image, what.hole);
+      edges.emplace(shape_from_image, sheet_.shapes[shape]);
     }
     float* row = row_of(image, block.left, y);
     for (int x = 0; x < block.width; ++x) {
       const Sample sample(*this, shape, view, block.left + x, y);
       if (!sample.is_in_front) continue;
-      double share = 0.0;
-      if (outer) {
-        const Vector2d px(block.left + x, y);
-        const double px_per_unit =
-            what.softness > 0.0 ? 1.0 / std::sqrt(std::abs(sample.at_shape_per_px.determinant()))
-                                : 0.0;
-        const double blur_px = std::hypot(blur_px_, what.softness * px_per_unit);
-        share = outer->coverage(px, blur_px);
-        if (inner && share > 0.0) share -= inner->coverage(px, blur_px);
-      } else {
+      double share = 1.0;
+      if (edges) {
+        share = edges->coverage(Vector2d(block.left + x, y), sample.at_shape_per_px, blur_px_);
+      } else if (!is_covered) {
         share = edges_[shape].coverage(sample.at_shape, sample.at_shape_per_px, blur_px_);
       }
-      if (share > 0.0) mix(row[x], share * what.paint.opacity, paint_at(shape, sample));
+      if (share > 0.0) mix(row[x], share * opacity, paint_at(shape, sample));
     }
   }
 }

@@ -45,6 +45,7 @@ class SheetPicture {
   void paint_block(std::size_t shape,
                    const SheetView& view,
                    const Patch& block,
+                   bool is_covered,
                    const LightImage& image) const;
   [[nodiscard]] std::optional<double> even_coverage(std::size_t shape,
                                                     const SheetView& view,

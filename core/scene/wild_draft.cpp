@@ -67,7 +67,7 @@ void Draft::choose_format() {
 
 void Draft::choose_sensor() {
   Sensor& sensor = wild.scene.sensor;
-  contrast_ = log_between(8.0, 190.0);
+  contrast_ = chance(0.6) ? log_between(8.0, 200.0) : random.between(60.0, 200.0);
   if (contrast_ < 20.0) note("low-contrast");
   sensor.gain = log_between(0.3, 1.2);
   sensor.bias = chance(0.3) ? random.between(0.0, 16.0) : 0.0;
@@ -90,7 +90,7 @@ void Draft::choose_shutter() {
   Sensor& sensor = wild.scene.sensor;
   const double frame_s = 1.0 / wild.frames_per_second;
   if (chance(0.3)) {
-    sensor.exposure_s = std::min(0.02, frame_s) * random.between(0.1, 0.8);
+    sensor.exposure_s = std::min(0.015, frame_s) * random.between(0.1, 0.7);
     note("motion-blur");
   }
   if (chance(0.07)) {

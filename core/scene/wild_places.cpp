@@ -330,7 +330,7 @@ void make_cut(Draft& draft) {
   draft.note("cut");
   const double radius_px = draft.wild.width * random.between(0.25, 0.8);
   const double tilt = std::acos(random.between(0.3, 1.0));
-  draft.look(radius_px, tilt, random.between(-2.4, -0.7), 1.1);
+  draft.look(radius_px, tilt, random.between(-2.4, -0.7), 0.9);
   draft.scene().flight.highest = draft.scene().flight.lowest * 1.1;
   draft.defocus(radius_px * std::cos(tilt));
   const Greys greys = draft.greys();
