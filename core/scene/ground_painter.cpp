@@ -2,6 +2,7 @@
 #include "core/scene/ground_painter.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace ellipse {
 namespace {
@@ -18,23 +19,27 @@ void add_noise(cv::Mat& tile, int cells, float amplitude, std::uint64_t seed) {
                        static_cast<std::uint64_t>(x % cells);
     return static_cast<float>(hash(seed + index) >> 40U) / static_cast<float>(1U << 23U) - 1.0F;
   };
+  const auto count = static_cast<std::size_t>(cells) + 1;
+  std::vector<float> upper(count);
+  std::vector<float> lower(count);
+  std::vector<float> between(count);
   const float step = static_cast<float>(cells) / static_cast<float>(tile.cols);
-  for (int y = 0; y < tile.rows; ++y) {
+  for (int y = 0, last = -1; y < tile.rows; ++y) {
     auto* row = tile.ptr<float>(y);
     const float fy = static_cast<float>(y) * step;
     const int iy = static_cast<int>(fy);
+    for (std::size_t i = 0; i < count && iy != last; ++i) {
+      upper[i] = corner(static_cast<int>(i), iy);
+      lower[i] = corner(static_cast<int>(i), iy + 1);
+    }
+    last = iy;
     const float v = smooth(fy - static_cast<float>(iy));
-    float left = 0.0F;
-    float right = 0.0F;
-    for (int x = 0, last = -1; x < tile.cols; ++x) {
+    for (std::size_t i = 0; i < count; ++i) between[i] = std::lerp(upper[i], lower[i], v);
+    for (int x = 0; x < tile.cols; ++x) {
       const float fx = static_cast<float>(x) * step;
-      const int ix = static_cast<int>(fx);
-      if (ix != last) {
-        left = std::lerp(corner(ix, iy), corner(ix, iy + 1), v);
-        right = std::lerp(corner(ix + 1, iy), corner(ix + 1, iy + 1), v);
-        last = ix;
-      }
-      row[x] += amplitude * std::lerp(left, right, smooth(fx - static_cast<float>(ix)));
+      const auto ix = static_cast<std::size_t>(fx);
+      const float u = smooth(fx - static_cast<float>(ix));
+      row[x] += amplitude * std::lerp(between[ix], between[ix + 1], u);
     }
   }
 }

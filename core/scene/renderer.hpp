@@ -41,6 +41,8 @@ class SceneRenderer {
                std::uint64_t frame,
                const MutableImage& picture);
 
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
   /// The lens of the last frame, where it bends the picture; else nullptr. Until the next frame.
   [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
 

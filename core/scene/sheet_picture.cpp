@@ -96,10 +96,12 @@ struct SheetPicture::Sample {
     const Vector3d px(x, y, 1.0);
     const Matrix3d m = view.at_row(y);
     const Vector3d q = m * px;
-    is_in_front = q.z() > 0.0;
+    const Vector3d per_y = m.col(1) + view.per_row * px;
+    // So near to its horizon a sheet has no scale.
+    const double horizon = (picture.blur_px_ + 1.0) * std::hypot(m(2, 0), per_y.z());
+    is_in_front = q.z() > horizon;
     if (!is_in_front) return;
     seen = q.hnormalized();
-    const Vector3d per_y = m.col(1) + view.per_row * px;
     Matrix2d per_px;
     per_px << (m.block<2, 1>(0, 0) - seen * m(2, 0)), (per_y.head<2>() - seen * per_y.z());
     const Eigen::Affine2d& to_shape = picture.shape_from_sheet_[shape];

@@ -28,7 +28,8 @@ Tones choose_tones(Draft& draft) {
   Random& random = draft.random;
   Tones tones{};
   tones.pupil = random.between(8.0, 70.0);
-  const double contrast = draft.log_between(8.0, 110.0);
+  const double contrast =
+      draft.chance(0.4) ? draft.log_between(8.0, 110.0) : draft.random.between(40.0, 110.0);
   if (contrast < 20.0) draft.note("low-contrast");
   tones.iris = tones.pupil + contrast;
   tones.sclera = std::min(245.0, tones.iris + draft.log_between(10.0, 110.0));

@@ -55,8 +55,9 @@ void distort(Draft& draft, std::vector<Shape>& shapes, std::size_t from) {
   draft.note(is_egg ? "egg" : "superellipse");
 }
 
-void add_plate(Draft& draft, Sheet& sheet, double around) {
-  if (draft.chance(0.2)) return;
+// @param is_needed  For a pad that does not lie on the ground.
+void add_plate(Draft& draft, Sheet& sheet, double around, bool is_needed) {
+  if (!is_needed && draft.chance(0.2)) return;
   const double rim = draft.random.between(15.0, 240.0);
   const double size = draft.random.between(1.12, 1.7);
   if (draft.chance(0.25)) {
@@ -167,7 +168,7 @@ void deform(Draft& draft, Sheet& sheet) {
 
 void add_pad(Draft& draft, const Vector3d& at, double scale, const Greys& greys) {
   Sheet& sheet = draft.sheet(level_frame(at, scale, draft.random.between(0.0, kTwoPi)));
-  add_plate(draft, sheet, greys.around);
+  add_plate(draft, sheet, greys.around, at.z() > 0.0);
   const std::size_t first = sheet.shapes.size();
   const double kind = draft.random.unit();
   if (kind < 0.55) {
