@@ -72,8 +72,11 @@ std::optional<Matrix3d> image_from_sheet(const Sheet& sheet,
                                          const Matrix3d& image_from_pad,
                                          const Camera& camera,
                                          double time_s) {
-  const Matrix3d frame = moved_frame(sheet, time_s);
-  if (sheet.anchor == Anchor::kPicture) return image_from_widths(camera) * frame;
+  Matrix3d frame = moved_frame(sheet, time_s);
+  if (sheet.anchor == Anchor::kPicture) {
+    frame.row(2) << 0.0, 0.0, 1.0;
+    return image_from_widths(camera) * frame;
+  }
   const Projection world = image_from_world(image_from_pad, camera);
   if (sheet.ball_radius > 0.0) {
     const Vector3d origin = world * frame.col(2).homogeneous();

@@ -24,7 +24,7 @@ struct Swing {
 /// What the frame of a sheet belongs to.
 enum class Anchor {
   kWorld,    ///< The pad's frame: x and y on the ground, z up [radii].
-  kPicture,  ///< The picture: x right, y down from its middle [widths of the picture]; z is 1.
+  kPicture,  ///< The picture: x right, y down from its middle [widths of the picture]; no z.
 };
 
 /// A flat thing with shapes on it, or a ball. A value.

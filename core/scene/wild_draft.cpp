@@ -166,7 +166,7 @@ Sheet& Draft::sheet(const Matrix3d& frame) {
 }
 
 Sheet& Draft::picture_sheet() {
-  Sheet& made = sheet(Matrix3d::Identity());
+  Sheet& made = sheet(Sheet{}.frame);
   made.anchor = Anchor::kPicture;
   return made;
 }
