@@ -97,8 +97,8 @@ struct SheetPicture::Sample {
     const Matrix3d m = view.at_row(y);
     const Vector3d q = m * px;
     const Vector3d per_y = m.col(1) + view.per_row * px;
-    // So near to its horizon a sheet has no scale.
-    const double horizon = (picture.blur_px_ + 1.0) * std::hypot(m(2, 0), per_y.z());
+    // Nearer to the sheet's horizon than the blur reaches, distances are not linear in pixels.
+    const double horizon = (kStepReach * picture.blur_px_ + 1.0) * std::hypot(m(2, 0), per_y.z());
     is_in_front = q.z() > horizon;
     if (!is_in_front) return;
     seen = q.hnormalized();

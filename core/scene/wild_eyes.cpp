@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kHalfWidth = 7.0;  // of the face that is shown
+constexpr double kHalfWidth = 12.0;  // of the face that is shown
 
 // Grey levels of an eye in infrared light.
 struct Tones {
@@ -110,7 +110,7 @@ void add_lid(Draft& draft, const Tones& tones, double side, double opening, doub
   const double bow = random.between(0.06, 0.14);
   const auto edge = [&](double x) { return side * (opening - bow * x * x); };
   std::vector<Vector2d> outline{{kHalfWidth, side * 9.0}, {-kHalfWidth, side * 9.0}};
-  constexpr int kPoints = 28;
+  constexpr int kPoints = 40;
   for (int i = 0; i <= kPoints; ++i) {
     const double x = kHalfWidth * (2.0 * i / kPoints - 1.0);
     outline.emplace_back(x, edge(x));
@@ -163,7 +163,7 @@ void make_eye(Draft& draft, bool is_closed) {
   draft.scene().flight.reach *= 0.2;
   draft.defocus(0.25 * unit_px);
   const Tones tones = choose_tones(draft);
-  draft.ground(GroundKind::kSkin, tones.skin, 0.7);
+  draft.ground(GroundKind::kPlain, tones.skin, 0.0);
   draft.weather();
   if (!is_closed) {
     add_eyeball(draft, tones);
