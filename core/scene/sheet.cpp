@@ -63,6 +63,8 @@ std::optional<Ellipse> project_ball(const Camera& camera,
                                     double radius) {
   const double rest = from_camera.squaredNorm() - radius * radius;
   if (!(rest > 0.0) || !(from_camera.z() > radius)) return std::nullopt;
+  // A ray x touches the ball with its middle in c where (x . c)^2 = (|c|^2 - r^2) |x|^2: a cone,
+  // hence a conic in the picture.
   const Matrix3d cone = from_camera * from_camera.transpose() - rest * Matrix3d::Identity();
   const Matrix3d inverse = camera.matrix().inverse();
   return from_conic(inverse.transpose() * cone * inverse);

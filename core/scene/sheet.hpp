@@ -62,8 +62,7 @@ struct SheetView {
                                                               const Camera& camera,
                                                               double time_s);
 
-/// The outline of a ball: exactly a conic [HartleyZisserman2004] 8.3. nullopt where it is no
-/// ellipse.
+/// The outline of a ball in the ideal plane. nullopt where it is no ellipse.
 /// @param from_camera  The ball's middle: x right, y down, z ahead.
 [[nodiscard]] std::optional<Ellipse> project_ball(const Camera& camera,
                                                   const Eigen::Vector3d& from_camera,
