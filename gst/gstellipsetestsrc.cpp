@@ -6,9 +6,10 @@
  *
  * Renders what a drone's camera sees above a landing pad: scenes from a plain approach to dusk,
  * glare, occlusion, motion blur and clutter without any pad. Each buffer carries the exact ellipse
- * of the pad's outer edge as a #GstEllipseMeta with the role "truth". Through a lens that bends the
- * picture it is the ellipse of the ideal plane, with the bent outline beside it, as #ellipsetrack
- * has them. The same properties give the same frames on any machine.
+ * of the pad's outer edge as a #GstEllipseMeta with the role "truth". The scene "wild" is a random
+ * one: the seed decides what it shows, and each of its ellipses has such metadata, targets first.
+ * Through a lens that bends the picture it is the ellipse of the ideal plane, with the bent outline
+ * beside it, as #ellipsetrack has them. The same properties give the same frames on any machine.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
@@ -31,6 +32,8 @@
 
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
+#include "core/scene/true_ellipses.hpp"
+#include "core/scene/wild.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/meta_outline.hpp"
 #include "gst/video_view.hpp"
@@ -82,6 +85,11 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     GST_PAD_ALWAYS,
     GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ GRAY8, I420, YV12, NV12, NV21, Y42B, Y444 }")));
 
+// The value of "scene" beyond the catalog.
+static gint wild_scene_number(void) {
+  return static_cast<gint>(ellipse::scene_catalog().size());
+}
+
 static GType gst_ellipse_scene_get_type(void) {
   static const GType kType = [] {
     static std::vector<GEnumValue> values;
@@ -89,6 +97,7 @@ static GType gst_ellipse_scene_get_type(void) {
     for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
       values.push_back({number++, scene.description, scene.name});
     }
+    values.push_back({number, "A random one: all of it follows from the seed", "wild"});
     values.push_back({0, nullptr, nullptr});
     return g_enum_register_static("GstEllipseScene", values.data());
   }();
@@ -200,12 +209,33 @@ static void gst_ellipse_test_src_get_property(GObject* object,
   GST_OBJECT_UNLOCK(self);
 }
 
+// Size and frame rate that a peer leaves open: a random scene has its own.
+struct PreferredFormat {
+  gint width = 640;
+  gint height = 360;
+  gint rate_n = 30;
+  gint rate_d = 1;
+};
+
+static PreferredFormat preferred_format(GstEllipseTestSrc* self) {
+  GST_OBJECT_LOCK(self);
+  const gint scene = self->scene;
+  const guint seed = self->seed;
+  GST_OBJECT_UNLOCK(self);
+  if (scene != wild_scene_number()) return {};
+  const ellipse::Wild wild = ellipse::make_wild(seed);
+  PreferredFormat format{wild.width, wild.height};
+  gst_util_double_to_fraction(wild.frames_per_second, &format.rate_n, &format.rate_d);
+  return format;
+}
+
 static GstCaps* gst_ellipse_test_src_fixate(GstBaseSrc* base, GstCaps* caps) {
+  const PreferredFormat format = preferred_format(GST_ELLIPSE_TEST_SRC(base));
   caps = gst_caps_make_writable(gst_caps_truncate(caps));
   GstStructure* structure = gst_caps_get_structure(caps, 0);
-  gst_structure_fixate_field_nearest_int(structure, "width", 640);
-  gst_structure_fixate_field_nearest_int(structure, "height", 360);
-  gst_structure_fixate_field_nearest_fraction(structure, "framerate", 30, 1);
+  gst_structure_fixate_field_nearest_int(structure, "width", format.width);
+  gst_structure_fixate_field_nearest_int(structure, "height", format.height);
+  gst_structure_fixate_field_nearest_fraction(structure, "framerate", format.rate_n, format.rate_d);
   if (gst_structure_has_field(structure, "pixel-aspect-ratio")) {
     gst_structure_fixate_field_nearest_fraction(structure, "pixel-aspect-ratio", 1, 1);
   }
@@ -261,20 +291,37 @@ static void fill_chroma(GstVideoFrame& frame) {
   }
 }
 
-static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellipse::Truth& truth) {
-  if (!truth.outer_edge) return;
+static void attach_ellipse(GstEllipseTestSrc* self,
+                           GstBuffer* buffer,
+                           const ellipse::Ellipse& ellipse,
+                           double visible_fraction) {
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
-  meta->cx = truth.outer_edge->cx;
-  meta->cy = truth.outer_edge->cy;
-  meta->semi_major = truth.outer_edge->semi_major;
-  meta->semi_minor = truth.outer_edge->semi_minor;
-  meta->angle_rad = truth.outer_edge->angle_rad;
-  meta->visible_fraction = truth.visible_fraction;
+  meta->cx = ellipse.cx;
+  meta->cy = ellipse.cy;
+  meta->semi_major = ellipse.semi_major;
+  meta->semi_minor = ellipse.semi_minor;
+  meta->angle_rad = ellipse.angle_rad;
+  meta->visible_fraction = visible_fraction;
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
   meta->pts = GST_BUFFER_PTS(buffer);
   const ellipse::Lens* bent_lens = self->renderer->bent_lens();
   if (bent_lens != nullptr) write_outline(meta, *bent_lens);
+}
+
+// The pad's outer edge or, of a random scene, all its ellipses, targets first.
+static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellipse::Truth& truth) {
+  const ellipse::Scene& scene = self->renderer->scene();
+  if (scene.sheets.empty()) {
+    if (truth.outer_edge) attach_ellipse(self, buffer, *truth.outer_edge, truth.visible_fraction);
+    return;
+  }
+  const double time_s = static_cast<double>(GST_BUFFER_PTS(buffer)) / GST_SECOND;
+  const gint width = GST_VIDEO_INFO_WIDTH(&self->info);
+  const gint height = GST_VIDEO_INFO_HEIGHT(&self->info);
+  for (const ellipse::TrueEllipse& one : true_ellipses(scene, time_s, width, height)) {
+    attach_ellipse(self, buffer, one.ellipse, one.visible_fraction);
+  }
 }
 
 // The scene as the properties have it; nullopt where they have not changed.
@@ -291,7 +338,10 @@ static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
   GST_OBJECT_UNLOCK(self);
   if (!is_changed) return std::nullopt;
 
-  ellipse::Scene scene = ellipse::scene_catalog()[static_cast<std::size_t>(number)].make(seed);
+  ellipse::Scene scene =
+      number == wild_scene_number()
+          ? ellipse::wild_scene(seed)
+          : ellipse::scene_catalog()[static_cast<std::size_t>(number)].make(seed);
   if (pattern != kAsTheScene) scene.pad.pattern = static_cast<ellipse::Pattern>(pattern);
   if (ground != kAsTheScene) scene.ground.kind = static_cast<ellipse::GroundKind>(ground);
   if (lens != kNoLens) {
@@ -398,13 +448,14 @@ static void install_properties(GObjectClass* object_class) {
                               -1.0,
                               flags));
   install(PROP_SEED,
-          g_param_spec_uint("seed",
-                            "Seed",
-                            "Seed of all that is random: ground and noise",
-                            0,
-                            G_MAXUINT32,
-                            1,
-                            flags));
+          g_param_spec_uint(
+              "seed",
+              "Seed",
+              "Seed of all that is random: ground and noise, and of scene \"wild\" everything",
+              0,
+              G_MAXUINT32,
+              1,
+              flags));
   install(PROP_IS_LIVE,
           g_param_spec_boolean("is-live",
                                "Is live",

@@ -206,7 +206,13 @@ constexpr std::array kGroundNicks = {"plain",
                                      "flowers",
                                      "rounded",
                                      "clutter",
-                                     "circles"};
+                                     "circles",
+                                     "gravel",
+                                     "pavement",
+                                     "foliage",
+                                     "field",
+                                     "page",
+                                     "skin"};
 
 }  // namespace
 

@@ -88,9 +88,22 @@ CameraPose reentering(const Flight& flight, double time_s) {
   return pose;
 }
 
+CameraPose aside(const Flight& flight, double time_s) {
+  const double distance = distance_at(flight, progress_of(flight, time_s));
+  CameraPose pose = tilted(distance, flight.tilt_rad, flight.azimuth_rad, 0.0);
+  const double turn = 2.0 * kPi * time_s / flight.period_s;
+  const Vector3d sideways(std::sin(5.3 * turn), std::sin(4.1 * turn + 1.0), 0.0);
+  pose.position += flight.aim + 0.04 * flight.reach * distance * sideways;
+  const Vector3d away(std::sin(3.7 * turn), std::sin(6.1 * turn + 2.0), 0.0);
+  pose.looks_at = flight.aim + 0.06 * flight.reach * distance * away;
+  pose.roll_rad = flight.roll_rad + 0.1 * flight.reach * std::sin(2.9 * turn);
+  return pose;
+}
+
 }  // namespace
 
-CameraPose pose_at(const Flight& flight, double time_s) {
+CameraPose pose_at(const Flight& flight, double since_s) {
+  const double time_s = since_s + flight.begins_s;
   const double turn = 2.0 * kPi * time_s / flight.period_s;
   switch (flight.path) {
     case Path::kApproach:
@@ -108,6 +121,8 @@ CameraPose pose_at(const Flight& flight, double time_s) {
       return shaking(flight, time_s);
     case Path::kReenter:
       return reentering(flight, time_s);
+    case Path::kAside:
+      return aside(flight, time_s);
     case Path::kHover:
       break;
   }

@@ -23,6 +23,7 @@ enum class Path {
   kShake,     ///< Hovering at `lowest` with an airframe that trembles at 7 to 11 Hz.
   kReenter,   ///< Over the pad and away from it, out of the picture's sides, at `lowest`.
   kHover,     ///< Swaying at `lowest`.
+  kAside,     ///< From a direction of its own, at `highest` and `lowest` by turns.
 };
 
 struct Flight {
@@ -30,7 +31,12 @@ struct Flight {
   double period_s = 20.0;
   double highest = 20.0;  ///< Distance from the pad [radii].
   double lowest = 2.6;    ///< Distance from the pad [radii].
-  double reach = 1.0;     ///< Of kDash, kShake and kReenter: so many times as far aside.
+  double reach = 1.0;     ///< Of kDash, kShake, kReenter and kAside: so many times as far aside.
+  double begins_s = 0.0;  ///< Where on the path it is at time 0.
+  double tilt_rad = 0.0;  ///< Of kAside: from the vertical, and from where.
+  double azimuth_rad = 0.0;
+  double roll_rad = 0.0;               ///< Of kAside.
+  Eigen::Vector3d aim{0.0, 0.0, 0.0};  ///< Of kAside: what it looks at [radii].
 };
 
 /// Where the camera is at a time [s]. Deterministic, thread-safe.

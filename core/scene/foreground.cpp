@@ -46,6 +46,18 @@ void add_gradient(const Vector2d& gradient, const LightImage& image) {
   }
 }
 
+void add_vignette(double share, const LightImage& image) {
+  if (!(share > 0.0)) return;
+  const Vector2d middle(0.5 * (image.width - 1), 0.5 * (image.height - 1));
+  const double per_squared_px = share / std::max(middle.squaredNorm(), 1.0);
+  float* light = image.light.data();
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x, ++light) {
+      *light *= static_cast<float>(1.0 - per_squared_px * (Vector2d(x, y) - middle).squaredNorm());
+    }
+  }
+}
+
 void add_bars(const Scene& scene, double time_s, const LightImage& image) {
   const double blur_px = scene.sensor.blur_px;
   Matrix3d bars_from_image;

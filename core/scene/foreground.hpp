@@ -32,6 +32,9 @@ void add_glare(const Glare& glare,
 /// More light on one side than on the other. @param gradient  As Light::gradient.
 void add_gradient(const Eigen::Vector2d& gradient, const LightImage& image);
 
+/// Less light towards the corners. @param share  As Light::vignette.
+void add_vignette(double share, const LightImage& image);
+
 /// What is between the camera and the ground.
 void add_bars(const Scene& scene, double time_s, const LightImage& image);
 

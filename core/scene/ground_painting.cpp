@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "core/scene/random.hpp"
+#include "core/scene/ground_painter.hpp"
+#include "core/scene/outdoor_painting.hpp"
 
 namespace ellipse {
 namespace {
@@ -14,92 +14,6 @@ namespace {
 constexpr int kSize = kGroundTileSize;
 constexpr int kGrainSize = 256;  // texels
 constexpr double kPi = std::numbers::pi;
-
-float smooth(float t) {
-  return t * t * (3.0F - 2.0F * t);
-}
-
-// Random in [-1, 1] at the corners of a lattice that repeats, smooth between them [Perlin1985].
-void add_noise(cv::Mat& tile, int cells, float amplitude, std::uint64_t seed) {
-  const auto corner = [&](int x, int y) {
-    const auto index = static_cast<std::uint64_t>(y % cells) * static_cast<std::uint64_t>(cells) +
-                       static_cast<std::uint64_t>(x % cells);
-    return static_cast<float>(hash(seed + index) >> 40U) / static_cast<float>(1U << 23U) - 1.0F;
-  };
-  const float step = static_cast<float>(cells) / static_cast<float>(tile.cols);
-  for (int y = 0; y < tile.rows; ++y) {
-    auto* row = tile.ptr<float>(y);
-    const float fy = static_cast<float>(y) * step;
-    const int iy = static_cast<int>(fy);
-    const float v = smooth(fy - static_cast<float>(iy));
-    float left = 0.0F;
-    float right = 0.0F;
-    for (int x = 0, last = -1; x < tile.cols; ++x) {
-      const float fx = static_cast<float>(x) * step;
-      const int ix = static_cast<int>(fx);
-      if (ix != last) {
-        left = std::lerp(corner(ix, iy), corner(ix, iy + 1), v);
-        right = std::lerp(corner(ix + 1, iy), corner(ix + 1, iy + 1), v);
-        last = ix;
-      }
-      row[x] += amplitude * std::lerp(left, right, smooth(fx - static_cast<float>(ix)));
-    }
-  }
-}
-
-// Draws shapes on a tile whose borders meet.
-class Painter {
- public:
-  explicit Painter(cv::Mat& tile, std::uint64_t seed) : tile_(tile), random_(seed) {}
-
-  void polygon(const std::vector<cv::Point2d>& outline, double level) {
-    for_each_copy([&](double dx, double dy) {
-      const std::vector<cv::Point> points = moved(outline, dx, dy);
-      cv::fillPoly(tile_, points, level, cv::LINE_8, kShift);
-    });
-  }
-
-  void line(const std::vector<cv::Point2d>& points, double level, int thickness) {
-    for_each_copy([&](double dx, double dy) {
-      cv::polylines(tile_, moved(points, dx, dy), false, level, thickness, cv::LINE_8, kShift);
-    });
-  }
-
-  [[nodiscard]] cv::Point2d somewhere() {
-    const double x = random_.between(0.0, kSize);
-    return {x, random_.between(0.0, kSize)};
-  }
-  [[nodiscard]] Random& random() { return random_; }
-
- private:
-  static constexpr int kShift = 4;
-
-  template <class Use>
-  static void for_each_copy(const Use& use) {
-    for (const int dy : {-kSize, 0, kSize}) {
-      for (const int dx : {-kSize, 0, kSize}) use(dx, dy);
-    }
-  }
-
-  static std::vector<cv::Point> moved(const std::vector<cv::Point2d>& points,
-                                      double dx,
-                                      double dy) {
-    std::vector<cv::Point> result;
-    result.reserve(points.size());
-    for (const cv::Point2d& p : points) {
-      result.emplace_back(static_cast<int>(std::floor((p.x + dx) * (1 << kShift))),
-                          static_cast<int>(std::floor((p.y + dy) * (1 << kShift))));
-    }
-    return result;
-  }
-
-  cv::Mat& tile_;
-  Random random_;
-};
-
-cv::Point2d towards(const cv::Point2d& from, double angle_rad, double distance) {
-  return {from.x + distance * std::cos(angle_rad), from.y + distance * std::sin(angle_rad)};
-}
 
 // Levels are relative to the ground's mean, in grey levels.
 
@@ -290,6 +204,25 @@ cv::Mat draw_ground(GroundKind kind, std::uint64_t seed) {
       break;
     case GroundKind::kCircles:
       circles(painter, 16);
+      break;
+    case GroundKind::kGravel:
+      gravel(painter);
+      break;
+    case GroundKind::kPavement:
+      pavement(tile, painter);
+      break;
+    case GroundKind::kFoliage:
+      foliage(painter);
+      break;
+    case GroundKind::kField:
+      field(tile, painter, seed);
+      break;
+    case GroundKind::kPage:
+      page(painter);
+      break;
+    case GroundKind::kSkin:
+      add_noise(tile, 6, 14.0F, seed + 2);
+      add_noise(tile, 24, 8.0F, seed + 3);
       break;
     case GroundKind::kPlain:
     case GroundKind::kPicture:

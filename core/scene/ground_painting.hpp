@@ -8,16 +8,22 @@ namespace ellipse {
 /// What lies around the pad. Most hold what resembles an ellipse, none but the circles hold one.
 enum class GroundKind {
   kPlain,
-  kAsphalt,  ///< Speckled, with cracks.
-  kGrass,    ///< Blades in all directions.
-  kRoad,     ///< Asphalt with painted lines and arcs.
-  kTiles,    ///< Square tiles with dark joints.
-  kSquares,  ///< A clutter of squares.
-  kFlowers,  ///< A clutter of flowers.
-  kRounded,  ///< A clutter of rounded rectangles.
-  kClutter,  ///< All of these clutters together, and arcs.
-  kCircles,  ///< Discs, and rings less than two thirds as large as the pad.
-  kPicture,  ///< A picture of one's own.
+  kAsphalt,   ///< Speckled, with cracks.
+  kGrass,     ///< Blades in all directions.
+  kRoad,      ///< Asphalt with painted lines and arcs.
+  kTiles,     ///< Square tiles with dark joints.
+  kSquares,   ///< A clutter of squares.
+  kFlowers,   ///< A clutter of flowers.
+  kRounded,   ///< A clutter of rounded rectangles.
+  kClutter,   ///< All of these clutters together, and arcs.
+  kCircles,   ///< Discs, and rings less than two thirds as large as the pad.
+  kGravel,    ///< Angular stones.
+  kPavement,  ///< Bricks in rows.
+  kFoliage,   ///< Pointed leaves over each other.
+  kField,     ///< Furrows.
+  kPage,      ///< Lines of straight strokes, as of print.
+  kSkin,      ///< Soft, without edges.
+  kPicture,   ///< A picture of one's own.
 };
 
 /// Width and height of what draw_ground() gives [texels].

@@ -57,6 +57,11 @@ std::optional<double> inner_radius(const Pad& pad) {
   return radii.count > 1 ? std::optional(radii.values[1]) : std::nullopt;
 }
 
+std::vector<double> edge_radii(const Pad& pad) {
+  const Radii radii = radii_of(pad);
+  return {radii.all().begin(), radii.all().end()};
+}
+
 PadPicture::PadPicture(const Pad& pad, double blur_px, std::uint64_t seed)
     : pad_(pad), blur_px_(blur_px) {
   if (pad_.crumple > 0.0) crumple(seed);

@@ -40,6 +40,9 @@ struct Pad {
 /// Radius of the edge next inside the painted circle; nullopt where the pattern has none.
 [[nodiscard]] std::optional<double> inner_radius(const Pad& pad);
 
+/// Radii of all its circular edges, from the outermost.
+[[nodiscard]] std::vector<double> edge_radii(const Pad& pad);
+
 /// A pad in a view: how much of each of its layers reaches a pixel.
 class PadPicture {
  public:

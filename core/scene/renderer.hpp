@@ -12,6 +12,7 @@
 #include "core/scene/pad.hpp"
 #include "core/scene/scene.hpp"
 #include "core/scene/sensor.hpp"
+#include "core/scene/sheet_picture.hpp"
 
 namespace ellipse {
 
@@ -30,7 +31,8 @@ class SceneRenderer {
   /// Allocates only when frames grow. O(pixels), times the length of the motion's blur.
   Truth render(double time_s, std::uint64_t frame, const MutableImage& picture);
 
-  /// One instant through any view, with the bars where they are at time 0. The lens, where there is
+  /// One instant through any view, with sheets and bars where they are at time 0, and the truth of
+  /// the pad alone. The lens, where there is
   /// one, is that of camera_of().
   Truth render(const View& view, std::uint64_t frame, const MutableImage& picture);
 
@@ -38,6 +40,8 @@ class SceneRenderer {
   Truth render(const Eigen::Matrix3d& image_from_pad,
                std::uint64_t frame,
                const MutableImage& picture);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
 
   /// The lens of the last frame, where it bends the picture; else nullptr. Until the next frame.
   [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
@@ -48,7 +52,15 @@ class SceneRenderer {
   void start_frame(const MutableImage& picture);
   template <class Use>
   void for_each_patch(const Eigen::Matrix3d& plane_from_ideal, const Use& use) const;
-  void add_instant(const View& view, float weight);
+  void add_exposure(double time_s);
+  void finish_light(double time_s);
+  void add_instant(const View& view,
+                   const std::optional<SheetView>& rolling,
+                   const std::vector<std::optional<SheetView>>& sheets,
+                   float weight);
+  void add_plane(const View& view, const std::optional<SheetView>& rolling, float weight);
+  void paint(const SheetPicture& sheet, const SheetView& view);
+  [[nodiscard]] std::optional<SheetView> rolling_at(double time_s) const;
   void look(const View& view, const Eigen::Matrix3d& plane_from_image);
   void add_blocks(const Patch& patch, float weight);
   void add_glare_of(const View& view);
@@ -57,9 +69,6 @@ class SceneRenderer {
   void fill_ground(Block& block) const;
   void add_pad(Block& block) const;
   void add_shadows(Block& block) const;
-  Truth expose(const Eigen::Matrix3d& image_from_pad,
-               std::uint64_t frame,
-               const MutableImage& picture);
   [[nodiscard]] Eigen::Matrix3d view_at(double time_s) const;
   [[nodiscard]] int instants_at(double time_s) const;
   [[nodiscard]] double moved_px(const Eigen::Matrix3d& end_from_begin,
@@ -78,6 +87,8 @@ class SceneRenderer {
   int width_ = 0;
   int height_ = 0;
   std::vector<float> light_;
+  std::vector<SheetPicture> sheets_;
+  std::vector<float> earlier_;  // light of the exposure's earlier instants
 };
 
 }  // namespace ellipse

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/scene/scene.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -123,13 +124,35 @@ Truth truth_of(const Pad& pad, const Eigen::Matrix3d& image_from_pad, const Came
   if (pad.pattern == Pattern::kNone) return truth;
   truth.outer_edge = project_circle(image_from_pad, 1.0);
   if (!truth.outer_edge) return truth;
-  truth.visible_fraction = camera.is_distorted()
-                               ? BentOutline(camera, *truth.outer_edge).share_in_frame()
-                               : visible_fraction(*truth.outer_edge, camera.width, camera.height);
+  truth.visible_fraction = share_in_frame(*truth.outer_edge, camera);
   if (const auto radius = inner_radius(pad)) {
     truth.inner_edge = project_circle(image_from_pad, *radius);
   }
   return truth;
+}
+
+double share_in_frame(const Ellipse& ideal, const Camera& camera) {
+  return camera.is_distorted() ? BentOutline(camera, ideal).share_in_frame()
+                               : visible_fraction(ideal, camera.width, camera.height);
+}
+
+std::optional<SheetView> view_of(const Sheet& sheet,
+                                 const Scene& scene,
+                                 const Camera& camera,
+                                 double time_s) {
+  const auto sheet_from_image = [&](double at_s) -> std::optional<Eigen::Matrix3d> {
+    const Eigen::Matrix3d pad = image_from_pad(pose_at(scene.flight, at_s), camera);
+    const auto image = image_from_sheet(sheet, pad, camera, at_s);
+    return image ? std::optional<Eigen::Matrix3d>(image->inverse()) : std::nullopt;
+  };
+  const double half_s = 0.5 * scene.sensor.readout_s;
+  const auto first = sheet_from_image(time_s - half_s);
+  if (!first || half_s == 0.0 || camera.height < 2) {
+    return first ? std::optional(SheetView{*first}) : std::nullopt;
+  }
+  const auto last = sheet_from_image(time_s + half_s);
+  if (!last) return std::nullopt;
+  return SheetView{*first, (*last - *first) / (camera.height - 1)};
 }
 
 Eigen::Matrix3d image_from_pad(const Scene& scene, double time_s, int width, int height) {

@@ -13,6 +13,7 @@
 #include "core/scene/ground.hpp"
 #include "core/scene/pad.hpp"
 #include "core/scene/sensor.hpp"
+#include "core/scene/sheet.hpp"
 
 namespace ellipse {
 
@@ -47,6 +48,8 @@ struct Light {
   Eigen::Vector2d gradient{0.0, 0.0};  ///< Relative change over the picture's width, by x and y.
   std::vector<Shadow> shadows;
   Glare glare;
+  double vignette = 0.0;  ///< Share of the light that the corners lack; it falls with the square
+                          ///< of the distance from the middle.
 };
 
 /// How a lens bends the picture.
@@ -63,14 +66,16 @@ struct Scene {
   Light light;
   Sensor sensor;
   Flight flight;
+  std::vector<Sheet> sheets;  ///< On and over the ground and the pad, each over the ones before.
   std::vector<Bar> bars;
   double hfov_rad = 1.012;  ///< Horizontal field of view, from border to border of the picture.
   std::optional<Distortion> lens;  ///< None = a pinhole.
   std::uint64_t seed = 1;          ///< Of all that is random.
 };
 
-/// What a frame shows. The ellipses are of the ideal plane: of the picture itself, where no lens
-/// bends it.
+/// What a frame shows of its target: the pad or, where the scene has none, the largest of the
+/// sheets' targets in the frame. The ellipses are of the ideal plane: of the picture itself, where
+/// no lens bends it. See true_ellipses() for all ellipses of a frame.
 struct Truth {
   std::optional<Ellipse> outer_edge;  ///< The exact image of the painted circle [px].
   std::optional<Ellipse> inner_edge;  ///< Of the edge next inside it [px].
@@ -103,6 +108,16 @@ struct View {
 [[nodiscard]] Truth truth_of(const Pad& pad,
                              const Eigen::Matrix3d& image_from_pad,
                              const Camera& camera);
+
+/// Share of the length of an ideal plane's ellipse that is in the frame.
+[[nodiscard]] double share_in_frame(const Ellipse& ideal, const Camera& camera);
+
+/// How the camera of a scene sees a sheet in the ideal plane, its middle row at a time; nullopt
+/// where it is a ball that is not before the camera.
+[[nodiscard]] std::optional<SheetView> view_of(const Sheet& sheet,
+                                               const Scene& scene,
+                                               const Camera& camera,
+                                               double time_s);
 
 /// Where the camera of a scene sees the pad's plane at a time, in its ideal plane [px].
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Scene& scene,

@@ -80,7 +80,18 @@ SensorReader::SensorReader(const Sensor& sensor) : sensor_(sensor) {
   for (std::size_t level = 0; level < noise_at_level_.size(); ++level) {
     const double variance = read_variance + sensor.shot_noise * static_cast<double>(level);
     noise_at_level_[level] = static_cast<float>(std::sqrt(variance));
+    developed_at_level_[level] =
+        static_cast<float>(255.0 * std::pow(static_cast<double>(level) / 255.0, sensor.gamma));
   }
+}
+
+float SensorReader::developed(float level) const {
+  if (sensor_.gamma == 1.0) return level;
+  const float clamped = std::clamp(level, 0.0F, 255.0F);
+  const auto index = static_cast<std::size_t>(clamped);
+  return std::lerp(developed_at_level_[index],
+                   developed_at_level_[index + 1],
+                   clamped - static_cast<float>(index));
 }
 
 void SensorReader::read(std::span<const float> light,
@@ -96,7 +107,7 @@ void SensorReader::read(std::span<const float> light,
     for (int x = 0; x < picture.width; x += 2) {
       const std::uint64_t bits = has_noise ? hash(pair++) : 0U;
       for (int i = 0; i < std::min(2, picture.width - x); ++i) {
-        float level = gain * *from++ + bias;
+        float level = developed(gain * *from++) + bias;
         if (has_noise) {
           const auto index = static_cast<std::size_t>(std::clamp(level - bias, 0.0F, 256.0F));
           level += noise_at_level_[index] *

@@ -24,6 +24,9 @@ struct Sensor {
   double shot_noise = 0.0;  ///< Variance per grey level of light [grey levels].
   double blur_px = 0.6;     ///< Standard deviation of the lens's blur; above 0.
   double exposure_s = 0.0;  ///< Everything that moves in this time is blurred; 0 = an instant.
+  double readout_s = 0.0;   ///< From the first row's time to the last one's; 0 = all at once.
+  double field_s = 0.0;     ///< The odd rows are so much later than the even ones; 0 = progressive.
+  double gamma = 1.0;       ///< Exponent of the grey levels, of which 255 stays 255.
   int jpeg_quality = 0;     ///< 1 to 100: as JPEG leaves it at this quality; 0 = no compression.
 };
 
@@ -38,7 +41,10 @@ class SensorReader {
   void read(std::span<const float> light, std::uint64_t seed, const MutableImage& picture) const;
 
  private:
+  [[nodiscard]] float developed(float level) const;
+
   Sensor sensor_;
+  std::array<float, 257> developed_at_level_{};
   std::array<float, 257> noise_at_level_{};
 };
 

@@ -23,6 +23,7 @@
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "examples/evaluate/wild.hpp"
 
 namespace evaluate {
 namespace {
@@ -117,6 +118,9 @@ class Program {
 
   [[nodiscard]] Dataset dataset_by_name(const std::string& name) const {
     if (const auto seeds = scene_seeds(name)) return {make_scenes(*seeds, options_.pace), {}, 0};
+    if (auto sequences = wild_by_name(name, options_.wild_seconds)) {
+      return {std::move(*sequences), {}, 0};
+    }
     if (const auto seeds = scene_seeds(name, "distorted")) {
       return {make_distorted(*seeds, options_.pace), {}, 0};
     }

@@ -19,6 +19,7 @@ struct Options {
   bool leave_one_out = false;
   bool all_ellipses = false;
   ScenePace pace;
+  double wild_seconds = 2.0;
   std::string rule = "iou";
   std::string ground_file;
   std::string frames_file;

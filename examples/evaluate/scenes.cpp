@@ -14,7 +14,6 @@
 namespace evaluate {
 namespace {
 
-constexpr std::size_t kMostSeeds = 1000;
 constexpr double kMostFrames = 1e6;
 
 [[noreturn]] void fail(const std::string& text, const std::string& what) {
@@ -62,7 +61,8 @@ class SharedFrames {
 }  // namespace
 
 std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
-                                                      const std::string& kind) {
+                                                      const std::string& kind,
+                                                      std::size_t most) {
   if (!text.starts_with(kind + ":")) return std::nullopt;
   std::string_view rest = std::string_view(text).substr(kind.size() + 1);
   std::vector<std::uint64_t> seeds;
@@ -70,7 +70,7 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
     const std::uint64_t from = take_seed(rest, text);
     const std::uint64_t to = take(rest, '-') ? take_seed(rest, text) : from;
     if (to < from) fail(text, "a range must go up");
-    if (to - from >= kMostSeeds - seeds.size()) fail(text, "more than 1000 seeds");
+    if (to - from >= most - seeds.size()) fail(text, format("more than %zu seeds", most));
     for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
   } while (take(rest, ','));
   if (!rest.empty()) fail(text, format("\"%s\" is no seed", std::string(rest).c_str()));

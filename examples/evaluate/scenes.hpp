@@ -17,9 +17,9 @@ struct ScenePace {
 
 /// The seeds of "KIND:SEED", where several are separated by commas and FROM-TO is a range; nullopt
 /// where the text is none of the kind. Throws std::invalid_argument that names the text, where it
-/// begins so and goes on otherwise.
+/// begins so and goes on otherwise, or gives more seeds than `most`.
 [[nodiscard]] std::optional<std::vector<std::uint64_t>> scene_seeds(
-    const std::string& text, const std::string& kind = "scenes");
+    const std::string& text, const std::string& kind = "scenes", std::size_t most = 1000);
 
 /// Every scene of the catalog with each seed, as sequences "approach-901" and so on of the data set
 /// "scenes": each from its beginning, without a gap. Nothing is rendered before it is asked for.

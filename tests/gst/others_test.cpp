@@ -7,6 +7,8 @@
 #include <string>
 
 #include "core/scene/catalog.hpp"
+#include "core/scene/true_ellipses.hpp"
+#include "core/scene/wild.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -148,6 +150,50 @@ TEST(EllipseTestSrc, TruthThroughALensHasItsOutline) {
       EXPECT_NEAR(ellipse::sampson_distance(ideal, *point), 0.0, 1e-3) << name;
     }
   }
+}
+
+std::vector<const GstEllipseMeta*> truths_of(GstBuffer* buffer) {
+  std::vector<const GstEllipseMeta*> truths;
+  gpointer state = nullptr;
+  while (GstMeta* meta =
+             gst_buffer_iterate_meta_filtered(buffer, &state, GST_ELLIPSE_META_API_TYPE)) {
+    const auto* ellipse = reinterpret_cast<const GstEllipseMeta*>(meta);
+    if (ellipse->role == GST_ELLIPSE_ROLE_TRUTH) truths.push_back(ellipse);
+  }
+  return truths;
+}
+
+TEST(EllipseTestSrc, AWildSceneCarriesAllItsEllipses) {
+  std::size_t most = 0;
+  bool has_none = false;
+  for (const int seed : {1, 2, 8, 24, 40}) {
+    const auto buffer =
+        first_frame("scene=wild seed=" + std::to_string(seed), caps_of("GRAY8", 320, 180));
+    const auto expected =
+        true_ellipses(ellipse::wild_scene(static_cast<std::uint64_t>(seed)), 0.0, 320, 180);
+    const auto truths = truths_of(buffer.get());
+    ASSERT_EQ(truths.size(), expected.size()) << seed;
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      EXPECT_EQ(truths[i]->cx, expected[i].ellipse.cx) << seed;
+      EXPECT_EQ(truths[i]->semi_minor, expected[i].ellipse.semi_minor) << seed;
+      EXPECT_EQ(truths[i]->visible_fraction, expected[i].visible_fraction) << seed;
+    }
+    most = std::max(most, truths.size());
+    has_none = has_none || truths.empty();
+  }
+  EXPECT_GT(most, 20U);
+  EXPECT_TRUE(has_none);
+}
+
+TEST(EllipseTestSrc, AWildSceneHasItsOwnSizeAndRate) {
+  const ellipse::Wild wild = ellipse::make_wild(9);
+  const auto buffer = first_frame("scene=wild seed=9", "video/x-raw,format=GRAY8");
+  ASSERT_NE(wild.width, 640);
+  EXPECT_EQ(gst_buffer_get_size(buffer.get()),
+            static_cast<gsize>((wild.width + 3) / 4 * 4) * static_cast<gsize>(wild.height));
+  EXPECT_NEAR(static_cast<double>(GST_BUFFER_DURATION(buffer.get())),
+              GST_SECOND / wild.frames_per_second,
+              1.0);
 }
 
 TEST(EllipseTestSrc, SceneCanChangeWhilePlaying) {

@@ -1,0 +1,64 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/scene/foreground.hpp"
+#include "core/scene/sheet.hpp"
+
+namespace ellipse {
+
+/// A sheet in a view: paints its shapes, and tells where they are.
+class SheetPicture {
+ public:
+  /// @param lens_blur_px  Standard deviation of the lens's blur.
+  SheetPicture(const Sheet& sheet, double lens_blur_px);
+
+  [[nodiscard]] const Sheet& sheet() const { return sheet_; }
+
+  /// Paints what is seen of the sheet in a rectangle of the picture; the patch's own homography is
+  /// not used.
+  void paint(const SheetView& view, const Patch& patch, const LightImage& image) const;
+
+  /// Whether a shape from this one on hides what is behind a place of the picture.
+  [[nodiscard]] bool hides(const SheetView& view,
+                           const Eigen::Vector2d& px,
+                           std::size_t from) const;
+
+  /// The outline of a shape, or of its hole, in the picture.
+  /// @param factor  1, or Shape::hole.
+  /// nullopt where it is not seen from its front side.
+  [[nodiscard]] std::optional<Eigen::Vector2d> outline_at(const SheetView& view,
+                                                          std::size_t shape,
+                                                          double factor,
+                                                          double angle_rad) const;
+
+ private:
+  struct Sample;  // what a pixel sees of a shape
+
+  [[nodiscard]] Patch bounds(const SheetView& view, std::size_t shape, const Patch& patch) const;
+  void paint_shape(std::size_t shape,
+                   const SheetView& view,
+                   const Patch& patch,
+                   const LightImage& image) const;
+  void paint_block(std::size_t shape,
+                   const SheetView& view,
+                   const Patch& block,
+                   bool is_covered,
+                   const LightImage& image) const;
+  [[nodiscard]] std::optional<double> even_coverage(std::size_t shape,
+                                                    const SheetView& view,
+                                                    const Patch& block) const;
+  [[nodiscard]] double paint_at(std::size_t shape, const Sample& sample) const;
+  [[nodiscard]] Eigen::Vector2d to_shape(std::size_t shape, const Eigen::Vector2d& seen) const;
+  [[nodiscard]] bool is_exact(std::size_t shape) const;
+
+  Sheet sheet_;
+  double blur_px_;
+  Deformation deformation_;
+  std::vector<ShapeEdge> edges_;
+  std::vector<Eigen::Affine2d> shape_from_sheet_;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,47 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace ellipse {
+
+/// What a wild scene is about.
+enum class WildTheme {
+  kPad,       ///< Landing pads of all kinds, flat, bent, on cloth, with people around.
+  kEye,       ///< A pupil in an iris, lids, lashes, glints, blinks.
+  kBoard,     ///< Calibration boards: many discs or rings.
+  kTraffic,   ///< A road with vehicles, wheels, lamps and round signs.
+  kBalls,     ///< Balls and balloons.
+  kCut,       ///< One ellipse that is larger than the picture, or cut by it.
+  kPolygons,  ///< No ellipse: pads and plates with corners.
+  kTextures,  ///< No ellipse: meshes, fences, foliage, stones, print, roads, rooms, closed eyes.
+};
+
+/// A random scene and the camera's format that it is made for.
+struct Wild {
+  Scene scene;
+  WildTheme theme = WildTheme::kPad;
+  int width = 640;
+  int height = 360;
+  double frames_per_second = 30.0;
+  /// What occurs in it: "ring", "hand", "rolling-shutter" and so on, each at most once. The
+  /// strings are static.
+  std::vector<std::string_view> things;
+};
+
+/// A random scene. Everything in it follows from the seed alone; the first frame, at time 0, is as
+/// good as any other. All ellipses in it are listed by true_ellipses(), and it shows nothing else
+/// that is as round. Scenes of the last two themes have no ellipse.
+[[nodiscard]] Wild make_wild(std::uint64_t seed);
+
+/// The scene alone, for pictures of any size.
+[[nodiscard]] Scene wild_scene(std::uint64_t seed);
+
+/// The names of the themes, in their order.
+[[nodiscard]] std::span<const char* const> wild_theme_nicks();
+
+}  // namespace ellipse
