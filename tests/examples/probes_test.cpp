@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The example programs that read the metadata in a pad probe, in C and in Python.
+#include <glib.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +18,7 @@
 #include "core/ellipse.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/examples/programs.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace {
 
@@ -92,11 +95,15 @@ TEST_P(Reader, EndsWellAtAnInterrupt) {
               "ellipsetestsrc is-live=true ! tee name=t t. ! queue ! ellipsejson ! filesink "
               "buffer-mode=unbuffered location=" +
                   trace + " t. ! queue");
-  const Outcome outcome = programs::run(start + " & program=$!; until [ -s " + trace +
-                                        " ] || ! kill -0 $program; do sleep 0.1; done; " +
-                                        "kill -INT $program; wait $program");
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_EQ(outcome.text.find("Traceback"), std::string::npos) << outcome.text;
+  const std::string log = (folder_ / "log").string();
+  support::ChildProcess program(
+      {.arguments = {"sh", "-c", "exec " + start + " > " + log + " 2>&1"}});
+  const auto has_begun = [&] { return fs::exists(trace) && fs::file_size(trace) > 0; };
+  while (!has_begun() && !program.is_over()) g_usleep(100'000);
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0) << support::contents_of(log);
+  EXPECT_EQ(support::contents_of(log).find("Traceback"), std::string::npos)
+      << support::contents_of(log);
 }
 
 class Probe : public Reader {};

@@ -15,7 +15,7 @@
 
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/twin.hpp"
-#include "tests/examples/terminal.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace {
 
@@ -118,11 +118,12 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
 // CSRT takes its time, so that the program is not at its end before the key is pressed.
 TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   const fs::path json = folder_ / "json";
-  programs::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
+  support::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
                                "--methods",
                                "contours+none,csrt",
                                "--json",
                                json.string()});
+  if (terminal.is_missing()) GTEST_SKIP() << terminal.reason();
   ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frames
   terminal.type('\x03');
   EXPECT_EQ(terminal.wait_for_end(), 130);

@@ -166,9 +166,13 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
   }
   const Broker broker(mosquitto);
   ASSERT_TRUE(broker.subscribe());
-  FILE* publisher = popen(("mosquitto_pub -l" + broker.address()).c_str(), "w");
-  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(fileno(publisher))), "");
-  EXPECT_EQ(pclose(publisher), 0);
+  support::Pipe lines;
+  support::ChildProcess publisher(
+      {.arguments = {"sh", "-c", "exec mosquitto_pub -l" + broker.address()},
+       .input = lines.out.number()});
+  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(lines.in.number())), "");
+  lines.in.close();
+  EXPECT_EQ(publisher.wait(), 0);
   expect_frames(broker.read(kFrames), 0, kFrames);
 }
 
@@ -196,7 +200,7 @@ class German {
     if (std::setlocale(LC_ALL, kName) != nullptr) return;
     const std::string command =
         "localedef -i de_DE -f UTF-8 " + folder_.file(kName) + " > /dev/null 2>&1";
-    if (std::system(command.c_str()) != 0) return;
+    if (support::run_shell(command).status != 0) return;
     g_setenv("LOCPATH", folder_.file("").c_str(), TRUE);
     std::setlocale(LC_ALL, kName);
   }
