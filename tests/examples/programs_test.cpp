@@ -119,10 +119,10 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
 TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   const fs::path json = folder_ / "json";
   support::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
-                               "--methods",
-                               "contours+none,csrt",
-                               "--json",
-                               json.string()});
+                              "--methods",
+                              "contours+none,csrt",
+                              "--json",
+                              json.string()});
   if (terminal.is_missing()) GTEST_SKIP() << terminal.reason();
   ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frames
   terminal.type('\x03');
@@ -131,6 +131,30 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   EXPECT_NE(shown.find("Interrupted: the figures are of"), std::string::npos) << shown;
   EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
   EXPECT_GT(fs::file_size(json), 200U);
+}
+
+// The peer's ellipse is far from the target in both frames.
+TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
+  write_dataset(folder_ / "set", 2);
+  const fs::path peer = folder_ / "peer.sh";
+  std::ofstream(peer) << "while read -r image; do\n"
+                         "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
+                         "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
+  const std::string good = (folder_ / "set").string() + " --methods arcs+edges ";
+  const std::string both = good + "--peer 'wrong=/bin/sh " + peer.string() + "' ";
+  const Outcome kept = run("ellipse-evaluate", good + "--min-f1 1 --min-recall 1 --max-false 0");
+  EXPECT_EQ(kept.status, 0) << kept.text;
+  const Outcome unkept =
+      run("ellipse-evaluate", both + "--min-f1 .9 --min-recall .5 --max-false 1");
+  EXPECT_EQ(unkept.status, 1);
+  for (const char* text : {"wrong on set: F1 0 is below 0.9\n",
+                           "wrong on set: recall 0 is below 0.5\n",
+                           "wrong on set: 2 frames with a false answer, at most 1 allowed\n"}) {
+    EXPECT_NE(unkept.text.find(text), std::string::npos) << text << unkept.text;
+  }
+  EXPECT_EQ(unkept.text.find("arcs+edges on set"), std::string::npos) << unkept.text;
+  EXPECT_EQ(run("ellipse-evaluate", both + "--max-false 2").status, 0);
+  EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a share, no percentage
 }
 
 TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
