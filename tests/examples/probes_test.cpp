@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -85,6 +86,26 @@ TEST_P(Reader, SaysThatThePluginIsMissing) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.text,
             "there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
+}
+
+// Modules of these names that cannot be imported stand before the real ones.
+TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
+  if (!is_script(GetParam())) GTEST_SKIP() << "no Python";
+  for (const std::string module : {"gi", "matplotlib"}) {
+    const fs::path modules = folder_ / ("without-" + module);
+    fs::create_directories(modules);
+    const std::string why = "No module named '" + module + "'";
+    std::ofstream(modules / (module + ".py")) << "raise ModuleNotFoundError(\"" << why << "\")\n";
+    const Outcome outcome = programs::run("PYTHONPATH='" + modules.string() + ":'$PYTHONPATH " +
+                                          command(GetParam(), "videotestsrc num-buffers=1"));
+    if (module == "matplotlib" && std::string(GetParam()) != kPlot) {
+      EXPECT_EQ(outcome.status, 0) << outcome.text;
+    } else {
+      EXPECT_EQ(outcome.status, 1);
+      EXPECT_EQ(outcome.text.find(why + ": install python3-" + module), 0U) << outcome.text;
+      EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    }
+  }
 }
 
 TEST_P(Reader, EndsWellAtAnInterrupt) {
