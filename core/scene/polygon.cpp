@@ -54,8 +54,31 @@ void write_row(
   for (std::int64_t x = std::max<std::int64_t>(left, 0); x <= last; ++x) pixels[x] = level;
 }
 
+// Moves the ends of a line to the range [0, last] of one coordinate, along the line.
+// @return false where no part of it is in there.
+bool cut(Point& from,
+         Point& to,
+         std::int64_t Point::*across,
+         std::int64_t Point::*along,
+         std::int64_t last) {
+  const auto lowest = std::min(from.*across, to.*across);
+  const auto highest = std::max(from.*across, to.*across);
+  if (highest < 0 || lowest > last) return false;
+  for (const auto& [end, other] : {std::pair(&from, &to), std::pair(&to, &from)}) {
+    const std::int64_t excess = std::clamp<std::int64_t>(end->*across, 0, last) - end->*across;
+    if (excess == 0) continue;
+    end->*along += excess * (other->*along - end->*along) / (other->*across - end->*across);
+    end->*across += excess;
+  }
+  return true;
+}
+
 // The nearest pixels along a line [Bresenham1965], from the left; halves go to its beginning.
+// What leaves the tile is cut first, which may move the rest by a pixel: the pictures are those
+// that figures have been measured with.
 void write_line(cv::Mat& tile, Point from, Point to, float level) {
+  if (!cut(from, to, &Point::y, &Point::x, tile.rows - 1)) return;
+  if (!cut(from, to, &Point::x, &Point::y, tile.cols - 1)) return;
   if (from.x > to.x) std::swap(from, to);
   const std::int64_t width = to.x - from.x;
   const std::int64_t height = std::abs(to.y - from.y);
