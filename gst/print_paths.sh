@@ -40,5 +40,14 @@ while [ $# -ge 3 ]; do
   contains "$3" "$2" || add_variable "$1" "$2"
   shift 3
 done
-[ -z "$lines" ] || printf '\nSo that programs find gst-ellipse in %s:\n%s' \
-  "${MESON_INSTALL_PREFIX:-its prefix}" "$lines"
+[ -n "$lines" ] && [ -z "${MESON_INSTALL_QUIET:-}" ] || exit 0
+
+# Meson 1.0 drops what install scripts write: this goes to where meson itself writes. Not into a
+# file, in which meson would write over it.
+out=/dev/stdout
+if [ -n "${MESON_BUILD_ROOT:-}" ] && [ -w "/proc/$PPID/fd/1" ]; then
+  out=/proc/$PPID/fd/1
+  [ ! -f "$out" ] || out=/proc/$PPID/fd/2
+fi
+printf '\nSo that programs find gst-ellipse in %s:\n%s' "${MESON_INSTALL_PREFIX:-its prefix}" \
+  "$lines" >> "$out"
