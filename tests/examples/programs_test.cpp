@@ -147,12 +147,12 @@ TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
   const Outcome unkept =
       run("ellipse-evaluate", both + "--min-f1 .9 --min-recall .5 --max-false 1");
   EXPECT_EQ(unkept.status, 1);
-  for (const char* text : {"wrong on set: F1 0 is below 0.9\n",
-                           "wrong on set: recall 0 is below 0.5\n",
-                           "wrong on set: 2 frames with a false answer, at most 1 allowed\n"}) {
+  for (const char* text : {"wrong on twin: F1 0 is below 0.9\n",
+                           "wrong on twin: recall 0 is below 0.5\n",
+                           "wrong on twin: 2 frames with a false answer, at most 1 allowed\n"}) {
     EXPECT_NE(unkept.text.find(text), std::string::npos) << text << unkept.text;
   }
-  EXPECT_EQ(unkept.text.find("arcs+edges on set"), std::string::npos) << unkept.text;
+  EXPECT_EQ(unkept.text.find("arcs+edges on"), std::string::npos) << unkept.text;
   EXPECT_EQ(run("ellipse-evaluate", both + "--max-false 2").status, 0);
   EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a share, no percentage
 }
