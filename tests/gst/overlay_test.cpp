@@ -391,8 +391,8 @@ TEST(EllipseOverlay, DrawsCandidatesThinAndGrey) {
   };
   const Bytes target = drawn_as(GST_ELLIPSE_ROLE_TARGET);
   const Bytes candidate = drawn_as(GST_ELLIPSE_ROLE_CANDIDATE);
-  EXPECT_EQ(target.at(120 * 320 + 240), 255);
-  EXPECT_NEAR(candidate.at(120 * 320 + 240), 0xb0, 1);
+  EXPECT_EQ(target.at(3 * (120 * 320 + 240)), 255);
+  EXPECT_NEAR(candidate.at(3 * (120 * 320 + 240)), 0xb0, 1);
   EXPECT_NEAR(
       static_cast<double>(changed(candidate)) / static_cast<double>(changed(target)), 0.5, 0.15);
   EXPECT_EQ(changed(drawn_as(GST_ELLIPSE_ROLE_TRUTH)), 0);  // unless truth=true
