@@ -341,8 +341,9 @@ struct Fingerprint {
   std::uint64_t value;
 };
 
-// On Debian 12 and 13, with OpenCV 4.6 and 4.10, whatever instructions OpenCV and the C library choose
-// for the processor. Whoever changes a scene changes every figure that was measured with it: say so in CHANGELOG.md.
+// On Debian 12 and 13, with OpenCV 4.6 and 4.10, whatever instructions OpenCV and the C library
+// choose for the processor. Whoever changes a scene changes every figure that was measured with it:
+// say so in CHANGELOG.md.
 constexpr Fingerprint kFingerprints[] = {
     {"approach", 0xf2d325fb58e82ca3U},
     {"oblique", 0xae3bf7adc26f972aU},

@@ -133,15 +133,21 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   EXPECT_GT(fs::file_size(json), 200U);
 }
 
-// The peer's ellipse is far from the target in both frames.
-TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
-  write_dataset(folder_ / "set", 2);
-  const fs::path peer = folder_ / "peer.sh";
-  std::ofstream(peer) << "while read -r image; do\n"
+// A program that answers each image with an ellipse far from the target.
+fs::path write_wrong_peer(const fs::path& folder) {
+  const fs::path peer = folder / "peer.sh";
+  std::ofstream(peer) << "#!/bin/sh\nwhile read -r image; do\n"
                          "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
                          "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
+  fs::permissions(peer, fs::perms::owner_all);
+  return peer;
+}
+
+TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
+  write_dataset(folder_ / "set", 2);
+  const fs::path peer = write_wrong_peer(folder_);
   const std::string good = (folder_ / "set").string() + " --methods arcs+edges ";
-  const std::string both = good + "--peer 'wrong=/bin/sh " + peer.string() + "' ";
+  const std::string both = good + "--peer 'wrong=" + peer.string() + "' ";
   const Outcome kept = run("ellipse-evaluate", good + "--min-f1 1 --min-recall 1 --max-false 0");
   EXPECT_EQ(kept.status, 0) << kept.text;
   const Outcome unkept =
@@ -175,11 +181,7 @@ TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
 
 TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   write_dataset(folder_ / "set", 2);
-  const fs::path peer = folder_ / "peer.sh";
-  std::ofstream(peer) << "#!/bin/sh\nwhile read -r image; do\n"
-                         "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
-                         "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
-  fs::permissions(peer, fs::perms::owner_all);
+  const fs::path peer = write_wrong_peer(folder_);
   const Outcome outcome =
       run("ellipse-evaluate",
           (folder_ / "set").string() + " --methods contours+redetect --peer \"always wrong=" +

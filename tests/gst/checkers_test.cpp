@@ -14,11 +14,11 @@
 
 namespace {
 
+using support::contents_of;
 using support::Owned;
 using support::Pipeline;
 using support::run_own_tests;
 using support::TemporaryFolder;
-using support::contents_of;
 
 bool is_installed(const char* program) {
   gchar* path = g_find_program_in_path(program);
@@ -94,7 +94,8 @@ TEST(ThreadSanitizer, DISABLED_CountsUnderNone) {
 TEST(ThreadSanitizer, KnowsGLibsMutexes) {
   const TemporaryFolder folder;
   const std::string log = folder.file("log");
-  EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log)) << contents_of(log);
+  EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log))
+      << contents_of(log);
   EXPECT_FALSE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderNone", log));
   EXPECT_NE(contents_of(log).find("data race"), std::string::npos) << contents_of(log);
 }
