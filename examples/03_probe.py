@@ -11,11 +11,13 @@ import signal
 import sys
 from itertools import count
 
-import gi
-
 try:
+    import gi
+
     gi.require_version("Gst", "1.0")
     gi.require_version("GstEllipse", "1.0")
+except ImportError as error:
+    sys.exit(f"{error}: install python3-gi, and start this with /usr/bin/python3")
 except ValueError as error:
     sys.exit(f"{error}: is it installed, or GI_TYPELIB_PATH set?")
 from gi.repository import GLib, Gst, GstEllipse  # noqa: E402

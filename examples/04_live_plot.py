@@ -15,15 +15,21 @@ import sys
 import threading
 from collections import deque
 
-import gi
-
 try:
+    import gi
+
     gi.require_version("Gst", "1.0")
     gi.require_version("GstEllipse", "1.0")
+except ImportError as error:
+    sys.exit(f"{error}: install python3-gi, and start this with /usr/bin/python3")
 except ValueError as error:
     sys.exit(f"{error}: is it installed, or GI_TYPELIB_PATH set?")
 from gi.repository import GLib, Gst, GstEllipse  # noqa: E402
-from matplotlib import pyplot  # noqa: E402
+
+try:
+    from matplotlib import pyplot
+except ImportError as error:
+    sys.exit(f"{error}: install python3-matplotlib")
 
 MOST_FRAMES = 1800  # a minute at 30 frames a second; older ones leave the plot
 REDRAW_S = 0.05

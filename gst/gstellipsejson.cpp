@@ -18,7 +18,7 @@
 
 #include <gst/video/video.h>
 
-#include <cstring>
+#include <string>
 
 #include "gst/ellipse/gstellipsemeta.h"
 
@@ -27,7 +27,10 @@ struct _GstEllipseJson {
 
   GstVideoInfo info;
   guint64 frame;
+  gboolean writes_times;  // under the object lock
 };
+
+enum { PROP_0, PROP_TIMES };
 
 G_DEFINE_TYPE(GstEllipseJson, gst_ellipse_json, GST_TYPE_BASE_TRANSFORM)
 
@@ -57,18 +60,33 @@ static gboolean gst_ellipse_json_set_caps(GstBaseTransform* base, GstCaps* in, G
   return gst_video_info_from_caps(&GST_ELLIPSE_JSON(base)->info, in);
 }
 
+// Removes a member whose value is a number or null.
+static void remove_member(std::string& json, const std::string& name) {
+  const std::size_t begin = json.find(",\"" + name + "\":");
+  if (begin != std::string::npos) json.erase(begin, json.find_first_of(",}", begin + 1) - begin);
+}
+
+static std::string line_of(GstEllipseJson* self, GstBuffer* buffer) {
+  gchar* json = gst_buffer_ellipses_to_json(buffer,
+                                            self->frame,
+                                            static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info)),
+                                            static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info)));
+  std::string line = json;
+  g_free(json);
+  GST_OBJECT_LOCK(self);
+  const bool writes_times = self->writes_times != FALSE;
+  GST_OBJECT_UNLOCK(self);
+  if (!writes_times) remove_member(line, "processing_ns");
+  return line + "\n";
+}
+
 static GstFlowReturn gst_ellipse_json_prepare_output_buffer(GstBaseTransform* base,
                                                             GstBuffer* in,
                                                             GstBuffer** out) {
   auto* self = GST_ELLIPSE_JSON(base);
-  gchar* json = gst_buffer_ellipses_to_json(in,
-                                            self->frame,
-                                            static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info)),
-                                            static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info)));
+  const std::string line = line_of(self, in);
   ++self->frame;
-  gchar* line = g_strconcat(json, "\n", nullptr);
-  g_free(json);
-  *out = gst_buffer_new_wrapped(line, std::strlen(line));
+  *out = gst_buffer_new_memdup(line.data(), line.size());
   gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
   return GST_FLOW_OK;
 }
@@ -88,11 +106,51 @@ static gboolean gst_ellipse_json_propose_allocation(GstBaseTransform*, GstQuery*
   return TRUE;
 }
 
+static void gst_ellipse_json_set_property(GObject* object,
+                                          guint id,
+                                          const GValue* value,
+                                          GParamSpec* pspec) {
+  if (id != PROP_TIMES) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
+  GST_OBJECT_LOCK(object);
+  GST_ELLIPSE_JSON(object)->writes_times = g_value_get_boolean(value);
+  GST_OBJECT_UNLOCK(object);
+}
+
+static void gst_ellipse_json_get_property(GObject* object,
+                                          guint id,
+                                          GValue* value,
+                                          GParamSpec* pspec) {
+  if (id != PROP_TIMES) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
+  GST_OBJECT_LOCK(object);
+  g_value_set_boolean(value, GST_ELLIPSE_JSON(object)->writes_times);
+  GST_OBJECT_UNLOCK(object);
+}
+
 static void gst_ellipse_json_init(GstEllipseJson* self) {
   gst_video_info_init(&self->info);
+  self->writes_times = TRUE;
 }
 
 static void gst_ellipse_json_class_init(GstEllipseJsonClass* klass) {
+  auto* object_class = G_OBJECT_CLASS(klass);
+  object_class->set_property = gst_ellipse_json_set_property;
+  object_class->get_property = gst_ellipse_json_get_property;
+  g_object_class_install_property(
+      object_class,
+      PROP_TIMES,
+      g_param_spec_boolean("times",
+                           "Times",
+                           "Write processing_ns, which differs from run to run",
+                           TRUE,
+                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                    GST_PARAM_MUTABLE_PLAYING)));
+
   auto* element_class = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element_class,
                                         "Ellipses to JSON",

@@ -173,8 +173,10 @@ static void draw_all(Overlay& overlay,
                      bool shows_truth) {
   OverlayStyle truth_style = style;
   truth_style.color_argb = kTruthColor;
-  const OverlayStyle candidate_style{
-      GST_ELLIPSE_OVERLAY_ELLIPSE, kCandidateColor, std::max(1U, style.line_width_px / 2)};
+  const OverlayStyle candidate_style{GST_ELLIPSE_OVERLAY_ELLIPSE,
+                                     kCandidateColor,
+                                     std::max(1U, style.line_width_px / 2),
+                                     style.has_casing};
   gpointer state = nullptr;
   while (GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
     if (meta->role == GST_ELLIPSE_ROLE_TRUTH) {
@@ -204,11 +206,12 @@ static void show(GstEllipseOverlay* self, GstBuffer* buffer) {
 static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
   auto* self = GST_ELLIPSE_OVERLAY(base);
   GST_OBJECT_LOCK(self);
-  const OverlayStyle style = *self->style;
+  OverlayStyle style = *self->style;
   const bool shows_truth = self->shows_truth != FALSE;
   GST_OBJECT_UNLOCK(self);
 
   const GstVideoInfo& info = GST_VIDEO_FILTER(base)->in_info;
+  style.has_casing = !self->composes && GST_VIDEO_INFO_IS_GRAY(&info);
   try {
     self->overlay->begin(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
     draw_all(*self->overlay, buffer, style, shows_truth);

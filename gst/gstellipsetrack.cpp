@@ -51,33 +51,45 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
 
 /* Properties */
 
-// Before a pipeline plays nobody hears its messages.
+static bool is_stopped(GstEllipseTrack* self) {
+  return GST_STATE(self) == GST_STATE_NULL;
+}
+
 static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
   if (refusal.empty()) return;
   GST_WARNING_OBJECT(self, "setting refused: %s", refusal.c_str());
-  if (GST_STATE(self) == GST_STATE_NULL) {
-    g_warning(
-        "%s: setting refused, the old value stays: %s", GST_OBJECT_NAME(self), refusal.c_str());
-  }
   GST_ELEMENT_WARNING(
       self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
 }
 
-// @return Why a change is refused; empty where it is not.
-static std::string changed(TrackShared& shared, const PropertyChange& change) {
+// @return Why these values do not fit each other; empty where they do.
+static std::string misfit_of(const TrackProperties& properties) {
   try {
-    TrackProperties wanted = shared.preset.value_or(shared.properties);
-    change.apply_to(wanted);
-    if (shared.preset) {
-      shared.preset = wanted;
-    } else {
-      wanted.tracker.validate();
-      shared.properties = wanted;
-    }
+    properties.tracker.validate();
   } catch (const std::exception& error) {
     return error.what();
   }
   return "";
+}
+
+// Applies a change if the result is valid. In the state NULL a value that does not fit the others
+// is kept in `wanted`, and comes into force with the one that makes it fit: the two values of a
+// pair may be set in any order. @return Why a change is refused; empty where it is not.
+static std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
+  TrackProperties next = shared.preset.value_or(shared.properties);
+  change.apply_to(next);
+  if (shared.preset) {
+    shared.preset = next;
+    return "";
+  }
+  if (is_stopped) {
+    if (!shared.wanted) shared.wanted = shared.properties;
+    change.apply_to(*shared.wanted);
+    if (misfit_of(*shared.wanted).empty()) next = *shared.wanted;
+  }
+  const std::string misfit = misfit_of(next);
+  if (misfit.empty()) shared.properties = next;
+  return misfit;
 }
 
 static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
@@ -98,6 +110,39 @@ static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool
   return is_repeated && !is_news;
 }
 
+// The object lock, until the end of a scope.
+class ObjectLock {
+ public:
+  explicit ObjectLock(GstEllipseTrack* self) : object_(GST_OBJECT(self)) {
+    GST_OBJECT_LOCK(object_);
+  }
+  ~ObjectLock() { GST_OBJECT_UNLOCK(object_); }
+  ObjectLock(const ObjectLock&) = delete;
+  ObjectLock& operator=(const ObjectLock&) = delete;
+
+ private:
+  GstObject* object_;
+};
+
+// @return Why the value is refused; empty where it is not.
+static std::string set_or_refuse(GstEllipseTrack* self,
+                                 guint which,
+                                 const GValue* value,
+                                 const char* name) {
+  TrackShared& shared = *self->shared;
+  try {
+    const PropertyChange change(which, value);  // may read a file
+    const ObjectLock lock(self);
+    const std::string misfit = changed(shared, change, is_stopped(self));
+    shared.senseless.erase(name);
+    return misfit;
+  } catch (const std::exception& error) {
+    const ObjectLock lock(self);
+    if (is_stopped(self)) shared.senseless[name] = error.what();
+    return error.what();
+  }
+}
+
 // Refuses what does not fit together, names it, and keeps the old value.
 static void gst_ellipse_track_set_property(GObject* object,
                                            guint id,
@@ -108,15 +153,7 @@ static void gst_ellipse_track_set_property(GObject* object,
     G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
     return;
   }
-  std::string refusal;
-  try {
-    const PropertyChange change(id - PROP_FIRST_SETTING, value);
-    GST_OBJECT_LOCK(self);
-    refusal = changed(*self->shared, change);
-    GST_OBJECT_UNLOCK(self);
-  } catch (const std::exception& error) {
-    refusal = error.what();
-  }
+  const std::string refusal = set_or_refuse(self, id - PROP_FIRST_SETTING, value, pspec->name);
   if (!is_told_already(self, pspec, !refusal.empty())) tell_refusal(self, refusal);
 }
 
@@ -159,7 +196,11 @@ static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* na
   const TrackProperties wanted = shared.preset.value_or(shared.properties);
   try {
     wanted.tracker.validate();
-    if (is_loaded) shared.properties = wanted;
+    if (is_loaded) {
+      shared.properties = wanted;
+      shared.wanted.reset();
+      shared.senseless.clear();
+    }
   } catch (const std::exception& error) {
     refusal = error.what();
     is_loaded = FALSE;
@@ -263,6 +304,31 @@ static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
   return TRUE;
 }
 
+// @return Why a start would not do what was asked for; empty where it would.
+static std::string obstacle_to_start(GstEllipseTrack* self) {
+  TrackShared& shared = *self->shared;
+  const ObjectLock lock(self);
+  std::string obstacle = shared.wanted ? misfit_of(*shared.wanted) : "";
+  if (!shared.senseless.empty()) obstacle = shared.senseless.begin()->second;
+  if (obstacle.empty()) shared.wanted.reset();
+  return obstacle;
+}
+
+// What was refused before the start fails it: nobody hears the warnings of a pipeline that is not
+// playing yet.
+static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
+                                                           GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_NULL_TO_READY) {
+    const std::string obstacle = obstacle_to_start(GST_ELLIPSE_TRACK(element));
+    if (!obstacle.empty()) {
+      GST_ELEMENT_ERROR(
+          element, LIBRARY, SETTINGS, ("Setting refused: %s", obstacle.c_str()), (nullptr));
+      return GST_STATE_CHANGE_FAILURE;
+    }
+  }
+  return GST_ELEMENT_CLASS(gst_ellipse_track_parent_class)->change_state(element, transition);
+}
+
 static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
                                                      GstQuery* decide_query,
                                                      GstQuery* query) {
@@ -363,6 +429,7 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
                                         "Detects and tracks an elliptical target on every buffer",
                                         "The gst-ellipse authors");
   add_video_pad_templates(element_class);
+  element_class->change_state = gst_ellipse_track_change_state;
 
   auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
   base_class->transform_ip = gst_ellipse_track_transform_ip;

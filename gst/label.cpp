@@ -39,17 +39,19 @@ int height_px(double scale) {
   return capital_px(scale) + descender + 2 * margin_px(scale);
 }
 
-bool is_dark(std::uint32_t argb) {
-  const double luma =
-      0.299 * (argb >> 16U & 0xffU) + 0.587 * (argb >> 8U & 0xffU) + 0.114 * (argb & 0xffU);
-  return luma < 64.0;
-}
-
 bool is_inside(const Rect& box, const Rect& frame) {
   return ellipse::intersect(box, frame) == box;
 }
 
 }  // namespace
+
+// From 64 to 191 either would do for a line; for text on a box that lets the picture through black
+// is easier to read.
+std::uint32_t contrast_to(std::uint32_t argb) {
+  const double luma =
+      0.299 * (argb >> 16U & 0xffU) + 0.587 * (argb >> 8U & 0xffU) + 0.114 * (argb & 0xffU);
+  return luma < 64.0 ? 0xffffffU : 0U;
+}
 
 std::optional<Label> make_label(std::string text, int frame_width, int frame_height) {
   int baseline = 0;
@@ -97,7 +99,7 @@ void draw_label(Canvas& canvas, const Label& label, std::uint32_t argb) {
                     {box.x + box.width - 1 - round, box.y + round},
                     box.height - 1);
   const std::uint32_t opacity = (argb >> 24U) * 170U / 255U;
-  canvas.paint(opacity << 24U | (is_dark(argb) ? 0xffffffU : 0U));
+  canvas.paint(opacity << 24U | contrast_to(argb));
 
   cv::Mat mask = cv::Mat::zeros(box.height, box.width, CV_8U);
   cv::putText(mask,

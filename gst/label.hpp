@@ -16,6 +16,9 @@ struct Label {
   ellipse::Rect box{};  ///< With its margins [px].
 };
 
+/// Black, 0x000000, for bright colours and white, 0xffffff, for dark ones.
+[[nodiscard]] std::uint32_t contrast_to(std::uint32_t argb);
+
 /// Measures a text for a frame of this size: capitals of 5 px and a sixtieth of its height, and
 /// less where the text would be too wide. nullopt where it could not be read.
 [[nodiscard]] std::optional<Label> make_label(std::string text, int frame_width, int frame_height);

@@ -18,6 +18,8 @@ using ellipse::Ellipse;
 
 namespace {
 
+constexpr double kCasingPx = 1.0;  // on each side of a line
+
 bool is_near(double value) {
   constexpr double kFarthestPx = 1e5;
   return std::abs(value) <= kFarthestPx;  // NaN is not
@@ -119,8 +121,7 @@ double cross_arm_px(double width_px) {
   return 3.0 + 2.0 * width_px;
 }
 
-void cover_cross(Canvas& canvas, const Vector2d& centre, double width_px) {
-  const double arm = cross_arm_px(width_px);
+void cover_cross(Canvas& canvas, const Vector2d& centre, double arm, double width_px) {
   canvas.cover_line(centre - Vector2d(arm, 0.0), centre + Vector2d(arm, 0.0), width_px);
   canvas.cover_line(centre - Vector2d(0.0, arm), centre + Vector2d(0.0, arm), width_px);
 }
@@ -133,7 +134,7 @@ ellipse::Rect square_around(const Vector2d& centre, double half_side_px) {
           side};
 }
 
-void cover_region(Canvas& canvas, const GstEllipseMeta& meta) {
+void cover_region(Canvas& canvas, const GstEllipseMeta& meta, double width_px) {
   if (meta.roi_width == 0 || meta.roi_height == 0) return;
   const Vector2d first(meta.roi_x, meta.roi_y);
   const Vector2d last =
@@ -141,7 +142,7 @@ void cover_region(Canvas& canvas, const GstEllipseMeta& meta) {
   const std::array corners = {
       first, Vector2d(last.x(), first.y()), last, Vector2d(first.x(), last.y())};
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    canvas.cover_line(corners[i], corners[(i + 1) % corners.size()], 1.0);
+    canvas.cover_line(corners[i], corners[(i + 1) % corners.size()], width_px);
   }
 }
 
@@ -173,23 +174,35 @@ void Overlay::begin(int width, int height) {
   taken_.clear();
 }
 
-void Overlay::draw(const GstEllipseMeta& meta, const OverlayStyle& style) {
-  if (!is_drawable(meta) || style.color_argb >> 24U == 0) return;
+void Overlay::cover_parts(const GstEllipseMeta& meta, const OverlayStyle& style, double wider_px) {
   const Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
   const double width = style.line_width_px;
+  const double axes_width = 0.5 * width + wider_px;
   const auto has = [&](GstEllipseOverlayFlags part) { return (style.parts & part) != 0; };
-  if (has(GST_ELLIPSE_OVERLAY_ROI)) cover_region(canvas_, meta);
+  if (has(GST_ELLIPSE_OVERLAY_ROI)) cover_region(canvas_, meta, 1.0 + wider_px);
   const Outline outline(meta);
   if (outline.empty()) {
-    if (has(GST_ELLIPSE_OVERLAY_AXES)) cover_axes(canvas_, e, 0.5 * width);
-    if (has(GST_ELLIPSE_OVERLAY_ELLIPSE)) cover_ellipse(canvas_, e, width);
+    if (has(GST_ELLIPSE_OVERLAY_AXES)) cover_axes(canvas_, e, axes_width);
+    if (has(GST_ELLIPSE_OVERLAY_ELLIPSE)) cover_ellipse(canvas_, e, width + wider_px);
   } else {
-    if (has(GST_ELLIPSE_OVERLAY_AXES)) cover_axes(canvas_, outline, 0.5 * width);
-    if (has(GST_ELLIPSE_OVERLAY_ELLIPSE)) cover_outline(canvas_, outline, width);
+    if (has(GST_ELLIPSE_OVERLAY_AXES)) cover_axes(canvas_, outline, axes_width);
+    if (has(GST_ELLIPSE_OVERLAY_ELLIPSE)) cover_outline(canvas_, outline, width + wider_px);
   }
-  if (has(GST_ELLIPSE_OVERLAY_CENTRE)) cover_cross(canvas_, centre_of(meta), width);
+  if (has(GST_ELLIPSE_OVERLAY_CENTRE)) {
+    cover_cross(canvas_, centre_of(meta), cross_arm_px(width), width + wider_px);
+  }
+}
+
+void Overlay::draw(const GstEllipseMeta& meta, const OverlayStyle& style) {
+  const guint opacity = style.color_argb >> 24U;
+  if (!is_drawable(meta) || opacity == 0) return;
+  if (style.has_casing) {
+    cover_parts(meta, style, 2.0 * kCasingPx);
+    canvas_.paint(opacity << 24U | contrast_to(style.color_argb));
+  }
+  cover_parts(meta, style, 0.0);
   canvas_.paint(style.color_argb);
-  if (has(GST_ELLIPSE_OVERLAY_LABEL)) draw_label(meta, style);
+  if ((style.parts & GST_ELLIPSE_OVERLAY_LABEL) != 0) draw_label(meta, style);
 }
 
 void Overlay::draw_label(const GstEllipseMeta& meta, const OverlayStyle& style) {

@@ -26,6 +26,8 @@ class Overlay {
   [[nodiscard]] const Canvas& canvas() const { return canvas_; }
 
  private:
+  // Covers all parts but the label, each line wider by this.
+  void cover_parts(const GstEllipseMeta& meta, const OverlayStyle& style, double wider_px);
   void draw_label(const GstEllipseMeta& meta, const OverlayStyle& style);
 
   Canvas canvas_;

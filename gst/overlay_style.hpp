@@ -24,6 +24,9 @@ struct OverlayStyle {
   GstEllipseOverlayFlags parts = GST_ELLIPSE_OVERLAY_NONE;
   guint color_argb = 0xff00ff00;
   guint line_width_px = 2;
+  /// Lines get an edge, black around bright and white around dark ones. For formats without colour,
+  /// where a line may have the grey level of what lies behind it.
+  bool has_casing = false;
 };
 
 /// The properties overlay, overlay-color and line-width, the same in every element that draws.

@@ -161,7 +161,8 @@ static void skip(GstEllipseTrack* self, Skip reason) {
 static void draw(GstEllipseTrack* self,
                  GstVideoFrame& frame,
                  const GstEllipseMeta& meta,
-                 const OverlayStyle& style) {
+                 OverlayStyle style) {
+  style.has_casing = GST_VIDEO_FORMAT_INFO_IS_GRAY(frame.info.finfo);
   Overlay& overlay = self->stream->overlay;
   overlay.begin(GST_VIDEO_FRAME_WIDTH(&frame), GST_VIDEO_FRAME_HEIGHT(&frame));
   overlay.draw(meta, style);

@@ -2,6 +2,7 @@
 
 #include <gst/video/video.h>
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,6 +39,10 @@ struct TrackShared {
   bool is_live = false;
   bool reset_is_due = false;
   std::set<std::string> refused;  ///< Properties whose last new value was refused.
+  /// In the state NULL: all values that were asked for, which may not fit each other yet.
+  std::optional<TrackProperties> wanted;
+  /// Why a property's value made no sense, by its name; of those set in the state NULL.
+  std::map<std::string, std::string> senseless;
 };
 
 struct _GstEllipseTrack {

@@ -56,9 +56,11 @@ GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
       info.name, info.name, blurb.c_str(), info.range.min, info.range.max, initial, flags);
 }
 
-// The numbers of a vector of doubles, or of ints.
+// The numbers of a vector of doubles, or of ints. An empty array is what GStreamer takes for the
+// default of every array: zeros.
 std::array<double, 3> vector_from(const GValue* value, const char* name) {
   std::array<double, 3> numbers{};
+  if (gst_value_array_get_size(value) == 0) return numbers;
   if (gst_value_array_get_size(value) != numbers.size()) {
     throw std::invalid_argument(std::string(name) + " has not the form <x, y, z>");
   }
@@ -83,8 +85,10 @@ void write_vector(const std::array<double, 3>& numbers, GValue* value) {
   }
 }
 
+// The same for a region.
 ellipse::Rect rect_from(const GValue* value) {
   std::array<int, 4> numbers{};
+  if (gst_value_array_get_size(value) == 0) return {};
   if (gst_value_array_get_size(value) != numbers.size()) {
     throw std::invalid_argument("roi has not the form <x, y, width, height>");
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene/ground_painting.hpp"
+#include "core/scene/polygon.hpp"
 #include "core/scene/random.hpp"
 
 namespace ellipse {
@@ -21,8 +22,7 @@ class Painter {
 
   void polygon(const std::vector<cv::Point2d>& outline, double level) {
     for_each_copy([&](double dx, double dy) {
-      const std::vector<cv::Point> points = moved(outline, dx, dy);
-      cv::fillPoly(tile_, points, level, cv::LINE_8, kShift);
+      fill_polygon(tile_, moved(outline, dx, dy), static_cast<float>(level));
     });
   }
 
@@ -40,6 +40,7 @@ class Painter {
 
  private:
   static constexpr int kShift = 4;
+  static_assert(1 << kShift == kPolygonUnitsPerPx);
 
   template <class Use>
   static void for_each_copy(const Use& use) {

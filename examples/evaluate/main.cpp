@@ -106,7 +106,17 @@ void add_options(CLI::App& app, Options& options) {
         app.add_flag("--all",
                      options.all_ellipses,
                      "Also compare all ellipses of each frame, not the target alone"),
-        app.add_option("--json", options.json_file, "Write all measures as JSON")}) {
+        app.add_option("--json", options.json_file, "Write all measures as JSON"),
+        app.add_option(
+               "--min-f1", options.limits.min_f1, "Exit with 1 where a method's F1 is lower")
+            ->check(finite_number() & CLI::Range(0.0, 1.0)),
+        app.add_option(
+               "--min-recall", options.limits.min_recall, "Exit with 1 where its recall is lower")
+            ->check(finite_number() & CLI::Range(0.0, 1.0)),
+        app.add_option("--max-false",
+                       options.limits.max_false,
+                       "Exit with 1 where more of its frames have a false answer (FP or WD)")
+            ->check(CLI::NonNegativeNumber)}) {
     option->excludes(sweep)->excludes(make)->excludes(leave);
   }
 }

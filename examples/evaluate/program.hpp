@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "examples/evaluate/limits.hpp"
 #include "examples/evaluate/scenes.hpp"
 
 namespace evaluate {
@@ -27,11 +28,13 @@ struct Options {
   std::string report_folder;
   std::string sweep_folder = "sweep";
   std::string dataset_folder;
+  Limits limits;
   std::string command;
 };
 
 /// Does it: writes a data set, sweeps a property, leaves sources out, or compares methods.
-/// @return The program's exit status: 2 where frames are missing, 130 where it was interrupted.
+/// @return The program's exit status: 1 where a method does not keep the limits, 2 where frames are
+/// missing, 130 where it was interrupted.
 /// Throws std::exception with a text for people, where it cannot.
 int run(const Options& options);
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -78,9 +79,11 @@ void write_candidates(JsonWriter& json, const ellipse::DetectionTrace& trace) {
       candidates.begin(), candidates.end(), [](const auto* each) { return is_found(*each); });
   std::map<ellipse::Reason, std::size_t> counts;
   for (const auto* candidate : candidates) ++counts[candidate->verdict.reason];
-  candidates.resize(std::min(candidates.size(), kMostCandidates));
   json.key("candidates").begin_array();
-  for (const auto* candidate : candidates) write_candidate(json, *candidate);
+  for (const auto* candidate :
+       std::span(candidates).first(std::min(candidates.size(), kMostCandidates))) {
+    write_candidate(json, *candidate);
+  }
   json.end_array().key("counts").begin_object();
   for (const auto& [reason, count] : counts) {
     json.member(ellipse::reason_info(reason).nick, count);

@@ -18,9 +18,10 @@
 #include <vector>
 
 #include "tests/docs/recipes.hpp"
-#include "tests/docs/shell_job.hpp"
+#include "tests/docs/sockets.hpp"
 #include "tests/gst/loopback.hpp"
 #include "tests/gst/support.hpp"
+#include "tests/support/shell_job.hpp"
 
 namespace {
 

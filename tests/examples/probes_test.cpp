@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // The example programs that read the metadata in a pad probe, in C and in Python.
+#include <glib.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -16,6 +19,7 @@
 #include "core/ellipse.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/examples/programs.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace {
 
@@ -84,6 +88,26 @@ TEST_P(Reader, SaysThatThePluginIsMissing) {
             "there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
 }
 
+// Modules of these names that cannot be imported stand before the real ones.
+TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
+  if (!is_script(GetParam())) GTEST_SKIP() << "no Python";
+  for (const std::string module : {"gi", "matplotlib"}) {
+    const fs::path modules = folder_ / ("without-" + module);
+    fs::create_directories(modules);
+    const std::string why = "No module named '" + module + "'";
+    std::ofstream(modules / (module + ".py")) << "raise ModuleNotFoundError(\"" << why << "\")\n";
+    const Outcome outcome = programs::run("PYTHONPATH='" + modules.string() + ":'$PYTHONPATH " +
+                                          command(GetParam(), "videotestsrc num-buffers=1"));
+    if (module == "matplotlib" && std::string(GetParam()) != kPlot) {
+      EXPECT_EQ(outcome.status, 0) << outcome.text;
+    } else {
+      EXPECT_EQ(outcome.status, 1);
+      EXPECT_EQ(outcome.text.find(why + ": install python3-" + module), 0U) << outcome.text;
+      EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    }
+  }
+}
+
 TEST_P(Reader, EndsWellAtAnInterrupt) {
   // It runs once its first frame has left a trace.
   const std::string trace = (folder_ / "trace").string();
@@ -92,11 +116,15 @@ TEST_P(Reader, EndsWellAtAnInterrupt) {
               "ellipsetestsrc is-live=true ! tee name=t t. ! queue ! ellipsejson ! filesink "
               "buffer-mode=unbuffered location=" +
                   trace + " t. ! queue");
-  const Outcome outcome = programs::run(start + " & program=$!; until [ -s " + trace +
-                                        " ] || ! kill -0 $program; do sleep 0.1; done; " +
-                                        "kill -INT $program; wait $program");
-  EXPECT_EQ(outcome.status, 0) << outcome.text;
-  EXPECT_EQ(outcome.text.find("Traceback"), std::string::npos) << outcome.text;
+  const std::string log = (folder_ / "log").string();
+  support::ChildProcess program(
+      {.arguments = {"sh", "-c", "exec " + start + " > " + log + " 2>&1"}});
+  const auto has_begun = [&] { return fs::exists(trace) && fs::file_size(trace) > 0; };
+  while (!has_begun() && !program.is_over()) g_usleep(100'000);
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0) << support::contents_of(log);
+  EXPECT_EQ(support::contents_of(log).find("Traceback"), std::string::npos)
+      << support::contents_of(log);
 }
 
 class Probe : public Reader {};

@@ -1,28 +1,16 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "tests/support/child_process.hpp"
 
 namespace programs {
 
-struct Outcome {
-  int status = -1;
-  std::string text;  // standard output and standard error
-};
+using support::Outcome;
 
-/// Runs a command line of the shell to its end.
+/// Runs a command line of the shell to its end, its standard error with its standard output.
 inline Outcome run(const std::string& command) {
-  Outcome outcome;
-  FILE* pipe = popen(("{ " + command + "; } 2>&1 < /dev/null").c_str(), "r");
-  std::array<char, 4096> block{};
-  while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe)) {
-    outcome.text.append(block.data(), n);
-  }
-  outcome.status = WEXITSTATUS(pclose(pipe));
-  return outcome;
+  return support::run_shell("{ " + command + "; } 2>&1");
 }
 
 }  // namespace programs

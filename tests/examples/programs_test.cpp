@@ -17,7 +17,7 @@
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/twin.hpp"
-#include "tests/examples/terminal.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace {
 
@@ -141,11 +141,12 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
 // CSRT takes its time, so that the program is not at its end before the key is pressed.
 TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   const fs::path json = folder_ / "json";
-  programs::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
-                               "--methods",
-                               "contours+none,csrt",
-                               "--json",
-                               json.string()});
+  support::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
+                              "--methods",
+                              "contours+none,csrt",
+                              "--json",
+                              json.string()});
+  if (terminal.is_missing()) GTEST_SKIP() << terminal.reason();
   ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frames
   terminal.type('\x03');
   EXPECT_EQ(terminal.wait_for_end(), 130);
@@ -153,6 +154,36 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   EXPECT_NE(shown.find("Interrupted: the figures are of"), std::string::npos) << shown;
   EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
   EXPECT_GT(fs::file_size(json), 200U);
+}
+
+// A program that answers each image with an ellipse far from the target.
+fs::path write_wrong_peer(const fs::path& folder) {
+  const fs::path peer = folder / "peer.sh";
+  std::ofstream(peer) << "#!/bin/sh\nwhile read -r image; do\n"
+                         "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
+                         "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
+  fs::permissions(peer, fs::perms::owner_all);
+  return peer;
+}
+
+TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
+  write_dataset(folder_ / "set", 2);
+  const fs::path peer = write_wrong_peer(folder_);
+  const std::string good = (folder_ / "set").string() + " --methods arcs+edges ";
+  const std::string both = good + "--peer 'wrong=" + peer.string() + "' ";
+  const Outcome kept = run("ellipse-evaluate", good + "--min-f1 1 --min-recall 1 --max-false 0");
+  EXPECT_EQ(kept.status, 0) << kept.text;
+  const Outcome unkept =
+      run("ellipse-evaluate", both + "--min-f1 .9 --min-recall .5 --max-false 1");
+  EXPECT_EQ(unkept.status, 1);
+  for (const char* text : {"wrong on twin: F1 0 is below 0.9\n",
+                           "wrong on twin: recall 0 is below 0.5\n",
+                           "wrong on twin: 2 frames with a false answer, at most 1 allowed\n"}) {
+    EXPECT_NE(unkept.text.find(text), std::string::npos) << text << unkept.text;
+  }
+  EXPECT_EQ(unkept.text.find("arcs+edges on"), std::string::npos) << unkept.text;
+  EXPECT_EQ(run("ellipse-evaluate", both + "--max-false 2").status, 0);
+  EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a share, no percentage
 }
 
 TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
@@ -173,11 +204,7 @@ TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
 
 TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   write_dataset(folder_ / "set", 2);
-  const fs::path peer = folder_ / "peer.sh";
-  std::ofstream(peer) << "#!/bin/sh\nwhile read -r image; do\n"
-                         "echo \"{\\\"image\\\":\\\"$image\\\",\\\"ms\\\":1.5,"
-                         "\\\"ellipses\\\":[[20,20,9,8,0]]}\"\ndone\n";
-  fs::permissions(peer, fs::perms::owner_all);
+  const fs::path peer = write_wrong_peer(folder_);
   const Outcome outcome =
       run("ellipse-evaluate",
           (folder_ / "set").string() + " --methods contours+redetect --peer \"always wrong=" +

@@ -14,11 +14,11 @@
 
 namespace {
 
+using support::contents_of;
 using support::Owned;
 using support::Pipeline;
 using support::run_own_tests;
 using support::TemporaryFolder;
-using support::text_of;
 
 bool is_installed(const char* program) {
   gchar* path = g_find_program_in_path(program);
@@ -58,9 +58,9 @@ TEST(Valgrind, FindsNothing) {
       "--show-leak-kinds=definite --errors-for-leak-kinds=definite --num-callers=25 "
       "--suppressions=" ELLIPSE_TESTS "/valgrind.supp";
   EXPECT_FALSE(run_own_tests(memcheck, "Valgrind.DISABLED_LeavesABlock", log));  // it works
-  EXPECT_NE(text_of(log).find("definitely lost"), std::string::npos) << text_of(log);
-  EXPECT_NE(text_of(log).find("uninitialised"), std::string::npos) << text_of(log);
-  EXPECT_TRUE(run_own_tests(memcheck, "Valgrind.DISABLED_ShortPipelines", log)) << text_of(log);
+  EXPECT_NE(contents_of(log).find("definitely lost"), std::string::npos) << contents_of(log);
+  EXPECT_NE(contents_of(log).find("uninitialised"), std::string::npos) << contents_of(log);
+  EXPECT_TRUE(run_own_tests(memcheck, "Valgrind.DISABLED_ShortPipelines", log)) << contents_of(log);
 }
 
 #if ELLIPSE_SANITIZER_IS_THREAD
@@ -94,9 +94,10 @@ TEST(ThreadSanitizer, DISABLED_CountsUnderNone) {
 TEST(ThreadSanitizer, KnowsGLibsMutexes) {
   const TemporaryFolder folder;
   const std::string log = folder.file("log");
-  EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log)) << text_of(log);
+  EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log))
+      << contents_of(log);
   EXPECT_FALSE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderNone", log));
-  EXPECT_NE(text_of(log).find("data race"), std::string::npos) << text_of(log);
+  EXPECT_NE(contents_of(log).find("data race"), std::string::npos) << contents_of(log);
 }
 
 TEST(ThreadSanitizer, DISABLED_HandsOverThroughAQueue) {
@@ -115,7 +116,7 @@ TEST(ThreadSanitizer, KnowsGLibsQueues) {
   const TemporaryFolder folder;
   const std::string log = folder.file("log");
   EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_HandsOverThroughAQueue", log))
-      << text_of(log);
+      << contents_of(log);
 }
 #endif
 
@@ -166,7 +167,7 @@ TEST_P(Scenario, IsWellFormedAndItsPipelineRuns) {
 TEST_P(Scenario, HoldsForGstValidate) {
   if (!is_installed("gst-validate-1.0")) GTEST_SKIP() << "gst-validate-1.0 is not installed";
   const std::string command = "gst-validate-1.0 --set-test-file '" + GetParam() + "'";
-  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(support::run_shell(command).status, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files,

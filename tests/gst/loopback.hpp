@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string>
-#include <utility>
 
 #include "tests/gst/own_port.hpp"
 #include "tests/gst/support.hpp"
@@ -133,30 +131,13 @@ inline std::string program(const std::string& name) {
   return text;
 }
 
-/// @return What a command wrote, and whether it said that all went well.
-inline std::pair<std::string, bool> output_of(const std::string& command) {
-  FILE* pipe = popen((command + " 2> /dev/null").c_str(), "r");
-  std::string text;
-  std::array<char, 4096> bytes;
-  while (const std::size_t size = std::fread(bytes.data(), 1, bytes.size(), pipe)) {
-    text.append(bytes.data(), size);
-  }
-  return {text, pclose(pipe) == 0};
-}
-
 /// An MQTT broker on the loopback, for as long as this lives.
 class Broker {
  public:
-  explicit Broker(const std::string& mosquitto) {
-    process_ = start_child({mosquitto, "-p", port()},
-                           static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDOUT_SILENCE |
-                                                         G_SUBPROCESS_FLAGS_STDERR_SILENCE));
-  }
-  ~Broker() {
-    g_subprocess_force_exit(process_);
-    g_subprocess_wait(process_, nullptr, nullptr);
-    g_object_unref(process_);
-  }
+  explicit Broker(const std::string& mosquitto)
+      : process_({.arguments = {mosquitto, "-p", port()},
+                  .output = silence_.number(),
+                  .error = silence_.number()}) {}
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
@@ -167,21 +148,23 @@ class Broker {
   /// The broker keeps for this reader what comes from here on.
   [[nodiscard]] bool subscribe() const {
     for (int i = 0; i < 1200; ++i) {  // until it is up
-      if (output_of("mosquitto_sub" + address() + kReader + "-E").second) return true;
+      if (run_reader("-E").status == 0) return true;
       g_usleep(50000);
     }
     return false;
   }
   [[nodiscard]] std::string read(std::size_t count) const {
-    return output_of("mosquitto_sub" + address() + kReader + "-W 60 -C " + std::to_string(count))
-        .first;
+    return run_reader("-W 60 -C " + std::to_string(count)).text;
   }
 
  private:
-  static constexpr char kReader[] = "-i reader -c ";
+  [[nodiscard]] Outcome run_reader(const std::string& options) const {
+    return run_shell("mosquitto_sub" + address() + "-i reader -c " + options + " 2> /dev/null");
+  }
 
   const OwnPort port_;
-  GSubprocess* process_;
+  const Descriptor silence_{"/dev/null", O_WRONLY};
+  ChildProcess process_;
 };
 
 }  // namespace support

@@ -166,9 +166,13 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
   }
   const Broker broker(mosquitto);
   ASSERT_TRUE(broker.subscribe());
-  FILE* publisher = popen(("mosquitto_pub -l" + broker.address()).c_str(), "w");
-  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(fileno(publisher))), "");
-  EXPECT_EQ(pclose(publisher), 0);
+  support::Pipe lines;
+  support::ChildProcess publisher(
+      {.arguments = {"sh", "-c", "exec mosquitto_pub -l" + broker.address()},
+       .input = lines.out.number()});
+  EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(lines.in.number())), "");
+  lines.in.close();
+  EXPECT_EQ(publisher.wait(), 0);
   expect_frames(broker.read(kFrames), 0, kFrames);
 }
 
@@ -196,7 +200,7 @@ class German {
     if (std::setlocale(LC_ALL, kName) != nullptr) return;
     const std::string command =
         "localedef -i de_DE -f UTF-8 " + folder_.file(kName) + " > /dev/null 2>&1";
-    if (std::system(command.c_str()) != 0) return;
+    if (support::run_shell(command).status != 0) return;
     g_setenv("LOCPATH", folder_.file("").c_str(), TRUE);
     std::setlocale(LC_ALL, kName);
   }
@@ -215,12 +219,30 @@ class German {
   TemporaryFolder folder_;
 };
 
+std::string lines_of(const std::string& pipeline) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_pipeline(pipeline + "filesink location=" + folder.file("lines")), "");
+  return contents_of(folder.file("lines"));
+}
+
 // The lines without the time that was spent, which is another one each time.
 std::string lines_without_times() {
-  const TemporaryFolder folder;
-  EXPECT_EQ(run_pipeline(kLines + "filesink location=" + folder.file("lines")), "");
-  return std::regex_replace(
-      contents_of(folder.file("lines")), std::regex("\"processing_ns\":[0-9]+,"), "");
+  return lines_of("ellipsetestsrc num-buffers=" + std::to_string(kFrames) +
+                  " ! ellipsetrack ! ellipsejson times=false ! ");
+}
+
+TEST(NdjsonLines, CanLeaveOutTheTimeThatWasSpentAndNothingElse) {
+  const std::string without = lines_without_times();
+  EXPECT_EQ(without.find("processing_ns"), std::string::npos);
+  EXPECT_EQ(without, lines_without_times());
+  EXPECT_EQ(without,
+            std::regex_replace(lines_of(kLines), std::regex(",\"processing_ns\":[0-9]+"), ""));
+  expect_frames(without, 0, kFrames);
+  // Behind no tracker there is no time.
+  const std::string untracked =
+      lines_of("ellipsetestsrc num-buffers=1 ! ellipsejson times=false ! ");
+  EXPECT_EQ(untracked.find("processing_ns"), std::string::npos);
+  expect_frames(untracked, 0, 1);
 }
 
 TEST(NdjsonLines, AreTheSameWhereNumbersHaveACommaAsPoint) {

@@ -70,17 +70,18 @@ Owned<GstBuffer> drawn(const std::string& settings,
   return push(harness_of("ellipseoverlay " + settings, caps, caps), std::move(buffer));
 }
 
+// The first component of what is drawn: luma, or red.
+Picture drawn_picture(const std::string& settings,
+                      const std::string& format,
+                      int width,
+                      int height,
+                      const Ellipse& e) {
+  const auto buffer = drawn(settings, format, width, height, e);
+  return support::picture_of(buffer.get(), info_of(format, width, height));
+}
+
 Picture drawn_gray(const std::string& settings, int width, int height, const Ellipse& e) {
-  const GstVideoInfo info = info_of("GRAY8", width, height);
-  const auto buffer = drawn(settings, "GRAY8", width, height, e);
-  const Bytes bytes = bytes_of(buffer.get());
-  Picture picture(width, height);
-  for (int y = 0; y < height; ++y) {
-    std::copy_n(bytes.begin() + std::ptrdiff_t{y} * GST_VIDEO_INFO_PLANE_STRIDE(&info, 0),
-                width,
-                &picture.at(0, y));
-  }
-  return picture;
+  return drawn_picture(settings, "GRAY8", width, height, e);
 }
 
 // One byte of a frame and the pixels that it is shared by.
@@ -128,9 +129,11 @@ TEST(EllipseOverlay, ChangesNoByteAwayFromTheLine) {
       const auto harness = harness_of(
           "ellipseoverlay overlay=ellipse line-width=" + std::to_string(line_width), caps, caps);
       Bytes after = bytes_of(push(harness, std::move(buffer)).get());
+      const double casing = GST_VIDEO_INFO_IS_GRAY(&info) ? 1.0 : 0.0;
+      const double reach = 0.5 * line_width + casing + 0.6;
       int changes = 0;
       for (const Sample& sample : samples_of(info)) {
-        if (!is_near(e, sample.block, 0.5 * line_width + 0.6)) continue;
+        if (!is_near(e, sample.block, reach)) continue;
         changes += after[sample.at] != before[sample.at] ? 1 : 0;
         after[sample.at] = before[sample.at];
       }
@@ -205,11 +208,12 @@ TEST(EllipseOverlay, HasItsColourInRgb) {
 
 TEST(EllipseOverlay, WidthIsThatOfTheLine) {
   for (int width = 1; width <= 8; ++width) {
-    const Picture picture =
-        drawn_gray("overlay=ellipse overlay-color=0xffffffff line-width=" + std::to_string(width),
-                   161,
-                   121,
-                   {80.3, 60.6, 50.0, 35.0, 0.5});
+    const Picture picture = drawn_picture(
+        "overlay=ellipse overlay-color=0xffffffff line-width=" + std::to_string(width),
+        "RGB",
+        161,
+        121,
+        {80.3, 60.6, 50.0, 35.0, 0.5});
     double covered_px = 0.0;
     for (const auto level : picture.pixels) covered_px += (level - 128) / 127.0;
     const double line_px = ellipse::perimeter_px({80.3, 60.6, 50.0, 35.0, 0.5});
@@ -221,11 +225,50 @@ TEST(EllipseOverlay, WidthIsThatOfTheLine) {
 TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
   const Ellipse flat{60.0, 60.0, 50.0, 3.0, 0.7};
   const Picture picture =
-      drawn_gray("overlay=ellipse overlay-color=0xffffffff line-width=8", 121, 121, flat);
+      drawn_picture("overlay=ellipse overlay-color=0xffffffff line-width=8", "RGB", 121, 121, flat);
   for (int y = 0; y < 121; ++y) {
     for (int x = 0; x < 121; ++x) {
       if (ellipse::sampson_distance(flat, {x, y}) < 0.0) {
         EXPECT_EQ(picture.view().row(y)[x], 255) << x << ' ' << y;
+      }
+    }
+  }
+}
+
+// The largest difference from the background within 2 px of a point.
+int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int background) {
+  int most = 0;
+  const int cx = static_cast<int>(std::lround(point.x()));
+  const int cy = static_cast<int>(std::lround(point.y()));
+  for (int y = cy - 2; y <= cy + 2; ++y) {
+    for (int x = cx - 2; x <= cx + 2; ++x) {
+      most = std::max(most, std::abs(picture.view().row(y)[x] - background));
+    }
+  }
+  return most;
+}
+
+// Without colour a line has a grey level, which may be that of what lies behind it.
+TEST(EllipseOverlay, IsSeenOnAnyGreyInAFormatWithoutColour) {
+  const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
+  const GstVideoInfo info = info_of("GRAY8", 161, 121);
+  const std::string caps = caps_of("GRAY8", 161, 121);
+  for (const char* color : {"0xff00ff00", "0xffffffff", "0xff000000", "0xff808080", "0xffff0000"}) {
+    for (const char* element : {"ellipseoverlay overlay=ellipse", "ellipseoverlay overlay=roi"}) {
+      for (const int level : {0, 76, 128, 150, 200, 255}) {
+        const auto harness =
+            harness_of(std::string(element) + " overlay-color=" + color, caps, caps);
+        auto buffer = support::buffer_of(Picture(161, 121, static_cast<std::uint8_t>(level)), info);
+        add_ellipse(buffer.get(), e);
+        GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
+        meta->roi_x = 20;
+        meta->roi_y = 20;
+        meta->roi_width = 60;
+        const auto out = push(harness, std::move(buffer));
+        const Picture picture = support::picture_of(out.get(), info);
+        const bool is_region = std::string(element).ends_with("roi");
+        const Eigen::Vector2d place = is_region ? Eigen::Vector2d(50.0, 20.0) : e.point_at(1.0);
+        EXPECT_GE(contrast_near(picture, place, level), 64) << element << color << " on " << level;
       }
     }
   }
@@ -335,8 +378,8 @@ TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
 TEST(EllipseOverlay, DrawsCandidatesThinAndGrey) {
   const Ellipse e{160.0, 120.0, 80.0, 60.0, 0.0};
   const auto drawn_as = [&](GstEllipseRole role) {
-    const std::string caps = caps_of("GRAY8", 320, 240);
-    auto buffer = even_buffer("GRAY8", 320, 240);
+    const std::string caps = caps_of("RGB", 320, 240);
+    auto buffer = even_buffer("RGB", 320, 240);
     add_ellipse(buffer.get(), e);
     gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->role = role;
     const auto harness = harness_of(
@@ -348,8 +391,8 @@ TEST(EllipseOverlay, DrawsCandidatesThinAndGrey) {
   };
   const Bytes target = drawn_as(GST_ELLIPSE_ROLE_TARGET);
   const Bytes candidate = drawn_as(GST_ELLIPSE_ROLE_CANDIDATE);
-  EXPECT_EQ(target.at(120 * 320 + 240), 255);
-  EXPECT_NEAR(candidate.at(120 * 320 + 240), 0xb0, 1);
+  EXPECT_EQ(target.at(3 * (120 * 320 + 240)), 255);
+  EXPECT_NEAR(candidate.at(3 * (120 * 320 + 240)), 0xb0, 1);
   EXPECT_NEAR(
       static_cast<double>(changed(candidate)) / static_cast<double>(changed(target)), 0.5, 0.15);
   EXPECT_EQ(changed(drawn_as(GST_ELLIPSE_ROLE_TRUTH)), 0);  // unless truth=true

@@ -1,18 +1,11 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
-namespace support {
+#include "tests/support/child_process.hpp"
 
-/// All of a file; empty where there is none.
-inline std::string text_of(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+namespace support {
 
 /// Runs some of this program's tests in a process of its own, the disabled ones among them.
 /// @param before  What stands before the program: variables, or a command that takes one.
@@ -25,7 +18,7 @@ inline bool run_own_tests(const std::string& before,
   const std::string command = "GTEST_OUTPUT= " + before + " " + program +
                               " --gtest_also_run_disabled_tests --gtest_filter='" + tests + "' > " +
                               log + " 2>&1";
-  return std::system(command.c_str()) == 0;
+  return run_shell(command).status == 0;
 }
 
 }  // namespace support

@@ -112,7 +112,7 @@ std::string leaks_of(const std::string& tests) {
   const std::string tracer = "GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_FILE=" + log;
   const std::string output = folder.file("output");
   if (!support::run_own_tests(tracer, tests, output)) {
-    return "the tests failed:\n" + support::text_of(output);
+    return "the tests failed:\n" + support::contents_of(output);
   }
   std::ifstream in(log);
   std::string alive;
@@ -146,7 +146,7 @@ TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
   const std::string command = std::string(evaluate) + " '" + folder_name +
                               "' --methods arcs+edges --frames " + expected_file + " > " +
                               folder.file("tables.txt");
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  ASSERT_EQ(support::run_shell(command).status, 0);
   const auto expected = read_ndjson(expected_file);
 
   std::size_t next = 0;

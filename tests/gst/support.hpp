@@ -240,13 +240,6 @@ inline std::string run_pipeline(const std::string& description,
   return pipeline.wait_for_end(patience);
 }
 
-/// All of a file; empty where there is none.
-inline std::string contents_of(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 /// The lines of NDJSON, parsed; fails to a null root where a line is no JSON.
 inline std::vector<Owned<JsonParser>> parse_ndjson(std::istream&& in) {
   std::vector<Owned<JsonParser>> lines;

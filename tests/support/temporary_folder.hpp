@@ -1,24 +1,33 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <glib.h>
-
-#include <cstdio>
+#include <cerrno>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
+#include <system_error>
 
 namespace support {
+
+/// All of a file; empty where there is none.
+inline std::string contents_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
 
 /// A folder of its own, gone at the end: tests that run beside each other do not meet in it.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    gchar* path = g_dir_make_tmp("gst-ellipse-XXXXXX", nullptr);
-    path_ = path;
-    g_free(path);
+  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "gst-ellipse-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw std::system_error(errno, std::generic_category(), path_);
+    }
   }
   ~TemporaryFolder() {
-    const std::string command = "rm -rf '" + path_ + "'";
-    if (std::system(command.c_str()) != 0) std::perror("rm");
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -26,6 +26,7 @@ export async function startProgram(...args) {
       const found = /(http:\/\/\S+)/.exec(output);
       if (found) resolve(found[1]);
     });
+    child.once("error", (error) => reject(new Error(`ellipse-live cannot be started: ${error.message}`)));
     child.once("exit", () => reject(new Error(`ellipse-live has ended: ${output}`)));
   });
   // Waits and asks again where it has asked too often, as those do who poll.

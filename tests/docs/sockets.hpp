@@ -1,69 +1,13 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <fcntl.h>
 #include <glib.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <string>
 #include <vector>
 
-#include "tests/gst/support.hpp"
-
 namespace support {
-
-/// Command lines of a shell beside this program, in a process group of their own; gone at the end.
-class ShellJob {
- public:
-  /// @param log  Names two files, with .out and .err behind it.
-  ShellJob(const std::string& text, const std::string& folder, const std::string& log)
-      : log_(folder + "/" + log) {
-    process_ = fork();
-    if (process_ != 0) {
-      setpgid(process_, process_);  // before anybody interrupts it
-      return;
-    }
-    setpgid(0, 0);
-    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-    dup2(open((log_ + ".out").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), STDOUT_FILENO);
-    dup2(open((log_ + ".err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), STDERR_FILENO);
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    execlp("bash", "bash", "-e", "-o", "pipefail", "-c", text.c_str(), nullptr);
-    _exit(127);
-  }
-  ~ShellJob() {
-    if (!is_over_) kill(-process_, SIGKILL);
-    if (!is_over_) waitpid(process_, nullptr, 0);
-  }
-  ShellJob(const ShellJob&) = delete;
-  ShellJob& operator=(const ShellJob&) = delete;
-
-  /// What Ctrl-C sends.
-  void interrupt() const { kill(-process_, SIGINT); }
-  /// @return Whether it ends within three minutes, of which a busy machine may need the second.
-  [[nodiscard]] bool ends() {
-    for (int i = 0; i < 9000 && !is_over_; ++i) {
-      is_over_ = waitpid(process_, &status_, WNOHANG) == process_;
-      if (!is_over_) g_usleep(20000);
-    }
-    return is_over_;
-  }
-  /// @return Its exit status; -1 where a signal ended it, or nothing within that time.
-  [[nodiscard]] int wait_for_end() {
-    return ends() && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
-  }
-  [[nodiscard]] std::string output() const { return contents_of(log_ + ".out"); }
-  [[nodiscard]] std::string errors() const { return contents_of(log_ + ".err"); }
-
- private:
-  std::string log_;
-  pid_t process_ = -1;
-  int status_ = 0;
-  bool is_over_ = false;
-};
 
 /// A socket of this machine, as the kernel's tables tell of it.
 struct SocketState {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+//
+// ellipsetrack where a setting is refused before the pipeline starts.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/gst/support.hpp"
+
+namespace {
+
+using support::Owned;
+using support::run_pipeline;
+using support::TemporaryFolder;
+
+std::string run_tracker(const std::string& settings) {
+  return run_pipeline("ellipsetestsrc num-buffers=2 ! ellipsetrack " + settings + " ! fakesink");
+}
+
+double number(const Owned<GstElement>& element, const char* name) {
+  double value = 0.0;
+  g_object_get(element.get(), name, &value, nullptr);
+  return value;
+}
+
+GstStateChangeReturn start(const Owned<GstElement>& element) {
+  return gst_element_set_state(element.get(), GST_STATE_READY);
+}
+
+void stop(const Owned<GstElement>& element) {
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+}
+
+Owned<GstElement> tracker_in_null() {
+  return Owned<GstElement>(
+      GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("ellipsetrack", nullptr))));
+}
+
+TEST(EllipseTrackStart, FailsForAPairTheWrongWayRound) {
+  const std::string error = run_tracker("min-axis=800");
+  EXPECT_NE(error.find("max-axis = 700 is not in [800, "), std::string::npos) << error;
+  EXPECT_EQ(run_tracker("min-axis=20 max-axis=30"), "");
+}
+
+TEST(EllipseTrackStart, TakesTheValuesOfAPairInAnyOrder) {
+  for (const char* settings : {"min-axis=800 max-axis=900", "max-axis=900 min-axis=800"}) {
+    const Owned<GstElement> element(GST_ELEMENT(gst_object_ref_sink(
+        gst_parse_launch((std::string("ellipsetrack ") + settings).c_str(), nullptr))));
+    EXPECT_EQ(number(element, "min-axis"), 800.0) << settings;
+    EXPECT_EQ(number(element, "max-axis"), 900.0) << settings;
+    EXPECT_EQ(start(element), GST_STATE_CHANGE_SUCCESS) << settings;
+    stop(element);
+  }
+}
+
+TEST(EllipseTrackStart, FailsForACameraFileThatCannotBeRead) {
+  const TemporaryFolder folder;
+  const std::string missing = run_tracker("camera-file=" + folder.file("no-such.yaml"));
+  EXPECT_NE(missing.find(folder.file("no-such.yaml")), std::string::npos) << missing;
+  std::ofstream(folder.file("bad.yaml")) << "image_width: twelve\n";
+  const std::string bad = run_tracker("camera-file=" + folder.file("bad.yaml"));
+  EXPECT_NE(bad.find(folder.file("bad.yaml")), std::string::npos) << bad;
+}
+
+TEST(EllipseTrackStart, FailsForAVectorThatIsNone) {
+  const std::string error = run_tracker("roi=\"<1,2,3>\"");
+  EXPECT_NE(error.find("roi"), std::string::npos) << error;
+}
+
+TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
+  const Owned<GstElement> element = tracker_in_null();
+  g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "min-axis", 800.0, nullptr);
+  EXPECT_EQ(number(element, "min-axis"), 5.0);
+  EXPECT_EQ(start(element), GST_STATE_CHANGE_FAILURE);
+  g_object_set(element.get(), "camera-file", "", nullptr);
+  EXPECT_EQ(start(element), GST_STATE_CHANGE_FAILURE);
+  g_object_set(element.get(), "interval", 3U, "min-axis", 10.0, nullptr);
+  EXPECT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(number(element, "min-axis"), 10.0);
+  EXPECT_EQ(number(element, "max-axis"), 700.0);
+  stop(element);
+}
+
+// A value that was refused while it ran is forgotten: it was told aloud then.
+TEST(EllipseTrackStart, DoesNotFailForWhatWasRefusedWhileItRan) {
+  const Owned<GstElement> element = tracker_in_null();
+  ASSERT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);
+  g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "min-axis", 800.0, nullptr);
+  stop(element);
+  EXPECT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(number(element, "min-axis"), 5.0);
+  stop(element);
+}
+
+}  // namespace
