@@ -136,6 +136,8 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   motion_.pose = inverse_of(attempt->estimate.information);
   motion_.velocity_variance = camera_noise(view_, camera_, kFirstTurn, kFirstShift);
   is_locked_ = true;
+  refine(window, attempt->visible);
+  if (window.camera) measure_inner_edges(window);
   return true;
 }
 

@@ -96,6 +96,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
 void Tracker::locate(Target& target) {
   const Camera& camera = lens_->camera();
   const bool is_followed = edge_tracker_.is_locked();
+  if (!target.uncertainty && is_followed) target.uncertainty = edge_tracker_.uncertainty();
   if (!target.uncertainty) {
     target.uncertainty =
         expected_uncertainty(target.ellipse, camera.width, camera.height, kDetectedSigmaPx);
