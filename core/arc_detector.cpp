@@ -151,7 +151,7 @@ void ArcDetector::detect_all(const ImageView& luma,
   least_gradient_ = kFullSizeGradient * map_.threshold();
   if (trace_ != nullptr) trace_edges(luma, scale);
   chains_.trace(map_);
-  arcs_ = splitter_.split(map_, chains_);
+  arcs_ = splitter_.split(map_, chains_, thresholds.wants_all);
   if (trace_ != nullptr) trace_arcs();
   caution_.edge_density = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
   caution_.least_score = least_score;

@@ -84,13 +84,15 @@ double EdgeTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
 }
 
-// Which way a pad is tilted, its outer edge does not tell. Seen along a wrong view its inner
-// circles are smeared over several radii; the view that shows the sharpest ones is the start.
+// The outer edge leaves open which way a pad is tilted. Along a wrong view the profile smears the
+// inner circles over several radii: with a camera, the view that shows the sharpest ones is the
+// start.
 bool EdgeTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) {
   std::array<Eigen::Matrix3d, 3> views;
   std::size_t count = 0;
   views[count++] = image_from_pad(outer_edge);
-  if (const auto poses = circle_poses(camera_, outer_edge)) {
+  const auto poses = window.camera ? circle_poses(camera_, outer_edge) : std::nullopt;
+  if (poses) {
     for (const CirclePose& pose : *poses) {
       const Eigen::Matrix3d view = image_from_pad(camera_, pose);
       views[count++] = view / view(2, 2);
@@ -136,8 +138,10 @@ bool EdgeTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   motion_.pose = inverse_of(attempt->estimate.information);
   motion_.velocity_variance = camera_noise(view_, camera_, kFirstTurn, kFirstShift);
   is_locked_ = true;
-  refine(window, attempt->visible);
-  if (window.camera) measure_inner_edges(window);
+  if (window.camera) {
+    refine(window, attempt->visible);
+    measure_inner_edges(window);
+  }
   return true;
 }
 

@@ -29,7 +29,7 @@ struct PoseMotion {
   PoseCovariance pose_velocity = PoseCovariance::Zero();  ///< Covariance of the two.
   PoseCovariance velocity_variance = PoseCovariance::Zero();
 
-  /// Some frames later, with white noise on the acceleration.
+  /// Some frames later, at the same velocity but for the noise.
   [[nodiscard]] PoseMotion after(double frames, const PoseCovariance& noise_per_frame) const;
 
   /// After a measurement: what tells the pose tells the velocity as well.

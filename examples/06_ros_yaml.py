@@ -51,7 +51,7 @@ def document(line, target, frame_id):
         "pose:\n"
         "  pose:\n"
         f"    position: {{x: {position['x']}, y: {position['y']}, z: {position['z']}}}\n"
-        f"    orientation: {{x: {turn[0]:.6f}, y: {turn[1]:.6f}, z: {turn[2]:.6f}, w: {turn[3]:.6f}}}\n"
+        f"    orientation: {{x: {turn[0]:.9f}, y: {turn[1]:.9f}, z: {turn[2]:.9f}, w: {turn[3]:.9f}}}\n"
         f"  covariance: [{covariance}]\n"
         "---\n"
     )
