@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/rtsp_output.hpp"
 
+#include <mutex>
 #include <stdexcept>
+#include <vector>
 
 #include "examples/live/frame_inlet.hpp"
 #include "examples/live/h264.hpp"
@@ -23,7 +25,46 @@ Ref<GstElement> inlet_of(GstRTSPMedia* media) {
 
 }  // namespace
 
-RtspOutput::RtspOutput(const Settings& settings) : server_(gst_rtsp_server_new()) {
+// Where frames go: the media that are prepared now. Any thread.
+struct RtspOutput::Inlets {
+  std::mutex mutex;
+  std::vector<Ref<GstElement>> inlets;
+  FramePtr newest;
+
+  // Calls back with its own reference to this, until the object is gone.
+  static void connect(gpointer object,
+                      const char* signal,
+                      GCallback callback,
+                      const std::shared_ptr<Inlets>& inlets) {
+    g_signal_connect_data(
+        object,
+        signal,
+        callback,
+        new std::shared_ptr<Inlets>(inlets),
+        [](gpointer data, GClosure*) { delete static_cast<std::shared_ptr<Inlets>*>(data); },
+        GConnectFlags{});
+  }
+
+  static void on_configure(GstRTSPMediaFactory* /*factory*/, GstRTSPMedia* media, gpointer data) {
+    const auto& self = *static_cast<std::shared_ptr<Inlets>*>(data);
+    connect(media, "unprepared", G_CALLBACK(on_unprepared), self);
+    Ref<GstElement> inlet = inlet_of(media);
+    const std::lock_guard lock(self->mutex);
+    // So that a client that joins while a file is paused learns what the video is.
+    if (self->newest) push_frame(GST_APP_SRC(inlet.get()), *self->newest);
+    self->inlets.push_back(std::move(inlet));
+  }
+
+  static void on_unprepared(GstRTSPMedia* media, gpointer data) {
+    const auto& self = *static_cast<std::shared_ptr<Inlets>*>(data);
+    const Ref<GstElement> gone = inlet_of(media);
+    const std::lock_guard lock(self->mutex);
+    std::erase_if(self->inlets, [&](const auto& inlet) { return inlet.get() == gone.get(); });
+  }
+};
+
+RtspOutput::RtspOutput(const Settings& settings)
+    : inlets_(std::make_shared<Inlets>()), server_(gst_rtsp_server_new()) {
   gst_rtsp_server_set_address(server_.get(), settings.address.c_str());
   gst_rtsp_server_set_service(server_.get(), std::to_string(settings.port).c_str());
   GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
@@ -34,7 +75,7 @@ RtspOutput::RtspOutput(const Settings& settings) : server_(gst_rtsp_server_new()
        " ! rtph264pay name=pay0 pt=96 config-interval=1 )")
           .c_str());
   gst_rtsp_media_factory_set_shared(factory, TRUE);
-  g_signal_connect(factory, "media-configure", G_CALLBACK(on_configure), this);
+  Inlets::connect(factory, "media-configure", G_CALLBACK(Inlets::on_configure), inlets_);
   if (!settings.token.empty()) ask_for(settings.token, factory);
   const Ref<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server_.get()));
   gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // takes the factory
@@ -73,28 +114,9 @@ void RtspOutput::ask_for(const std::string& token, GstRTSPMediaFactory* factory)
 }
 
 void RtspOutput::put(const FramePtr& frame) {
-  const std::lock_guard lock(mutex_);
-  newest_ = frame;
-  for (const auto& inlet : inlets_) push_frame(GST_APP_SRC(inlet.get()), *frame);
-}
-
-void RtspOutput::on_configure(GstRTSPMediaFactory* /*factory*/,
-                              GstRTSPMedia* media,
-                              gpointer data) {
-  auto* self = static_cast<RtspOutput*>(data);
-  g_signal_connect(media, "unprepared", G_CALLBACK(on_unprepared), self);
-  Ref<GstElement> inlet = inlet_of(media);
-  const std::lock_guard lock(self->mutex_);
-  // So that a client that comes while a file is paused gets to know what the video is.
-  if (self->newest_) push_frame(GST_APP_SRC(inlet.get()), *self->newest_);
-  self->inlets_.push_back(std::move(inlet));
-}
-
-void RtspOutput::on_unprepared(GstRTSPMedia* media, gpointer data) {
-  auto* self = static_cast<RtspOutput*>(data);
-  const Ref<GstElement> gone = inlet_of(media);
-  const std::lock_guard lock(self->mutex_);
-  std::erase_if(self->inlets_, [&](const auto& inlet) { return inlet.get() == gone.get(); });
+  const std::lock_guard lock(inlets_->mutex);
+  inlets_->newest = frame;
+  for (const auto& inlet : inlets_->inlets) push_frame(GST_APP_SRC(inlet.get()), *frame);
 }
 
 // Clients that went without a word.

@@ -2,10 +2,9 @@
 
 #include <gst/rtsp-server/rtsp-server.h>
 
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "examples/live/frame.hpp"
 #include "examples/live/rtsp_door.hpp"
@@ -34,15 +33,13 @@ class RtspOutput {
   [[nodiscard]] int port() const { return door_->port(); }
 
  private:
-  static void on_configure(GstRTSPMediaFactory* factory, GstRTSPMedia* media, gpointer data);
-  static void on_unprepared(GstRTSPMedia* media, gpointer data);
+  struct Inlets;
+
   static gboolean on_glance(gpointer data);
 
   void ask_for(const std::string& token, GstRTSPMediaFactory* factory);
 
-  std::mutex mutex_;
-  std::vector<Ref<GstElement>> inlets_;  // of the media that are being made now
-  FramePtr newest_;
+  std::shared_ptr<Inlets> inlets_;  // also of media that outlive this in the server's threads
   Ref<GstRTSPServer> server_;
   guint glance_ = 0;
   std::optional<RtspDoor> door_;  // last: its clients go before what their media write to

@@ -36,7 +36,7 @@ class LiveProgram {
   }
   ~LiveProgram() {
     stop();
-    EXPECT_FALSE(has_crashed()) << "ellipse-live has crashed";
+    EXPECT_FALSE(has_crashed()) << "ellipse-live was ended by signal " << process_.ended_by();
   }
   LiveProgram(const LiveProgram&) = delete;
   LiveProgram& operator=(const LiveProgram&) = delete;
