@@ -15,7 +15,6 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kEdgeFloor = 1.25;        // least threshold [grey levels / px]
-constexpr double kLeastSingleTurn = 0.8;   // of an arc that is tried alone [rad]
 constexpr double kFitRms = 0.8;            // [px], and
 constexpr double kFitRmsRelative = 0.012;  // of the radius, or of a third of the arc
 constexpr double kLeastScore = 62.0;       // [nats]
@@ -164,7 +163,7 @@ void ArcDetector::detect_all(const ImageView& luma,
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
     const Arc& arc = arcs_[i];
-    if (is_used_[i] != 0 || arc.turn_rad < kLeastSingleTurn) continue;
+    if (is_used_[i] != 0 || arc.turn_rad < ArcSplitter::kMinSingleTurn) continue;
     try_arcs({&arc}, thresholds);
   }
 }

@@ -80,7 +80,7 @@ double ArcSplitter::Piece::rank() const {
 
 std::span<Arc> ArcSplitter::split(const GradientMap& map,
                                   const ChainTracer& chains,
-                                  bool wants_whole) {
+                                  bool wants_all) {
   pieces_.clear();
   pixels_ = chains.pixels();
   angles_.resize(std::max(angles_.size(), pixels_.size()));
@@ -99,21 +99,21 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map,
     split_chain(map, begin, end, chain.is_closed);
     begin = end;
   }
-  keep_best_pieces(wants_whole);
+  keep_best_pieces(wants_all);
   arcs_.clear();
   for (const Piece& piece : pieces_) arcs_.push_back(make_arc(map, piece));
   return arcs_;
 }
 
-void ArcSplitter::keep_best_pieces(bool wants_whole) {
+void ArcSplitter::keep_best_pieces(bool wants_all) {
   const auto ranks_before = [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); };
   const auto paired = pieces_.begin() + std::ptrdiff_t(std::min(pieces_.size(), kMaxPairedArcs));
   std::partial_sort(pieces_.begin(), paired, pieces_.end(), ranks_before);
-  const auto whole = std::partition(paired, pieces_.end(), [&](const Piece& piece) {
-    return wants_whole && std::abs(piece.turn_rad) >= kWholeTurnLeast;
+  const auto single = std::partition(paired, pieces_.end(), [&](const Piece& piece) {
+    return wants_all && std::abs(piece.turn_rad) >= kMinSingleTurn;
   });
-  const auto end = pieces_.begin() + std::min(whole - pieces_.begin(), std::ptrdiff_t(kMaxArcs));
-  std::partial_sort(paired, end, whole, ranks_before);
+  const auto end = pieces_.begin() + std::min(single - pieces_.begin(), std::ptrdiff_t(kMaxArcs));
+  std::partial_sort(paired, end, single, ranks_before);
   pieces_.erase(end, pieces_.end());
 }
 

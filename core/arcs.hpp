@@ -68,14 +68,14 @@ inline constexpr double kCrestShift = 0.5 * (1.0 + kLensVariance);
 class ArcSplitter {
  public:
   /// The best arcs by length and turn, at most kMaxPairedArcs. Valid until the next call.
-  /// @param wants_whole  Behind them those of the rest that turn nearly all around, at most
-  /// kMaxArcs
-  ///                     together.
+  /// @param wants_all  Behind them the rest of those that can be tried alone, at most kMaxArcs
+  ///                   together.
   /// Allocates only while it has not yet seen as many chains.
   [[nodiscard]] std::span<Arc> split(const GradientMap& map,
                                      const ChainTracer& chains,
-                                     bool wants_whole = false);
+                                     bool wants_all = false);
 
+  static constexpr double kMinSingleTurn = 0.8;      ///< Of an arc that is tried alone [rad].
   static constexpr std::size_t kMaxPairedArcs = 50;  ///< Pairs grow with its square.
   static constexpr std::size_t kMaxArcs = 2048;      ///< Bounds the time spent on one image.
 
@@ -97,7 +97,7 @@ class ArcSplitter {
                                    std::size_t end) const;
   [[nodiscard]] double mean_angle(std::size_t at, std::size_t begin, std::size_t end) const;
   void add_piece(std::size_t begin, std::size_t end);
-  void keep_best_pieces(bool wants_whole);
+  void keep_best_pieces(bool wants_all);
   [[nodiscard]] Arc make_arc(const GradientMap& map, const Piece& piece) const;
 
   std::span<const std::int32_t> pixels_;

@@ -28,7 +28,11 @@ std::vector<ellipse::Ellipse> outlines_of(std::span<const ellipse::Detection> de
 class TrackerMethod : public Method {
  public:
   TrackerMethod(const std::string& name, const ellipse::TrackerSettings& settings)
-      : Method(name), settings_(settings), knows_lens_(true), tracker_(settings) {}
+      : Method(name), settings_(settings), knows_lens_(true), tracker_(settings) {
+    ellipse::TrackerSettings all = settings;
+    all.wants_candidates = true;
+    if (settings.tracking == ellipse::TrackingMode::kNone) all_finder_.emplace(all);
+  }
   TrackerMethod(const std::string& name,
                 const ellipse::TrackerSettings& settings,
                 std::unique_ptr<ellipse::Detector> detector)
@@ -39,6 +43,8 @@ class TrackerMethod : public Method {
       ellipse::TrackerSettings settings = settings_;
       if (bent != nullptr) settings.camera = bent->lens().camera();
       tracker_.configure(settings);
+      settings.wants_candidates = true;
+      if (all_finder_) all_finder_->configure(settings);
     }
     tracker_.reset();
   }
@@ -46,8 +52,8 @@ class TrackerMethod : public Method {
   [[nodiscard]] bool knows_lens() const override { return knows_lens_; }
 
   Answer find(const Frame& /*frame*/, const cv::Mat& picture, std::int64_t pts_ns) override {
-    const ellipse::ImageView view{
-        picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
+    picture_ = picture;
+    const ellipse::ImageView view = view_of(picture);
     Answer answer;
     const auto start = Clock::now();
     const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns);
@@ -60,15 +66,24 @@ class TrackerMethod : public Method {
     return answer;
   }
 
-  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() const override {
+  // Our detector searches the frame again: while it looks for one target it may stop early.
+  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() override {
     if (settings_.tracking != ellipse::TrackingMode::kNone) return std::nullopt;
-    return outlines_of(tracker_.candidates());
+    if (!all_finder_) return outlines_of(tracker_.candidates());
+    (void)all_finder_->process(view_of(picture_), -1);
+    return outlines_of(all_finder_->candidates());
   }
 
  private:
+  static ellipse::ImageView view_of(const cv::Mat& picture) {
+    return {picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
+  }
+
   ellipse::TrackerSettings settings_;
   bool knows_lens_ = false;  // peers are for pinholes
   ellipse::Tracker tracker_;
+  std::optional<ellipse::Tracker> all_finder_;
+  cv::Mat picture_;  // the last one; shares its pixels
 };
 
 // Cannot find a target, so that it is told one: in the first frame that shows enough of it, and
@@ -131,7 +146,7 @@ class CommandMethod : public Method {
     return answer;
   }
 
-  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() const override {
+  [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() override {
     return outlines_of(detections_);
   }
 

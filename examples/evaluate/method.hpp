@@ -40,7 +40,7 @@ class Method {
                                     std::int64_t pts_ns) = 0;
   /// All ellipses that it found in the last frame, as those of find(); nullopt where it looks for
   /// its target only.
-  [[nodiscard]] virtual std::optional<std::vector<ellipse::Ellipse>> all_found() const {
+  [[nodiscard]] virtual std::optional<std::vector<ellipse::Ellipse>> all_found() {
     return std::nullopt;
   }
 
