@@ -46,11 +46,13 @@ ellipse::Shape painted(const ellipse::Shadow& shadow) {
 
 // The renderer shades the ground and the pad, and not the sheets on them: the shadows become shapes
 // above all of these.
-void lay_tag(ellipse::Scene& scene) {
-  ellipse::Sheet sheet = tag_sheet(scene.pad);
-  for (const ellipse::Shadow& shadow : scene.light.shadows) sheet.shapes.push_back(painted(shadow));
+void lay_marker(ellipse::Sheet marker, ellipse::Scene& scene) {
+  scene.pad.pattern = ellipse::Pattern::kRing;
+  for (const ellipse::Shadow& shadow : scene.light.shadows) {
+    marker.shapes.push_back(painted(shadow));
+  }
   scene.light.shadows.clear();
-  scene.sheets.push_back(std::move(sheet));
+  scene.sheets.push_back(std::move(marker));
 }
 
 }  // namespace
@@ -64,9 +66,8 @@ void check_method(const std::string& method) {
 }
 
 void lay_pad(const std::string& method, ellipse::Scene& scene) {
-  if (method != "apriltag" && method != "whycon") return;
-  scene.pad.pattern = ellipse::Pattern::kRing;
-  if (method == "apriltag") lay_tag(scene);
+  if (method == "apriltag") lay_marker(tag_sheet(scene.pad), scene);
+  if (method == "whycon") lay_marker(roundel_sheet(scene.pad), scene);
 }
 
 std::unique_ptr<Eye> eye_of(const std::string& method,
@@ -78,9 +79,7 @@ std::unique_ptr<Eye> eye_of(const std::string& method,
     return std::make_unique<PeerEye>(format, make_apriltag(rig.camera, pad, rig.pad_radius));
   }
   if (method == "whycon") {
-    const double inner = ellipse::inner_radius(pad).value();
-    return std::make_unique<PeerEye>(format,
-                                     std::make_unique<WhyCon>(rig.camera, inner, rig.pad_radius));
+    return std::make_unique<PeerEye>(format, make_whycon(rig.camera, pad, rig.pad_radius));
   }
   return std::make_unique<PipelineEye>(format, properties_of(method, rig));
 }

@@ -15,8 +15,8 @@ namespace landing {
 /// built in. What ellipsetrack has, only eye_of() knows.
 void check_method(const std::string& method);
 
-/// Lays the pad that a method can see on the ground: a tag inside the ring for apriltag, a ring
-/// without a mark for whycon; other methods take the scene's own.
+/// Lays the pad that a method can see on the ground: for apriltag and whycon their markers in place
+/// of the mark inside the ring; other methods take the scene's own.
 void lay_pad(const std::string& method, ellipse::Scene& scene);
 
 /// @param pad  As lay_pad() has made it.

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
 #include "core/pose.hpp"
+#include "core/scene/wild_shapes.hpp"
 
 namespace landing {
 namespace {
@@ -76,6 +78,18 @@ double area_of(const Ellipse& e) {
 // Whether a segment fills its ellipse: the paper's test of circularity.
 bool is_filled(const Blob& blob, const Ellipse& e) {
   return std::abs(blob.area() - area_of(e)) <= kEdge_px * perimeter_px(e);
+}
+
+// Radius of the pad's next inner edge over that of its painted circle.
+double proportion(const ellipse::Pad& pad) {
+  const auto inner = ellipse::inner_radius(pad);
+  if (!inner) throw std::invalid_argument("whycon: the pad has no ring");
+  return *inner;
+}
+
+// As wide as the square of 8 cells in one of 10 that is inscribed in the ring's inner circle.
+double roundel_radius(const ellipse::Pad& pad) {
+  return 0.5 * 0.8 * std::numbers::sqrt2 * proportion(pad);
 }
 
 }  // namespace
@@ -226,6 +240,20 @@ Ellipse WhyCon::compensated(const Ring& ring) const {
   e.semi_major = (ring.outer.semi_major + ring.inner.semi_major) / share;
   e.semi_minor = (ring.outer.semi_minor + ring.inner.semi_minor) / share;
   return e;
+}
+
+ellipse::Sheet roundel_sheet(const ellipse::Pad& pad) {
+  ellipse::Sheet sheet;
+  sheet.shapes.push_back(
+      ellipse::wild::disc({0.0, 0.0}, roundel_radius(pad), {.level = pad.paint_level}));
+  sheet.shapes.back().hole = proportion(pad);
+  return sheet;
+}
+
+std::unique_ptr<Peer> make_whycon(const ellipse::Camera& camera,
+                                  const ellipse::Pad& pad,
+                                  double radius) {
+  return std::make_unique<WhyCon>(camera, proportion(pad), radius * roundel_radius(pad));
 }
 
 }  // namespace landing

@@ -1,10 +1,13 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "core/camera.hpp"
 #include "core/ellipse.hpp"
+#include "core/scene/pad.hpp"
+#include "core/scene/sheet.hpp"
 #include "examples/landing/peer_eye.hpp"
 
 namespace landing {
@@ -48,5 +51,14 @@ class WhyCon : public Peer {
   std::optional<double> last_threshold_;  // of the last picture with a ring
   unsigned failures_ = 1;                 // pictures without one since then
 };
+
+/// The marker painted inside a pad's ring: a smaller ring of the same proportion, as wide as the
+/// tag of tag36h11 that fits there. Throws std::invalid_argument where the pad has no ring.
+[[nodiscard]] ellipse::Sheet roundel_sheet(const ellipse::Pad& pad);
+
+/// Locates that marker. @param radius  Of the pad [m].
+[[nodiscard]] std::unique_ptr<Peer> make_whycon(const ellipse::Camera& camera,
+                                                const ellipse::Pad& pad,
+                                                double radius);
 
 }  // namespace landing

@@ -92,7 +92,7 @@ TEST(LandingPeers, FindNothingOnOtherPads) {
     EXPECT_FALSE(hover.look(method, ellipse::scene_by_name("approach", 5)).has_target) << method;
   }
   ellipse::Scene narrow = scene_with("whycon", "approach");
-  narrow.pad.ring_width = 0.1;
+  narrow.sheets.front().shapes.front().hole = 0.9;
   EXPECT_FALSE(hover.look("whycon", narrow).has_target);
 }
 
@@ -118,7 +118,7 @@ TEST(LandingPeers, SeeTheTagInTheShadowsOfTheOtherPads) {
     return pixels;
   };
   ASSERT_FALSE(ellipse::scene_by_name("glare", 5).light.shadows.empty());
-  const auto ring = picture_of(scene_with("whycon", "glare"));
+  const auto ring = picture_of(ellipse::scene_by_name("glare", 5));
   const auto tag = picture_of(scene_with("apriltag", "glare"));
   const Eigen::Matrix3d pad_from_image = Hover(4.0).view().image_from_pad.inverse();
   int largest = 0;
