@@ -99,8 +99,9 @@ TEST(LandingPeers, FindNothingOnOtherPads) {
 TEST(LandingPeers, LandOnTheMovingPad) {
   for (const std::string& method : built_in_peers()) {
     landing::Flight flight;
-    flight.seed = 3;
-    flight.speed = 1.5;
+    flight.seed = 4;
+    flight.course = landing::Course::kCircle;
+    flight.speed = 3.0;
     flight.method = method;
     const landing::Outcome outcome = landing::fly(flight);
     EXPECT_TRUE(outcome.is_within(landing::kMostOff)) << method << ": " << outcome.off.norm();
