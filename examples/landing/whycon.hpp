@@ -29,13 +29,12 @@ class WhyCon : public Peer {
                                              const Eigen::Vector3d& gravity) override;
   void forget() override;
 
-  /// The ring's outer edge [px].
-  [[nodiscard]] std::optional<ellipse::Ellipse> find_ring(const ellipse::ImageView& picture);
-
  private:
   struct Segments;
   struct Ring;
 
+  // The ring's outer edge [px].
+  [[nodiscard]] std::optional<ellipse::Ellipse> find_ring(const ellipse::ImageView& picture);
   [[nodiscard]] double threshold() const;
   [[nodiscard]] std::optional<Ring> ring_of(const Segments& segments, int black) const;
   [[nodiscard]] std::optional<Ring> measured(const Segments& segments,
