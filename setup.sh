@@ -15,6 +15,7 @@ packages=(
   gobject-introspection libgirepository1.0-dev
   # examples
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
+  libapriltag-dev  # a peer of ellipse-landing; optional
   python3-gi gir1.2-gstreamer-1.0
   libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP; and the cook-book's
   # to run pipelines with cameras and files

@@ -13,43 +13,46 @@
 
 namespace landing {
 
-/// What ellipsetrack says of a picture.
+/// What a method reports about one picture.
 struct Look {
   bool has_target = false;
-  std::optional<Eigen::Vector3d> position;  ///< Of its centre in the camera's frame [m].
-  double error = 0.0;                       ///< Standard deviation of that [m].
+  std::optional<Eigen::Vector3d> position;  ///< Of the pad's centre in the camera's frame [m].
+  double error = 0.0;                       ///< Standard deviation of the position [m].
   double visible_fraction = 0.0;            ///< Share of the outline that the picture shows.
   Sample sample;                            ///< The picture with its metadata.
 };
 
-/// A pipeline appsrc ! ellipsetrack ! appsink that is stepped picture by picture. Serves one
-/// thread.
+/// Fills a picture.
+using Draw = std::function<void(const ellipse::MutableImage&)>;
+
+/// The size and the rate of the camera's pictures.
+struct PictureFormat {
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+  int rate = 0;    ///< [1/s]
+
+  /// Raw GStreamer caps, GRAY8.
+  [[nodiscard]] std::string caps() const;
+
+  /// Draws a picture into a new buffer with the time of frame number `frame`. The caller owns it.
+  [[nodiscard]] GstBuffer* draw(std::uint64_t frame, const Draw& draw) const;
+};
+
+/// Looks for the pad, picture by picture. Serves one thread.
 class Eye {
  public:
-  /// @param properties  Of ellipsetrack, as gst-launch-1.0 writes them: camera and diameter too.
-  /// Throws std::runtime_error where there is no such element or property.
-  Eye(int width, int height, int rate, const std::string& properties);
+  Eye() = default;
+  virtual ~Eye() = default;
+  Eye(const Eye&) = delete;
+  Eye& operator=(const Eye&) = delete;
 
-  /// Has a picture drawn, and waits for what is found in it.
+  /// Has a picture drawn, and searches it.
   /// @param gravity  Down in the camera's frame.
-  /// Throws std::runtime_error where the pipeline has failed.
-  Look look(const Eigen::Vector3d& gravity,
-            const std::function<void(const ellipse::MutableImage&)>& draw);
+  /// Throws std::runtime_error where a pipeline has failed.
+  [[nodiscard]] virtual Look look(const Eigen::Vector3d& gravity, const Draw& draw) = 0;
 
-  /// Lets it search as if nothing were known.
-  void forget();
-
- private:
-  void tell_gravity(const Eigen::Vector3d& gravity);
-
-  int width_;
-  int height_;
-  int rate_;
-  std::uint64_t frame_ = 0;
-  Pipeline pipeline_;
-  Element source_;
-  Element track_;
-  Element sink_;
+  /// Drops everything learned from earlier pictures.
+  virtual void forget() = 0;
 };
 
 }  // namespace landing

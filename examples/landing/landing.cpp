@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <numbers>
-#include <stdexcept>
 
 #include "core/scene/catalog.hpp"
 #include "core/scene/random.hpp"
 #include "core/scene/renderer.hpp"
-#include "examples/evaluate/text.hpp"
+#include "examples/landing/method.hpp"
 #include "examples/landing/noise.hpp"
 
 namespace landing {
@@ -44,22 +44,16 @@ ellipse::Scene scene_of(const Flight& flight) {
   return scene;
 }
 
-ellipse::Scene without_pad(ellipse::Scene scene) {
-  scene.pad.pattern = ellipse::Pattern::kNone;
+ellipse::Scene with_pad(const Flight& flight) {
+  ellipse::Scene scene = scene_of(flight);
+  lay_pad(flight.method, scene);
   return scene;
 }
 
-std::string properties_of(const Flight& flight) {
-  const std::string& method = flight.method;
-  const std::size_t plus = method.find('+');
-  if (plus == std::string::npos) {
-    throw std::invalid_argument("method \"" + method + "\": expected detector+tracking");
-  }
-  return evaluate::format("detector=%s tracking=%s fx=%.17g target-diameter=%g",
-                          method.substr(0, plus).c_str(),
-                          method.substr(plus + 1).c_str(),
-                          flight.rig.camera.fx,
-                          2.0 * flight.rig.pad_radius);
+ellipse::Scene without_pad(const Flight& flight) {
+  ellipse::Scene scene = scene_of(flight);
+  scene.pad.pattern = ellipse::Pattern::kNone;
+  return scene;
 }
 
 struct Start {
@@ -97,10 +91,9 @@ class Run {
                                  flight.controller.radio_error,
                                  flight.controller.radio_velocity_error)),
         radio_(seed_of(flight, Stream::kRadio)),
-        renderer_(scene_of(flight)),
-        eye_(
-            flight.rig.camera.width, flight.rig.camera.height, flight.rate, properties_of(flight)) {
-    if (flight.hidden_s > 0.0) bare_renderer_.emplace(without_pad(scene_of(flight)));
+        renderer_(with_pad(flight)),
+        eye_(eye_of(flight.method, flight.rig, renderer_.scene().pad, flight.rate)) {
+    if (flight.hidden_s > 0.0) bare_renderer_.emplace(without_pad(flight));
   }
 
   Outcome fly(const Watcher& watcher) {
@@ -109,7 +102,7 @@ class Run {
       const double now_s = static_cast<double>(frame) / flight_.rate;
       take_picture(now_s, watcher);
       const Command command = controller_.update(now_s, vehicle_.estimate(), arrived_observation());
-      if (controller_.is_deceived()) eye_.forget();
+      if (controller_.is_deceived()) eye_->forget();
       move(command);
     }
     outcome_.climbs = controller_.climbs();
@@ -127,7 +120,7 @@ class Run {
     seen.own = vehicle_.estimate();
     seen.radio = radio_at(frame);
     const Look look =
-        eye_.look(gravity_of(flight_.rig, seen.own), [&](const ellipse::MutableImage& picture) {
+        eye_->look(gravity_of(flight_.rig, seen.own), [&](const ellipse::MutableImage& picture) {
           truth = renderer.render(view, frame, picture);
         });
     if (look.position) {
@@ -215,7 +208,7 @@ class Run {
   ellipse::Random radio_;
   ellipse::SceneRenderer renderer_;
   std::optional<ellipse::SceneRenderer> bare_renderer_;  // where the pad is hidden
-  Eye eye_;
+  std::unique_ptr<Eye> eye_;
   std::deque<Observation> under_way_;
   std::optional<double> hidden_from_s_;
   Outcome outcome_;

@@ -1,5 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <gst/gst.h>
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -10,7 +12,6 @@
 
 #include "examples/landing/camera_view.hpp"
 #include "examples/landing/controller.hpp"
-#include "examples/landing/eye.hpp"
 #include "examples/landing/platform.hpp"
 #include "examples/landing/vehicle.hpp"
 
@@ -25,7 +26,7 @@ struct Flight {
   double speed = 4.2;  ///< Of the platform [m/s].
   Course course = Course::kStraight;
   std::string condition = "approach";  ///< A scene of the catalog.
-  std::string method = "arcs+edges";   ///< Detector and tracking.
+  std::string method = "arcs+edges";   ///< See method.hpp.
   VehicleModel vehicle;
   ControllerSettings controller;
   Rig rig;
@@ -44,7 +45,7 @@ struct Moment {
   Eigen::Vector2d platform{0.0, 0.0};
   Eigen::Vector2d platform_velocity{0.0, 0.0};
   double heading_rad = 0.0;
-  bool is_seen = false;  ///< ellipsetrack has a target.
+  bool is_seen = false;  ///< The method has a target.
   double visible = 0.0;  ///< Truth: share of the pad's outline in the picture.
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipse-landing: lands a simulated multirotor on a moving platform by what ellipsetrack sees.
+// ellipse-landing: lands a simulated multirotor on a moving platform by what ellipsetrack, or a
+// peer, sees.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "examples/finite_number.hpp"
+#include "examples/landing/method.hpp"
 #include "examples/landing/report.hpp"
 #include "examples/landing/video.hpp"
 
@@ -123,6 +125,7 @@ void make_video(const Flight& flight, const std::string& file) {
 
 void run(const Options& options, const std::string& command) {
   check_outputs(options);
+  for (const std::string& method : options.methods) landing::check_method(method);
   std::vector<Landing> landings = planned(options);
   fly_all(landings, options.jobs);
   print(std::cout, outcome_table(landings));
@@ -153,7 +156,8 @@ int main(int argc, char** argv) {
   app.add_option("--width", options.width, "Of the camera's pictures, in px")
       ->check(CLI::Range(160, 1920))
       ->capture_default_str();
-  app.add_option("--methods", options.methods, "detector+tracking; several with commas")
+  app.add_option(
+         "--methods", options.methods, "detector+tracking, apriltag or whycon; several with commas")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--jobs", options.jobs, "Landings at once; 0 = as many as processors")

@@ -12,8 +12,8 @@
 #include <stdexcept>
 
 #include "core/homography.hpp"
-#include "examples/landing/eye.hpp"
 #include "examples/landing/pipeline.hpp"
+#include "examples/landing/pipeline_eye.hpp"
 #include "examples/landing/report.hpp"
 
 namespace {
@@ -335,7 +335,7 @@ TEST(LandingPipeline, SaysWhatCannotStart) {
 }
 
 TEST(LandingEye, SaysWhatHasStoppedIt) {
-  landing::Eye eye(64, 48, 30, "! identity error-after=3");
+  landing::PipelineEye eye({64, 48, 30}, "! identity error-after=3");
   const auto look = [&] {
     return eye.look(Vector3d::UnitZ(), [](const ellipse::MutableImage& picture) {
       std::fill_n(picture.data, picture.stride * picture.height, std::uint8_t{0});

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "examples/landing/apriltag_pad.hpp"
+
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
+
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "core/scene/wild_shapes.hpp"
+
+namespace landing {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using ellipse::Shape;
+
+constexpr int kTag = 0;
+// The library counts pixels from the corner of the first one, not from its middle.
+constexpr double kPixelOrigin = 0.5;
+
+template <auto kFree>
+struct Free {
+  template <class T>
+  void operator()(T* what) const {
+    kFree(what);
+  }
+};
+using Family = std::unique_ptr<apriltag_family_t, Free<tag36h11_destroy>>;
+using Detector = std::unique_ptr<apriltag_detector_t, Free<apriltag_detector_destroy>>;
+using Detections = std::unique_ptr<zarray_t, Free<apriltag_detections_destroy>>;
+
+// Of the tag with its border; inscribed in the ring's inner circle.
+double cell_size(const apriltag_family_t& family, const ellipse::Pad& pad) {
+  const auto inner = ellipse::inner_radius(pad);
+  if (!inner) throw std::invalid_argument("apriltag: the pad has no ring around the tag");
+  return std::numbers::sqrt2 * *inner / family.total_width;
+}
+
+// The cells of the tag on the pad, x ahead and y to the left. Columns and rows begin at the tag's
+// black frame.
+class Cells {
+ public:
+  Cells(const apriltag_family_t& family, double size)
+      : size_(size),
+        width_(family.width_at_border),
+        is_white_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), false) {
+    const std::uint64_t code = family.codes[kTag];
+    for (std::uint32_t bit = 0; bit < family.nbits; ++bit) {
+      const auto column = static_cast<int>(family.bit_x[bit]);
+      const auto row = static_cast<int>(family.bit_y[bit]);
+      is_white_[index(column, row)] = (code >> (family.nbits - 1 - bit) & 1U) != 0;
+    }
+  }
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] bool is_white(int column, int row) const { return is_white_[index(column, row)]; }
+
+  // Columns [left, right), rows [top, bottom).
+  [[nodiscard]] Shape box(int left, int top, int right, int bottom, double level) const {
+    const double middle = 0.5 * width_;
+    const Vector2d center(0.5 * (left + right) - middle, middle - 0.5 * (top + bottom));
+    const Vector2d half(0.5 * (right - left), 0.5 * (bottom - top));
+    return ellipse::wild::box(size_ * center, size_ * half, 0.0, {.level = level});
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row * width_ + column);
+  }
+
+  double size_;
+  int width_;
+  std::vector<bool> is_white_;  // row by row
+};
+
+// Calls use(line, first, end) for the runs of at least `shortest` white cells in each line.
+template <class IsWhite, class Use>
+void for_each_run(int width, int shortest, const IsWhite& is_white, const Use& use) {
+  for (int line = 0; line < width; ++line) {
+    for (int first = 0; first < width; ++first) {
+      int end = first;
+      while (end < width && is_white(line, end)) ++end;
+      if (end - first >= shortest) use(line, first, end);
+      first = end;
+    }
+  }
+}
+
+class AprilTag : public Peer {
+ public:
+  AprilTag(const ellipse::Camera& camera, const ellipse::Pad& pad, double radius)
+      : camera_(camera), family_(tag36h11_create()), detector_(apriltag_detector_create()) {
+    tag_size_ = radius * cell_size(*family_, pad) * family_->width_at_border;
+    apriltag_detector_add_family(detector_.get(), family_.get());
+    detector_->quad_decimate = 1.0F;
+  }
+
+  std::optional<Sighting> find(const ellipse::ImageView& picture, const Vector3d&) override {
+    image_u8_t image{picture.width,
+                     picture.height,
+                     static_cast<std::int32_t>(picture.stride),
+                     const_cast<std::uint8_t*>(picture.data)};  // the library does not write to it
+    const Detections found(apriltag_detector_detect(detector_.get(), &image));
+    apriltag_detection_t* best = nullptr;
+    for (int i = 0; i < zarray_size(found.get()); ++i) {
+      apriltag_detection_t* one = nullptr;
+      zarray_get(found.get(), i, &one);
+      const bool is_better = best == nullptr || one->decision_margin > best->decision_margin;
+      if (one->id == kTag && is_better) best = one;
+    }
+    return best == nullptr ? std::nullopt : std::optional(sighting_of(*best));
+  }
+
+ private:
+  // The library's own pose estimate returns matrices that Debian's build exports no way to free.
+  [[nodiscard]] Sighting sighting_of(const apriltag_detection_t& detection) const {
+    const double half = 0.5 * tag_size_;
+    const std::array<cv::Point3d, 4> corners = {
+        {{-half, half, 0.0}, {half, half, 0.0}, {half, -half, 0.0}, {-half, -half, 0.0}}};
+    std::array<cv::Point2d, 4> seen;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const double* corner = detection.p[seen.size() - 1 - i];  // the library's first: bottom left
+      seen[i] = {corner[0] - kPixelOrigin, corner[1] - kPixelOrigin};
+    }
+    const cv::Matx33d matrix(
+        camera_.fx, 0.0, camera_.cx, 0.0, camera_.fy, camera_.cy, 0.0, 0.0, 1.0);
+    cv::Vec3d turn;
+    cv::Vec3d place;
+    cv::solvePnP(
+        corners, seen, matrix, cv::noArray(), turn, place, false, cv::SOLVEPNP_IPPE_SQUARE);
+    return {Vector3d(place[0], place[1], place[2]), half * camera_.fx / place[2]};
+  }
+
+  ellipse::Camera camera_;
+  Family family_;
+  Detector detector_;  // goes before the family that it borrows
+  double tag_size_ = 0.0;
+};
+
+}  // namespace
+
+bool has_apriltag() {
+  return true;
+}
+
+// A black square, and on it the white cells in whole runs: between painted neighbours the blurred
+// edges would let the black through. Rows join cells sideways, columns upwards.
+ellipse::Sheet tag_sheet(const ellipse::Pad& pad) {
+  const Family family(tag36h11_create());
+  const Cells cells(*family, cell_size(*family, pad));
+  const int width = cells.width();
+
+  ellipse::Sheet sheet;
+  sheet.shapes.push_back(cells.box(0, 0, width, width, pad.paint_level));
+  for_each_run(
+      width,
+      1,
+      [&](int row, int column) { return cells.is_white(column, row); },
+      [&](int row, int first, int end) {
+        sheet.shapes.push_back(cells.box(first, row, end, row + 1, pad.plate_level));
+      });
+  for_each_run(
+      width,
+      2,
+      [&](int column, int row) { return cells.is_white(column, row); },
+      [&](int column, int first, int end) {
+        sheet.shapes.push_back(cells.box(column, first, column + 1, end, pad.plate_level));
+      });
+  return sheet;
+}
+
+std::unique_ptr<Peer> make_apriltag(const ellipse::Camera& camera,
+                                    const ellipse::Pad& pad,
+                                    double radius) {
+  return std::make_unique<AprilTag>(camera, pad, radius);
+}
+
+}  // namespace landing
