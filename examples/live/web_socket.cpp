@@ -49,7 +49,8 @@ void on_finished(SoupServerMessage* message, gpointer data) {
 
 void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open) {
   if (!soup_websocket_server_process_handshake(message, nullptr, nullptr, nullptr, nullptr)) return;
-  // Now, before anything waits for its bytes: what waits does so for the time that was allowed then.
+  // Now, before anything waits for its bytes: what waits does so for the time that was allowed
+  // then.
   g_socket_set_timeout(socket, 0);
   auto* opening = new Opening{share(socket), on_open};
   g_signal_connect(message, "wrote-informational", G_CALLBACK(on_reply_written), opening);

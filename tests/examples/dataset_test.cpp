@@ -18,7 +18,6 @@
 #include "core/scene/catalog.hpp"
 #include "examples/evaluate/breakdown.hpp"
 #include "examples/evaluate/dataset_writer.hpp"
-#include "examples/evaluate/dataset_writer.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/method.hpp"
