@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "core/setting_effect.hpp"
+#include "core/tracking/setting_effect.hpp"
 
 namespace {
 

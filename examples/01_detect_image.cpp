@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/contour_detector.hpp"
-#include "core/target_selection.hpp"
+#include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/target_selection.hpp"
 
 int main(int argc, char** argv) {
   const cv::Mat picture = argc == 2 ? cv::imread(argv[1], cv::IMREAD_GRAYSCALE) : cv::Mat();

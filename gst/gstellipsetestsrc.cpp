@@ -35,8 +35,8 @@
 #include "core/scene/true_ellipses.hpp"
 #include "core/scene/wild.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
-#include "gst/meta_outline.hpp"
-#include "gst/video_view.hpp"
+#include "gst/overlay/meta_outline.hpp"
+#include "gst/track/video_view.hpp"
 
 enum {
   PROP_0,

@@ -2,9 +2,9 @@
 #include <gst/gst.h>
 
 #include "gst/gstellipsejson.h"
-#include "gst/gstellipseoverlay.h"
 #include "gst/gstellipsetestsrc.h"
-#include "gst/gstellipsetrack.h"
+#include "gst/overlay/gstellipseoverlay.h"
+#include "gst/track/gstellipsetrack.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(ellipsetrack, plugin) &&

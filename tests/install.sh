@@ -51,3 +51,12 @@ fi
 if [ -n "${PKG_CONFIG_PATH:-}" ]; then
   pkg-config --exists gstellipse-1.0 || fail "the .pc file is not found"
 fi
+
+# The headers include nothing that is not installed, and nothing of the renderer of scenes.
+headers=$(find "$work/root" -type d -path '*/include/ellipse-1.0')
+(cd "$headers" && find . -name '*.hpp' -printf '#include "%P"\n') > "$work/all.cpp"
+c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3 opencv4) "$work/all.cpp" ||
+  fail "the installed headers do not compile by themselves"
+grep -q tracking/tracker.hpp "$work/all.cpp" || fail "the tracker's header is not installed"
+! grep -q scene "$work/all.cpp" || fail "the renderer's headers are installed"
+! nm -DC "$(find "$work/root" -name libellipse.so)" | grep -q SceneRenderer || fail "libellipse has the renderer"

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 
 namespace ellipse {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 
 namespace ellipse {
 

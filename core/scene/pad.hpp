@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/homography.hpp"
+#include "core/geometry/homography.hpp"
 #include "core/scene/edge.hpp"
 
 namespace ellipse {

@@ -37,14 +37,14 @@ class BentOutline {
     Place begin = at(0.0);
     for (int i = 1; i <= kPieces; ++i) {
       const Place end = at(2.0 * std::numbers::pi * i / kPieces);
-      add(begin, end, kMostHalvings);
+      add(begin, end, kMaxHalvings);
       begin = end;
     }
     return total_ > 0.0 ? inside_ / total_ : 0.0;
   }
 
  private:
-  static constexpr int kMostHalvings = 16;
+  static constexpr int kMaxHalvings = 16;
 
   struct Place {
     double anomaly_rad;

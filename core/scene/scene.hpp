@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/ellipse.hpp"
+#include "core/camera/camera.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "core/scene/flight.hpp"
 #include "core/scene/ground.hpp"
 #include "core/scene/pad.hpp"

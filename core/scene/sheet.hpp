@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/ellipse.hpp"
+#include "core/camera/camera.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "core/scene/deformation.hpp"
 #include "core/scene/shape.hpp"
 

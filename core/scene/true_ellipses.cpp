@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/ellipse_fit.hpp"
+#include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
 namespace {

@@ -44,8 +44,8 @@ std::string quoted(const std::string& text) {
 
 // The number of the first picture of a printf pattern such as frame%04d.jpg.
 int first_index(const std::string& pattern) {
-  constexpr int kMostTried = 100'000;
-  for (int i = 0; i < kMostTried; ++i) {
+  constexpr int kMaxTried = 100'000;
+  for (int i = 0; i < kMaxTried; ++i) {
     const int length = std::snprintf(nullptr, 0, pattern.c_str(), i);
     std::string name(static_cast<std::size_t>(length), '\0');
     std::snprintf(name.data(), name.size() + 1, pattern.c_str(), i);

@@ -9,7 +9,7 @@
 namespace evaluate {
 namespace {
 
-// A distance of the centres above the larger semi-axis leaves less than kLeastIou in common.
+// A distance of the centres above the larger semi-axis leaves less than kMinIou in common.
 bool can_match(const ellipse::Ellipse& a, const ellipse::Ellipse& b) {
   return (a.center() - b.center()).norm() < std::max(a.semi_major, b.semi_major);
 }
@@ -22,7 +22,7 @@ std::vector<Edge> edges_between(std::span<const ellipse::Ellipse> found,
     for (std::size_t k = 0; k < truths.size(); ++k) {
       if (!can_match(found[i], truths[k].ellipse)) continue;
       const double iou = iou_of(found[i], truths[k].ellipse, frame);
-      if (iou >= kLeastIou) edges.push_back({i, k, iou});
+      if (iou >= kMinIou) edges.push_back({i, k, iou});
     }
   }
   return edges;
@@ -51,12 +51,12 @@ AllResult compare_all(std::span<const ellipse::Ellipse> found,
     if (matches[i]) is_matched[*matches[i]] = true;
     if (!matches[i]) {
       ++result.counts.mistaken;
-    } else if (visible_part(truths[*matches[i]], frame) >= kLeastVisible) {
+    } else if (visible_part(truths[*matches[i]], frame) >= kMinVisible) {
       add_match(result, found[i], truths[*matches[i]].ellipse);
     }
   }
   for (std::size_t k = 0; k < truths.size(); ++k) {
-    const bool counts = visible_part(truths[k], frame) >= kLeastVisible;
+    const bool counts = visible_part(truths[k], frame) >= kMinVisible;
     if (counts && !is_matched[k]) ++result.counts.missed;
   }
   return result;

@@ -16,8 +16,8 @@ struct AllResult {
   std::vector<double> axis_errors_px;
 };
 
-/// Matches found and true ellipses one to one at an intersection over union of kLeastIou and more,
-/// as many as possible. A true ellipse with less than kLeastVisible of its perimeter in the frame
+/// Matches found and true ellipses one to one at an intersection over union of kMinIou and more,
+/// as many as possible. A true ellipse with less than kMinVisible of its perimeter in the frame
 /// may be missed; a found one that matches it is neither right nor mistaken. Nothing counts where
 /// the frame is not judged.
 [[nodiscard]] AllResult compare_all(std::span<const ellipse::Ellipse> found,

@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Smaller ones hold nothing to follow.
-constexpr int kLeastBoxPx = 8;
+constexpr int kMinBoxPx = 8;
 
 cv::Rect box_around(const ellipse::Ellipse& e, const cv::Size& frame) {
   const Eigen::Vector2d half = half_extent(e);
@@ -40,7 +40,7 @@ constexpr std::array kNames = {"kcf", "csrt"};
 bool BoxPeer::begin(const cv::Mat& grey, const ellipse::Ellipse& target) {
   stop();
   const cv::Rect box = box_around(target, grey.size());
-  if (std::min(box.width, box.height) < kLeastBoxPx) return false;
+  if (std::min(box.width, box.height) < kMinBoxPx) return false;
   colour(grey, colour_);
   tracker_ = make_();
   try {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 
 namespace cv {
 class Tracker;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "examples/evaluate/text.hpp"
 
 namespace evaluate {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker_settings.hpp"
+#include "core/tracking/settings.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/measures.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detector.hpp"
+#include "core/detection/detector.hpp"
 
 namespace evaluate {
 

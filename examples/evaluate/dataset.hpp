@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/ellipse.hpp"
-#include "examples/evaluate/bent_frame.hpp"
+#include "core/geometry/ellipse.hpp"
+#include "examples/evaluate/distorted_frame.hpp"
 
 namespace evaluate {
 
@@ -68,7 +68,7 @@ struct Sequence {
   std::string name;
   std::vector<Frame> frames;  ///< In the natural order of their file names.
   std::shared_ptr<PictureSource> pictures;
-  std::shared_ptr<const BentFrame> bent{};  ///< What a lens makes of the frames; else nullptr.
+  std::shared_ptr<const DistortedFrame> bent{};  ///< What a lens makes of the frames; else nullptr.
 };
 
 struct Dataset {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "core/lens_view.hpp"
+#include "core/camera/lens_view.hpp"
 #include "examples/evaluate/text.hpp"
 
 namespace evaluate {
@@ -41,7 +41,7 @@ void draw_bent(cv::Mat& picture,
                const ellipse::Lens& lens,
                const cv::Scalar& color) {
   std::array<Eigen::Vector2d, 256> outline;
-  ellipse::bent_outline(lens, e, outline);
+  ellipse::distorted_outline(lens, e, outline);
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d& from = outline[i];
     const Eigen::Vector2d& to = outline[(i + 1) % outline.size()];

@@ -65,7 +65,7 @@ bool is_right(const ellipse::Ellipse& answer,
               const ellipse::Ellipse& truth,
               const FrameSize& frame,
               Rule rule) {
-  if (rule == Rule::kIou) return iou_of(answer, truth, frame) >= kLeastIou;
+  if (rule == Rule::kIou) return iou_of(answer, truth, frame) >= kMinIou;
   const double apart = (answer.center() - truth.center()).norm();
   return apart <= 0.1 * 2.0 * truth.semi_minor &&
          is_within_tenth(answer.semi_major, truth.semi_major) &&
@@ -98,7 +98,7 @@ Outcome judge(const std::optional<ellipse::Ellipse>& answer,
     return answer ? Outcome::kFalsePositive : Outcome::kTrueNegative;
   }
   const auto is_visible = [&](const TrueEllipse& one) {
-    return visible_part(one, frame) >= kLeastVisible;
+    return visible_part(one, frame) >= kMinVisible;
   };
   const bool may_go_unseen = std::ranges::none_of(ellipses_of(truth), is_visible);
   if (!answer) return may_go_unseen ? Outcome::kTrueNegative : Outcome::kFalseNegative;

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/ellipse.hpp"
-#include "examples/evaluate/bent_frame.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/distorted_frame.hpp"
 
 namespace evaluate {
 
@@ -30,18 +30,18 @@ enum class Rule {
 };
 
 /// Answers match from this intersection over union on [Rule::kIou].
-inline constexpr double kLeastIou = 0.8;
+inline constexpr double kMinIou = 0.8;
 
 /// A target with less of its perimeter than this inside the frame may go unseen.
-inline constexpr double kLeastVisible = 0.3;
+inline constexpr double kMinVisible = 0.3;
 
 /// A target with this much of its perimeter inside the frame can be followed from there on.
-inline constexpr double kLeastToStart = 0.5;
+inline constexpr double kMinToStart = 0.5;
 
 struct FrameSize {
   int width = 0;
   int height = 0;
-  const BentFrame* bent = nullptr;  ///< Where a lens bends it. Borrowed.
+  const DistortedFrame* bent = nullptr;  ///< Where a lens bends it. Borrowed.
 };
 
 /// Share of the perimeter inside the frame, 0 to 1.

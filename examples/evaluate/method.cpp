@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/target_selection.hpp"
+#include "core/detection/target_selection.hpp"
 #include "examples/evaluate/box_peers.hpp"
 #include "examples/evaluate/command_peer.hpp"
 #include "examples/evaluate/measures.hpp"
@@ -38,7 +38,7 @@ class TrackerMethod : public Method {
                 std::unique_ptr<ellipse::Detector> detector)
       : Method(name), settings_(settings), tracker_(settings, std::move(detector)) {}
 
-  void start(const BentFrame* bent) override {
+  void start(const DistortedFrame* bent) override {
     if (knows_lens_) {
       ellipse::TrackerSettings settings = settings_;
       if (bent != nullptr) settings.camera = bent->lens().camera();
@@ -92,7 +92,7 @@ class BoxMethod : public Method {
  public:
   explicit BoxMethod(const char* peer) : Method(peer), peer_(make_box_peer(peer)) {}
 
-  void start(const BentFrame* bent) override {
+  void start(const DistortedFrame* bent) override {
     bent_ = bent;
     peer_.stop();
   }
@@ -107,7 +107,7 @@ class BoxMethod : public Method {
     }
     answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
     const bool is_enough = frame.truth.is_labelled &&
-                           visible_part(frame.truth, {picture.cols, picture.rows}) >= kLeastToStart;
+                           visible_part(frame.truth, {picture.cols, picture.rows}) >= kMinToStart;
     if (!is_enough) return answer;
     const auto told =
         bent_ != nullptr ? bent_->to_picture(*frame.truth.target) : frame.truth.target;
@@ -119,7 +119,7 @@ class BoxMethod : public Method {
   }
 
  private:
-  const BentFrame* bent_ = nullptr;
+  const DistortedFrame* bent_ = nullptr;
   BoxPeer peer_;
 };
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "examples/evaluate/dataset.hpp"
 
 namespace evaluate {
@@ -32,7 +32,7 @@ class Method {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Called before the first frame of each sequence.
   /// @param bent  What a lens makes of its frames, nullptr for a pinhole. Borrowed until the next.
-  virtual void start(const BentFrame* /*bent*/) {}
+  virtual void start(const DistortedFrame* /*bent*/) {}
   /// Whether its answers are of the ideal plane; else they are of the picture.
   [[nodiscard]] virtual bool knows_lens() const { return false; }
   [[nodiscard]] virtual Answer find(const Frame& frame,
@@ -74,7 +74,7 @@ class Method {
 
 /// One of them by its name. The packaged detectors look at single frames, and choose their target
 /// as ours do. The packaged trackers are told the truth in the first frame that shows at least
-/// kLeastToStart of the perimeter, and again after they report a loss; such an answer is given, and
+/// kMinToStart of the perimeter, and again after they report a loss; such an answer is given, and
 /// has no time.
 /// @param settings  All but detector and tracking mode, of those of ours.
 /// Throws std::invalid_argument that lists the names, where it is unknown.

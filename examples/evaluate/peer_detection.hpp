@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/detector.hpp"
+#include "core/detection/detector.hpp"
 
 namespace evaluate {
 

@@ -27,7 +27,7 @@ class Peer : public ellipse::Detector {
                                              const ellipse::Thresholds& limits) final {
     detections_.clear();
     // Smaller ones hold no ellipse, and some of OpenCV's functions do not take them.
-    if (std::min(luma.width, luma.height) < kLeastSizePx) return detections_;
+    if (std::min(luma.width, luma.height) < kMinSizePx) return detections_;
     copy(luma);
     search(picture_, limits);
     return detections_;
@@ -46,7 +46,7 @@ class Peer : public ellipse::Detector {
   }
 
  private:
-  static constexpr int kLeastSizePx = 16;
+  static constexpr int kMinSizePx = 16;
 
   // Rows in one piece, whatever the stride: cv::Mat knows no negative one.
   void copy(const ellipse::ImageView& luma) {
@@ -103,11 +103,11 @@ class EdgeDrawingPeer final : public Peer {
     edge_drawing_->params.NFAValidation = false;
     edge_drawing_->detectLines(pieces_);
     edge_drawing_->params = params;
-    return pieces_.size() >= kLeastPieces;
+    return pieces_.size() >= kMinPieces;
   }
 
   static constexpr std::size_t kManyEdges = 64;
-  static constexpr std::size_t kLeastPieces = 8;
+  static constexpr std::size_t kMinPieces = 8;
   static constexpr int kPiecePx = 6;  // as detectEllipses() takes them
   static constexpr float kSigmaPx = 1.5F;
 
@@ -153,14 +153,14 @@ class CannyFitPeer final : public Peer {
     cv::Canny(smooth_, edges_, 50, 150);
     cv::findContours(edges_, contours_, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
     for (const auto& contour : contours_) {
-      if (contour.size() < kLeastContourPx) continue;
+      if (contour.size() < kMinContourPx) continue;
       const cv::RotatedRect box = cv::fitEllipse(contour);
       const auto e = ellipse_of_axes(box.center.x,
                                      box.center.y,
                                      box.size.width / 2.0,
                                      box.size.height / 2.0,
                                      box.angle * kRadiansPerDegree);
-      if (!e || !limits.admit_axes_of(*e) || mean_distance_px(contour, *e) > kMostDistancePx) {
+      if (!e || !limits.admit_axes_of(*e) || mean_distance_px(contour, *e) > kMaxDistancePx) {
         continue;
       }
       add({*e, 0.0, 0.0, static_cast<double>(contour.size())});
@@ -173,8 +173,8 @@ class CannyFitPeer final : public Peer {
     return sum / static_cast<double>(contour.size());
   }
 
-  static constexpr std::size_t kLeastContourPx = 50;
-  static constexpr double kMostDistancePx = 0.5;
+  static constexpr std::size_t kMinContourPx = 50;
+  static constexpr double kMaxDistancePx = 0.5;
 
   cv::Mat smooth_;
   cv::Mat edges_;

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/detector.hpp"
+#include "core/detection/detector.hpp"
 
 namespace evaluate {
 

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostProblemsPrinted = 20;
+constexpr std::size_t kMaxProblemsPrinted = 20;
 constexpr int kExitUnkept = 1;
 constexpr int kExitProblems = 2;
 constexpr int kExitInterrupted = 130;
@@ -261,11 +261,11 @@ class Program {
     if (missing_frames_ > 0) {
       std::cout << "\nMissing frames: " << missing_frames_ << ". No figure counts them.\n";
     }
-    for (std::size_t i = 0; i < std::min(problems_.size(), kMostProblemsPrinted); ++i) {
+    for (std::size_t i = 0; i < std::min(problems_.size(), kMaxProblemsPrinted); ++i) {
       std::cerr << "ellipse-evaluate: " << problems_[i] << '\n';
     }
-    if (problems_.size() > kMostProblemsPrinted) {
-      std::cerr << "ellipse-evaluate: and " << problems_.size() - kMostProblemsPrinted << " more\n";
+    if (problems_.size() > kMaxProblemsPrinted) {
+      std::cerr << "ellipse-evaluate: and " << problems_.size() - kMaxProblemsPrinted << " more\n";
     }
   }
 

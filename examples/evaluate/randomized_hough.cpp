@@ -12,19 +12,19 @@ namespace {
 
 // Found by experiment on pictures of 640 x 360 pixels, to take about 10 ms.
 constexpr int kTrials = 200'000;
-constexpr int kMostVotings = 3000;
-constexpr std::size_t kMostVoters = 1500;
+constexpr int kMaxVotings = 3000;
+constexpr std::size_t kMaxVoters = 1500;
 
 // Between an edge's normal and the axis that ends on it: sine of 6 degrees.
-constexpr float kLargestSine = 0.1F;
+constexpr float kMaxSine = 0.1F;
 
 // Of the perimeter's pixels, those that must have voted.
-constexpr double kLeastShare = 0.55;
+constexpr double kMinShare = 0.55;
 
 // Two ellipses closer than this are one.
 constexpr double kSamePx = 3.0;
 constexpr double kSameRelative = 0.05;
-constexpr std::size_t kMostFound = 64;
+constexpr std::size_t kMaxFound = 64;
 
 template <class Random>
 std::size_t index_below(std::size_t n, Random& random) {
@@ -43,7 +43,7 @@ bool can_be_axis(const EdgePixel& p, const EdgePixel& q, float least_sq, float m
   if (along_p * along_q >= 0.0F) return false;
   const float across_p = p.normal_x * dy - p.normal_y * dx;
   const float across_q = q.normal_x * dy - q.normal_y * dx;
-  const float most_across_sq = kLargestSine * kLargestSine * length_sq;
+  const float most_across_sq = kMaxSine * kMaxSine * length_sq;
   return across_p * across_p <= most_across_sq && across_q * across_q <= most_across_sq;
 }
 
@@ -63,7 +63,7 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
   const auto least_sq = static_cast<float>(limits.min_axis_px * limits.min_axis_px);
   const auto most_sq = static_cast<float>(limits.max_axis_px * limits.max_axis_px);
   int votings = 0;
-  for (int trial = 0; trial < kTrials && votings < kMostVotings; ++trial) {
+  for (int trial = 0; trial < kTrials && votings < kMaxVotings; ++trial) {
     const EdgePixel& p = edges[index_below(edges.size(), random)];
     const auto facing = facing_pixels(p);
     if (facing.empty()) continue;
@@ -79,7 +79,7 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
 // The front of a shuffle is a fair sample.
 void RandomizedHough::choose_voters(std::span<const EdgePixel> edges, Random& random) {
   shuffled_.assign(edges.begin(), edges.end());
-  const std::size_t voters = std::min(kMostVoters, edges.size());
+  const std::size_t voters = std::min(kMaxVoters, edges.size());
   pixels_per_voter_ = static_cast<double>(edges.size()) / static_cast<double>(voters);
   voter_x_.resize(voters);
   voter_y_.resize(voters);
@@ -146,7 +146,7 @@ std::optional<ellipse::Detection> RandomizedHough::vote(const EdgePixel& p, cons
   const double b = static_cast<double>(peak) + 0.5 + static_cast<double>(votes_[peak + 1]) / here;
   const auto e = ellipse_of_axes(cx, cy, a, b, std::atan2(axis_y, axis_x));
   const double score = pixels_per_voter_ * here;
-  if (!e || score < kLeastShare * ellipse::perimeter_px(*e)) return std::nullopt;
+  if (!e || score < kMinShare * ellipse::perimeter_px(*e)) return std::nullopt;
   return ellipse::Detection{*e, 0.0, 0.0, score};
 }
 
@@ -157,7 +157,7 @@ void RandomizedHough::keep(const ellipse::Detection& found) {
         return are_same(found.ellipse, other.ellipse);
       });
   if (known == found_.end()) {
-    if (found_.size() < kMostFound) found_.push_back(found);
+    if (found_.size() < kMaxFound) found_.push_back(found);
   } else if (found.score > known->score) {
     *known = found;
   }

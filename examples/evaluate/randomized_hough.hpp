@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/detector.hpp"
+#include "core/detection/detector.hpp"
 
 namespace evaluate {
 

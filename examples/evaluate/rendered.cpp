@@ -54,7 +54,7 @@ Sequence make_rendered(const std::string& dataset,
                        const ellipse::Scene& scene,
                        const FrameTimes& times,
                        const Conditions& conditions,
-                       std::shared_ptr<const BentFrame> bent) {
+                       std::shared_ptr<const DistortedFrame> bent) {
   Sequence sequence{
       dataset, name, {}, std::make_shared<RenderedPictures>(scene, times), std::move(bent)};
   const ellipse::Camera camera = camera_of(scene, kSize.width, kSize.height);

@@ -32,6 +32,6 @@ inline constexpr int kRenderedHeight = 360;
                                      const ellipse::Scene& scene,
                                      const FrameTimes& times,
                                      const Conditions& conditions = {},
-                                     std::shared_ptr<const BentFrame> bent = nullptr);
+                                     std::shared_ptr<const DistortedFrame> bent = nullptr);
 
 }  // namespace evaluate

@@ -14,7 +14,7 @@
 namespace evaluate {
 namespace {
 
-constexpr double kMostFrames = 1e6;
+constexpr double kMaxFrames = 1e6;
 
 [[noreturn]] void fail(const std::string& text, const std::string& what) {
   throw std::invalid_argument(text + ": " + what);
@@ -37,7 +37,7 @@ bool take(std::string_view& rest, char separator) {
 
 FrameTimes times_of(const ScenePace& pace) {
   const double frames = std::round(pace.seconds * pace.frames_per_second);
-  if (!(frames >= 1.0 && frames <= kMostFrames && pace.frames_per_second > 0.0)) {
+  if (!(frames >= 1.0 && frames <= kMaxFrames && pace.frames_per_second > 0.0)) {
     throw std::invalid_argument("scenes: seconds and frames a second give no sequence");
   }
   return {0.0, static_cast<int>(frames), 1, pace.frames_per_second};
@@ -46,16 +46,16 @@ FrameTimes times_of(const ScenePace& pace) {
 // One for all scenes that are seen by the same camera.
 class SharedFrames {
  public:
-  std::shared_ptr<const BentFrame> of(const ellipse::Scene& scene) {
+  std::shared_ptr<const DistortedFrame> of(const ellipse::Scene& scene) {
     const ellipse::Camera camera = camera_of(scene, kRenderedWidth, kRenderedHeight);
     for (const auto& known : frames_) {
       if (known->lens().camera() == camera) return known;
     }
-    return frames_.emplace_back(std::make_shared<const BentFrame>(camera));
+    return frames_.emplace_back(std::make_shared<const DistortedFrame>(camera));
   }
 
  private:
-  std::vector<std::shared_ptr<const BentFrame>> frames_;
+  std::vector<std::shared_ptr<const DistortedFrame>> frames_;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace evaluate {
 namespace {
 
-constexpr std::size_t kMostValues = 200;
+constexpr std::size_t kMaxValues = 200;
 
 [[noreturn]] void fail(const std::string& text, const std::string& what) {
   throw std::invalid_argument("--sweep " + text + ": " + what);
@@ -50,7 +50,7 @@ std::vector<std::string> range(const std::vector<std::string>& parts, const std:
   const auto [from, to, step] = numbers;
   if (!(step > 0.0) || !(to >= from)) fail(all, "expected from <= to and a step above 0");
   const double steps = std::floor((to - from) / step + 1e-9);
-  if (steps >= static_cast<double>(kMostValues)) fail(all, "more than 200 values");
+  if (steps >= static_cast<double>(kMaxValues)) fail(all, "more than 200 values");
   std::vector<std::string> values;
   // Nine digits, so that 0.3 + 5 x 0.05 is 0.55.
   for (int i = 0; i <= static_cast<int>(steps); ++i) {

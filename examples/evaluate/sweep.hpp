@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker_settings.hpp"
+#include "core/tracking/settings.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/tables.hpp"
 

@@ -68,7 +68,7 @@ class Follower {
   }
 
   void see_target(double visible, const Verdict& verdict, const Result& result) {
-    const bool is_visible = visible >= kLeastToStart;
+    const bool is_visible = visible >= kMinToStart;
     has_begun_ = has_begun_ || is_visible;
     if (!has_begun_) {
       if (result.answer && !verdict.is_good()) ++measures_.wrong_before;
@@ -109,7 +109,7 @@ class Follower {
   TrackingMeasures& measures_;
   bool has_begun_ = false;  // since the target was out of view
   bool has_begun_before_ = false;
-  bool was_visible_ = false;  // to kLeastToStart, in the frame before
+  bool was_visible_ = false;  // to kMinToStart, in the frame before
   bool was_lost_ = false;     // since then
   int waited_ = 0;            // frames since a return; 0 = for none
 };

@@ -27,14 +27,14 @@ struct RangeCounts {
 
 /// How a method followed its target through whole sequences.
 struct TrackingMeasures {
-  /// From the first frame on that shows kLeastToStart of the perimeter, in each sequence and after
+  /// From the first frame on that shows kMinToStart of the perimeter, in each sequence and after
   /// each time that nothing of the target was in view.
   std::array<RangeCounts, kVisibleRanges> ranges;
   int wrong_before = 0;      ///< Wrong answers in the frames before those.
   int empty_frames = 0;      ///< Show nothing of the target; of the whole sequences.
   int locks_on_nothing = 0;  ///< Of these, where a target was reported.
   int given = 0;             ///< Answers that the method was told; counted nowhere else.
-  /// One value for each time when kLeastToStart of the perimeter is visible again after less, and
+  /// One value for each time when kMinToStart of the perimeter is visible again after less, and
   /// the method was meanwhile without its target, or the target out of view: the number of frames
   /// until it is right, 1 = at once, infinity = not before the next such time or the end. Without
   /// those where it was told.

@@ -13,7 +13,7 @@
 namespace evaluate {
 namespace {
 
-constexpr std::size_t kMostWildSeeds = 100000;
+constexpr std::size_t kMaxWildSeeds = 100000;
 
 Truth truth_of(const std::vector<ellipse::TrueEllipse>& shown) {
   Truth truth;
@@ -86,10 +86,10 @@ std::vector<Sequence> make_wild(const std::vector<std::uint64_t>& seeds, double 
 }
 
 std::optional<std::vector<Sequence>> wild_by_name(const std::string& text, double seconds) {
-  if (const auto seeds = scene_seeds(text, "wild", kMostWildSeeds)) {
+  if (const auto seeds = scene_seeds(text, "wild", kMaxWildSeeds)) {
     return make_wild(*seeds, seconds);
   }
-  if (const auto seeds = scene_seeds(text, "wild-frames", kMostWildSeeds)) {
+  if (const auto seeds = scene_seeds(text, "wild-frames", kMaxWildSeeds)) {
     return make_wild(*seeds, 0.0);
   }
   return std::nullopt;

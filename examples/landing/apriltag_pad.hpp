@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "core/scene/pad.hpp"
 #include "core/scene/sheet.hpp"
 #include "examples/landing/peer_eye.hpp"

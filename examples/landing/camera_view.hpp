@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 #include "core/scene/scene.hpp"
 #include "examples/landing/platform.hpp"
 #include "examples/landing/vehicle.hpp"

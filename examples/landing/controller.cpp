@@ -22,7 +22,7 @@ constexpr double kSpiralSpeed = 1.5;     // along them [m/s]
 constexpr double kSweepRate = 0.5;       // of its height [rad/s]
 constexpr double kWidestSpiral = 3.0;    // [m]
 constexpr double kTouchDownSpeed = 0.8;  // [m/s]
-constexpr double kMostDrift = 1.2;       // velocity beside the platform's that is safe low [m/s]
+constexpr double kMaxDrift = 1.2;        // velocity beside the platform's that is safe low [m/s]
 constexpr double kMoves = 0.5;           // a platform that is faster has a heading [m/s]
 
 }  // namespace
@@ -77,7 +77,7 @@ void Controller::look(const Observation& seen) {
   const double error = std::hypot(attitude, blind, seen.error);
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
     seen_in_a_row_ = 0;
-    refused_in_a_row_ = refused_in_a_row_ % kMostRefused + 1;
+    refused_in_a_row_ = refused_in_a_row_ % kMaxRefused + 1;
     return;
   }
   refused_in_a_row_ = 0;
@@ -149,9 +149,9 @@ bool Controller::is_unsafe(const Situation& now) const {
       now.height < settings_.blind_height ? settings_.most_unseen_low_s : settings_.most_unseen_s;
   if (now.unseen_s > allowed_s) return true;
   if (phase_ == Phase::kTouchDown) {
-    return now.distance > settings_.most_off_touching || now.drift > kMostDrift;
+    return now.distance > settings_.most_off_touching || now.drift > kMaxDrift;
   }
-  return now.distance > 0.6 + 0.4 * now.height || (now.height < 1.5 && now.drift > kMostDrift);
+  return now.distance > 0.6 + 0.4 * now.height || (now.height < 1.5 && now.drift > kMaxDrift);
 }
 
 bool Controller::has_been_steady(const Situation& now, double off, double drift, double for_s) {

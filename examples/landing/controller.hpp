@@ -71,14 +71,14 @@ class Controller {
   [[nodiscard]] Phase phase() const { return phase_; }
 
   /// Whether ellipsetrack follows something else: it had better search anew.
-  [[nodiscard]] bool is_deceived() const { return refused_in_a_row_ >= kMostRefused; }
+  [[nodiscard]] bool is_deceived() const { return refused_in_a_row_ >= kMaxRefused; }
 
   /// Times that something was not safe.
   [[nodiscard]] int climbs() const { return climbs_; }
 
  private:
   struct Situation;  // what it decides by
-  static constexpr int kMostRefused = 5;
+  static constexpr int kMaxRefused = 5;
 
   void take_in(const Observation& seen);
   void look(const Observation& seen);

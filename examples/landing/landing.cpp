@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLargestStep_s = 0.005;
+constexpr double kMaxStep_s = 0.005;
 constexpr double kGoodView = 0.3;  // share of the outline that is enough to be found
 // What the platform tells by radio, once a second, as from a receiver of satellites.
 constexpr double kRadioOffset = 1.5;    // that stays [m]
@@ -177,7 +177,7 @@ class Run {
 
   // Until the next picture, or until the feet are on the platform.
   void move(const Command& command) {
-    const int steps = static_cast<int>(std::ceil(1.0 / flight_.rate / kLargestStep_s));
+    const int steps = static_cast<int>(std::ceil(1.0 / flight_.rate / kMaxStep_s));
     const double step_s = 1.0 / flight_.rate / steps;
     for (int i = 0; i < steps; ++i) {
       vehicle_.step(command, step_s);

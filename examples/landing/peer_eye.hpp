@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/image_view.hpp"
+#include "core/image/image_view.hpp"
 #include "examples/landing/eye.hpp"
 
 namespace landing {

@@ -116,9 +116,9 @@ void plot_touchdowns(const std::vector<Landing>& landings, const std::filesystem
             "set ylabel \"ahead of the centre [m]\"\nset key outside top center horizontal\nplot "
          << format("%g*cos(t), %g*sin(t) lc rgb \"#999999\" lw 2 notitle, ", radius, radius)
          << format("%g*cos(t), %g*sin(t) lc rgb \"#999999\" dt 2 title \"%g m\"",
-                   kMostOff,
-                   kMostOff,
-                   kMostOff);
+                   kMaxOff,
+                   kMaxOff,
+                   kMaxOff);
   for (std::size_t i = 0; i < methods.size(); ++i) {
     script << format(", $m%zu using 1:2 with points pt 7 ps 0.6 lc rgb \"%s\" title \"%s\"",
                      i,
@@ -152,9 +152,8 @@ void plot_errors(const std::vector<Landing>& landings, const std::filesystem::pa
   script << "set xrange [0:0.6]\nset yrange [0:1.02]\nset key bottom right\n"
             "set xlabel \"distance from the centre at touchdown [m]\"\n"
             "set ylabel \"share of landings within\"\n"
-         << format("set arrow from %g,0 to %g,1.02 nohead dt 2 lc rgb \"#999999\"\n",
-                   kMostOff,
-                   kMostOff)
+         << format(
+                "set arrow from %g,0 to %g,1.02 nohead dt 2 lc rgb \"#999999\"\n", kMaxOff, kMaxOff)
          << "plot ";
   for (std::size_t i = 0; i < methods.size(); ++i) {
     script << format("%s$m%zu using 1:2 with steps lw 2 lc rgb \"%s\" title \"%s\"",

@@ -127,7 +127,7 @@ Table outcome_table(const std::vector<Landing>& landings) {
   for (const Group& group : groups_of(landings)) {
     const auto all = static_cast<long>(group.landings.size());
     const long right = std::count_if(group.landings.begin(), group.landings.end(), [](auto* one) {
-      return one->outcome.is_within(kMostOff);
+      return one->outcome.is_within(kMaxOff);
     });
     const std::vector<double> off = sorted(group, off_of);
     const auto drift = sorted(group, [](const Outcome& outcome) { return outcome.drift; });

@@ -15,7 +15,7 @@ struct Landing {
 };
 
 /// The distance from the pad's centre within which a landing is right [m].
-inline constexpr double kMostOff = 0.3;
+inline constexpr double kMaxOff = 0.3;
 
 /// How the landings of each method at each speed ended.
 [[nodiscard]] evaluate::Table outcome_table(const std::vector<Landing>& landings);

@@ -16,7 +16,7 @@ constexpr double kUprightJerk = 1e-5;  // the platform drives on level ground
 constexpr double kGate = 25.0;         // squared innovation by its variance
 constexpr double kHeightError = 0.5;   // of the platform below the vehicle [m]
 constexpr double kHeightDrift = 0.1;   // of dead reckoning, upwards and downwards [m/s]
-constexpr double kMostSpeed = 6.0;     // of any platform [m/s]
+constexpr double kMaxSpeed = 6.0;      // of any platform [m/s]
 
 }  // namespace
 
@@ -51,7 +51,7 @@ double TargetFilter::surprise(const Axis& axis, double position, double variance
 void TargetFilter::correct(Axis& axis, Eigen::Index part, double value, double variance) {
   const Vector3d gain = axis.covariance.col(part) / (axis.covariance(part, part) + variance);
   axis.mean += gain * (value - axis.mean[part]);
-  axis.mean[1] = std::clamp(axis.mean[1], -kMostSpeed, kMostSpeed);
+  axis.mean[1] = std::clamp(axis.mean[1], -kMaxSpeed, kMaxSpeed);
   axis.covariance -= (gain * axis.covariance.row(part)).eval();
 }
 

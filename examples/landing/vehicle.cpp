@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 const Vector3d kUp = Vector3d::UnitZ();
 constexpr double kGravity = 9.81;
 constexpr double kFeelingLag_s = 0.5;   // until the autopilot knows a gust
-constexpr double kLeastLift = 4.0;      // upward thrust [m/s^2]: it never turns over
+constexpr double kMinLift = 4.0;        // upward thrust [m/s^2]: it never turns over
 constexpr double kVerticalShare = 0.3;  // of the gusts that goes up and down
 
 Vector3d limited(const Vector3d& value, double most) {
@@ -68,7 +68,7 @@ void Vehicle::blow(double step_s) {
 // Thrust acts along the body's own z: to push aside it must tilt.
 void Vehicle::tilt(const Vector3d& wanted_thrust, double step_s) {
   Vector3d wanted = wanted_thrust;
-  wanted.z() = std::max(wanted.z(), kLeastLift);
+  wanted.z() = std::max(wanted.z(), kMinLift);
   thrust_ += (wanted - thrust_) * std::min(1.0, step_s / model_.thrust_lag_s);
   truth_.world_from_body = Quaterniond::FromTwoVectors(kUp, thrust_.normalized()) *
                            Quaterniond(AngleAxisd(yaw_rad_, kUp));

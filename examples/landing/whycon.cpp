@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "core/pose.hpp"
+#include "core/camera/circle_pose.hpp"
 #include "core/scene/wild_shapes.hpp"
 
 namespace landing {

@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "core/camera.hpp"
-#include "core/ellipse.hpp"
+#include "core/camera/camera.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "core/scene/pad.hpp"
 #include "core/scene/sheet.hpp"
 #include "examples/landing/peer_eye.hpp"

@@ -9,14 +9,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "examples/live/json_writer.hpp"
-#include "gst/video_view.hpp"
+#include "gst/track/video_view.hpp"
 
 namespace live {
 namespace {
 
-constexpr std::size_t kMostCandidates = 2000;  // some hundred bytes each
+constexpr std::size_t kMaxCandidates = 2000;  // some hundred bytes each
 
 bool is_found(const ellipse::TracedCandidate& candidate) {
   return candidate.verdict.is_accepted() ||
@@ -81,7 +81,7 @@ void write_candidates(JsonWriter& json, const ellipse::DetectionTrace& trace) {
   for (const auto* candidate : candidates) ++counts[candidate->verdict.reason];
   json.key("candidates").begin_array();
   for (const auto* candidate :
-       std::span(candidates).first(std::min(candidates.size(), kMostCandidates))) {
+       std::span(candidates).first(std::min(candidates.size(), kMaxCandidates))) {
     write_candidate(json, *candidate);
   }
   json.end_array().key("counts").begin_object();

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "core/stage_picture.hpp"
-#include "core/tracker_settings.hpp"
+#include "core/detection/trace_image.hpp"
+#include "core/tracking/settings.hpp"
 #include "examples/live/frame.hpp"
 
 namespace live {

@@ -7,7 +7,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMostWaiting = 8;
+constexpr std::size_t kMaxWaiting = 8;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Analyst::~Analyst() {
 bool Analyst::ask(AnalysisRequest request, Answer answer) {
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() >= kMostWaiting) return false;
+    if (waiting_.size() >= kMaxWaiting) return false;
     waiting_.push_back({std::move(request), std::move(answer)});
   }
   changed_.notify_one();

@@ -21,7 +21,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMostStreams = 120;  // of the connections, of which there may be 160
+constexpr std::size_t kMaxStreams = 120;  // of the connections, of which there may be 160
 constexpr char kTooMany[] = "too many watch";
 
 void write_time(JsonWriter& json, const char* name, GstClockTime time) {
@@ -41,7 +41,7 @@ void add_page(HttpServer& server, const Options& options) {
 
 // Those who stay leave connections to those who only ask.
 bool has_room(Session& session) {
-  return session.video().viewers() + session.lines().listeners() < kMostStreams;
+  return session.video().viewers() + session.lines().listeners() < kMaxStreams;
 }
 
 void add_feeds(HttpServer& server, Session& session) {

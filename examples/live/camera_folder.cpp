@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/camera_file.hpp"
+#include "core/camera/camera_file.hpp"
 
 namespace live {
 

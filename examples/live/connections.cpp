@@ -10,7 +10,7 @@ namespace live {
 namespace {
 
 constexpr std::size_t kMost = 160;
-constexpr std::ptrdiff_t kMostOfAddress = 40;
+constexpr std::ptrdiff_t kMaxOfAddress = 40;
 constexpr guint kGlanceMs = 1000;
 constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // until all of a request has come
 constexpr guint kSilenceSeconds = 20;               // of who neither sends nor takes
@@ -51,7 +51,7 @@ bool Connections::has_room(GInetAddress* address, const std::string& name) const
   if (g_inet_address_get_is_loopback(address)) return true;
   return std::count_if(open_->begin(), open_->end(), [&name](const auto& each) {
            return each.second.address == name;
-         }) < kMostOfAddress;
+         }) < kMaxOfAddress;
 }
 
 GSocket* Connections::keep(GSocketAddress* client) {

@@ -118,10 +118,10 @@ bool are_numbered(const std::vector<fs::path>& pictures, std::size_t first, int 
 
 // The pattern of the names themselves; nullopt where they have none that imagesequencesrc reads.
 std::optional<Numbered> pattern_of(const std::vector<fs::path>& pictures) {
-  constexpr std::size_t kMostDigits = 9;
+  constexpr std::size_t kMaxDigits = 9;
   const std::string name = pictures.front().filename();
   const auto [begin, end] = number_in(name);
-  if (begin == end || end - begin > kMostDigits) return std::nullopt;
+  if (begin == end || end - begin > kMaxDigits) return std::nullopt;
   const std::size_t first = std::stoul(name.substr(begin, end - begin));
   const bool stops = first + pictures.size() > 1;  // 1.22 does not, behind a stop-index of 0
   for (const int digits : {1, static_cast<int>(end - begin)}) {

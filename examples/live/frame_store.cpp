@@ -33,7 +33,7 @@ bool FrameStore::replace(const FramePtr& before, FramePtr after) {
 
 // With the lock held. @return The one that was the newest.
 FramePtr FrameStore::take(FramePtr frame) {
-  if (lines_.size() == kMostLines) lines_.pop_front();
+  if (lines_.size() == kMaxLines) lines_.pop_front();
   lines_.push_back(frame->line);
   return std::exchange(newest_, std::move(frame));
 }

@@ -43,7 +43,7 @@ class FrameStore {
   [[nodiscard]] bool is_held() const;
 
  private:
-  static constexpr std::size_t kMostLines = 64;
+  static constexpr std::size_t kMaxLines = 64;
   FramePtr take(FramePtr frame);
 
   mutable std::mutex mutex_;

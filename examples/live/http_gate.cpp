@@ -8,12 +8,12 @@
 namespace live {
 namespace {
 
-constexpr goffset kLargestBody = 64 * 1024;
+constexpr goffset kMaxBody = 64 * 1024;
 constexpr std::size_t kLongestPath = 1024;
-constexpr gsize kLargestHeaders = 16 * 1024;
+constexpr gsize kMaxHeaders = 16 * 1024;
 constexpr double kRequestsPerSecond = 100.0;
 constexpr double kRequestsAtOnce = 300.0;
-constexpr std::size_t kMostAddresses = 1024;
+constexpr std::size_t kMaxAddresses = 1024;
 constexpr char kCookie[] = "ellipse_token";
 
 std::string header(SoupServerMessage* message, const char* name) {
@@ -71,7 +71,7 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
     return refuse(message, 403, "another site's page may not do this");
   }
   if (path.size() > kLongestPath) return refuse(message, 414, "the path is too long");
-  if (size_of_headers(message) > kLargestHeaders) {
+  if (size_of_headers(message) > kMaxHeaders) {
     return refuse(message, 431, "the headers are too large");
   }
   if (take_token_from_link(message, path)) return false;
@@ -84,7 +84,7 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
   const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
   if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "the length must be given");
   const goffset length = soup_message_headers_get_content_length(headers);
-  if (length > (is_write(message) ? kLargestBody : 0)) {
+  if (length > (is_write(message) ? kMaxBody : 0)) {
     return refuse(message, 413, "the body is too large");
   }
   return false;
@@ -93,7 +93,7 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
 bool HttpGate::may_ask_now(SoupServerMessage* message) {
   const char* host = soup_server_message_get_remote_host(message);
   const std::string address = host != nullptr ? host : "";
-  if (allowances_.size() >= kMostAddresses) allowances_.clear();
+  if (allowances_.size() >= kMaxAddresses) allowances_.clear();
   return allowances_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
 }
 

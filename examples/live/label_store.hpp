@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "examples/live/frame.hpp"
 
 namespace live {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "core/tracker_settings.hpp"
+#include "core/tracking/settings.hpp"
 #include "examples/live/camera_folder.hpp"
 
 namespace live {

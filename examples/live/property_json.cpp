@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "core/setting_effect.hpp"
+#include "core/tracking/setting_effect.hpp"
 #include "examples/live/property_groups.hpp"
 #include "examples/live/ref.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/tracker_settings.hpp"
+#include "core/tracking/settings.hpp"
 #include "examples/live/json_writer.hpp"
 
 namespace live {

@@ -10,8 +10,8 @@
 namespace live {
 namespace {
 
-constexpr int kMostWaiting = 8;  // frames: their memory may be a camera's
-constexpr guint64 kMostLines = 300;
+constexpr int kMaxWaiting = 8;  // frames: their memory may be a camera's
+constexpr guint64 kMaxLines = 300;
 
 std::filesystem::path numbered(const std::filesystem::path& file, int number) {
   if (number == 1) return file;
@@ -48,10 +48,10 @@ Recorder::~Recorder() {
 
 void Recorder::open() {
   GError* problem = nullptr;
-  pipeline_ = gst_parse_launch((frame_inlet("video", kMostWaiting) + " ! " + h264_encoder() +
+  pipeline_ = gst_parse_launch((frame_inlet("video", kMaxWaiting) + " ! " + h264_encoder() +
                                 " ! matroskamux ! filesink name=mkv "
                                 "appsrc name=lines max-buffers=" +
-                                std::to_string(kMostLines) +
+                                std::to_string(kMaxLines) +
                                 " leaky-type=downstream ! filesink name=ndjson sync=false "
                                 "async=false")
                                    .c_str(),

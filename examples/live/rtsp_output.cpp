@@ -11,8 +11,8 @@
 namespace live {
 namespace {
 
-constexpr int kMostWaiting = 2;  // frames
-constexpr guint kMostSessions = 16;
+constexpr int kMaxWaiting = 2;  // frames
+constexpr guint kMaxSessions = 16;
 constexpr guint kGlanceSeconds = 2;
 constexpr char kInlet[] = "frames";
 constexpr char kUser[] = "ellipse";
@@ -70,7 +70,7 @@ RtspOutput::RtspOutput(const Settings& settings)
   GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
   gst_rtsp_media_factory_set_launch(
       factory,
-      ("( " + frame_inlet(kInlet, kMostWaiting) +
+      ("( " + frame_inlet(kInlet, kMaxWaiting) +
        " ! videoconvert ! ellipseoverlay overlay=ellipse+axes+centre+label ! " + h264_encoder() +
        " ! rtph264pay name=pay0 pt=96 config-interval=1 )")
           .c_str());
@@ -80,7 +80,7 @@ RtspOutput::RtspOutput(const Settings& settings)
   const Ref<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server_.get()));
   gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // takes the factory
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server_.get()));
-  gst_rtsp_session_pool_set_max_sessions(pool.get(), kMostSessions);
+  gst_rtsp_session_pool_set_max_sessions(pool.get(), kMaxSessions);
   try {
     door_.emplace(server_.get());
   } catch (const std::runtime_error& error) {

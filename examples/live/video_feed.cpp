@@ -16,8 +16,8 @@ constexpr guint kGlanceMs = 1000;
 constexpr gint64 kFollowedUs = 500 * 1000;
 constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
-constexpr std::size_t kMostDelays = 256;
-constexpr std::size_t kMostInFlight = 2;  // one on its way, one being painted
+constexpr std::size_t kMaxDelays = 256;
+constexpr std::size_t kMaxInFlight = 2;  // one on its way, one being painted
 constexpr char kBoundary[] = "ellipse-frame";
 
 // {"ack":123}
@@ -39,7 +39,7 @@ class SocketViewer : public Viewer {
   }
 
   [[nodiscard]] bool is_ready() const override {
-    return in_flight_.size() < kMostInFlight && socket_->can_send();
+    return in_flight_.size() < kMaxInFlight && socket_->can_send();
   }
 
   void send(const Picture& picture) override {
@@ -165,7 +165,7 @@ void VideoFeed::add_stream(SoupServerMessage* request) {
 }
 
 void VideoFeed::note_painted(gint64 delay_us) {
-  if (paint_delays_.size() == kMostDelays) paint_delays_.pop_front();
+  if (paint_delays_.size() == kMaxDelays) paint_delays_.pop_front();
   paint_delays_.push_back(static_cast<GstClockTime>(delay_us) * GST_USECOND);
 }
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <optional>
 
-#include "core/ellipse.hpp"
-#include "core/image_view.hpp"
+#include "core/geometry/ellipse.hpp"
+#include "core/image/image_view.hpp"
 
 GType gst_ellipse_role_get_type(void) {
   static const GEnumValue kValues[] = {

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "core/contour_detector.hpp"
-#include "core/ellipse_fit.hpp"
-#include "core/luma.hpp"
-#include "core/overlap.hpp"
-#include "core/scale.hpp"
+#include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/contours/overlap.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/image/luma.hpp"
+#include "core/image/scale.hpp"
 #include "core/scene/renderer.hpp"
-#include "core/target_selection.hpp"
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/bench/frames.hpp"
 
 namespace {

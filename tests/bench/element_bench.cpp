@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker.hpp"
-#include "core/tracker_settings.hpp"
+#include "core/tracking/settings.hpp"
+#include "core/tracking/tracker.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
-#include "gst/video_view.hpp"
+#include "gst/track/video_view.hpp"
 #include "tests/bench/allocations.hpp"
 #include "tests/bench/frames.hpp"
 #include "tests/gst/support.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contour_detector.hpp"
+#include "core/detection/contours/contour_detector.hpp"
 #include "core/scene/scene.hpp"
 #include "tests/support/picture.hpp"
 

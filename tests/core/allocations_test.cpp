@@ -12,17 +12,17 @@
 #include <span>
 #include <vector>
 
-#include "core/arc_detector.hpp"
-#include "core/contour_detector.hpp"
-#include "core/edge_tracker.hpp"
-#include "core/ellipse_fit.hpp"
-#include "core/luma.hpp"
-#include "core/overlap.hpp"
-#include "core/scale.hpp"
+#include "core/detection/arcs/arc_detector.hpp"
+#include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/contours/overlap.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/image/luma.hpp"
+#include "core/image/scale.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
-#include "core/target_selection.hpp"
-#include "core/tracker.hpp"
+#include "core/tracking/pad/pad_tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -238,7 +238,7 @@ void show(const Film& film, const Use& use) {
 
 TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
   for (const Film& film : kFilms) {
-    EdgeTracker tracker;
+    PadTracker tracker;
     show(film, [&](int i, const ImageView& luma, const Truth& truth) {
       const LumaWindow window{luma, {0.0, 0.0}, {320.0, 180.0}};
       if (i == 0) {
@@ -256,7 +256,7 @@ TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
 TEST_F(Allocations, NoneWhereEdgesAreNotMet) {
   const Picture ring = ring_picture();
   const Picture ground(320, 240, 90);
-  EdgeTracker tracker;
+  PadTracker tracker;
   ASSERT_TRUE(tracker.lock({ring.view(), {0.0, 0.0}, {320.0, 240.0}}, kRing));
   for (int i = 0; i < 20; ++i) {
     std::optional<EdgeTrack> track;

@@ -10,12 +10,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/detectors.hpp"
-#include "core/luma.hpp"
-#include "core/overlap.hpp"
-#include "core/roi.hpp"
-#include "core/scale.hpp"
-#include "core/tracker_settings.hpp"
+#include "core/detection/contours/overlap.hpp"
+#include "core/detection/detectors.hpp"
+#include "core/image/luma.hpp"
+#include "core/image/scale.hpp"
+#include "core/tracking/roi.hpp"
+#include "core/tracking/settings.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {

@@ -75,7 +75,7 @@ TEST_P(EachBoxPeer, IsToldItsTargetOnceAndFollowsIt) {
 TEST_P(EachBoxPeer, IsToldNothingThatIsHardlyVisible) {
   ellipse::Ellipse leaving = kStart;
   leaving.cx = -10.0;
-  EXPECT_LT(ellipse::visible_fraction(leaving, kSize.width, kSize.height), kLeastToStart);
+  EXPECT_LT(ellipse::visible_fraction(leaving, kSize.width, kSize.height), kMinToStart);
   EXPECT_FALSE(see(leaving).target);
   support::Picture picture = support::rendered(marked_pad(), kStart);
   EXPECT_FALSE(see(picture, {kStart, std::nullopt, false}).target);  // not labelled

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/scene/catalog.hpp"
-#include "examples/evaluate/bent_frame.hpp"
+#include "examples/evaluate/distorted_frame.hpp"
 #include "examples/evaluate/evaluation.hpp"
 #include "examples/evaluate/scenes.hpp"
 
@@ -36,7 +36,7 @@ TEST(Distorted, AreTheScenesThroughEachLens) {
   ASSERT_EQ(sequences.size(), 2 * ellipse::scene_catalog().size() * ellipse::lens_catalog().size());
   EXPECT_EQ(sequences[0].name, "approach-barrel-5");
   EXPECT_EQ(sequences[3].name, "approach-fisheye-6");
-  std::set<const BentFrame*> lenses;
+  std::set<const DistortedFrame*> lenses;
   for (const Sequence& sequence : sequences) {
     EXPECT_EQ(sequence.dataset, "distorted");
     EXPECT_EQ(sequence.frames.size(), 10U);
@@ -69,10 +69,10 @@ TEST(Distorted, TruthsAreOfTheIdealPlaneInFramesAndMissingFromEmptyOnes) {
   }
 }
 
-TEST(BentFrame, CountsAsARectangleWhereTheLensHardlyBends) {
+TEST(DistortedFrame, CountsAsARectangleWhereTheLensHardlyBends) {
   ellipse::Camera camera = ellipse::Camera::with_hfov(1.012, 640, 360);
   camera.distortion[0] = 1e-9;
-  const BentFrame frame(camera);
+  const DistortedFrame frame(camera);
   const ellipse::Ellipse truth{300.0, 200.0, 120.0, 80.0, 0.4};
   for (const double shift : {0.0, 10.0, 60.0, 200.0}) {
     const ellipse::Ellipse answer = ellipse::translated(truth, shift, -0.5 * shift);
@@ -81,17 +81,17 @@ TEST(BentFrame, CountsAsARectangleWhereTheLensHardlyBends) {
   EXPECT_EQ(frame.iou({-500.0, 0.0, 9.0, 9.0, 0.0}, {-500.0, 0.0, 9.0, 9.0, 0.0}), 0.0);
 }
 
-TEST(BentFrame, SeesWhatTheIdealPlanesRectangleDoesNotHold) {
-  const BentFrame frame(camera_with("fisheye"));
+TEST(DistortedFrame, SeesWhatTheIdealPlanesRectangleDoesNotHold) {
+  const DistortedFrame frame(camera_with("fisheye"));
   // Shown near the picture's right border, far out in the ideal plane.
   const ellipse::Ellipse far_out{780.0, 180.0, 60.0, 40.0, 0.0};
   EXPECT_EQ(ellipse::iou_inside(far_out, far_out, 640, 360), 0.0);
   EXPECT_EQ(frame.iou(far_out, far_out), 1.0);
 }
 
-TEST(BentFrame, LeadsThereAndBack) {
+TEST(DistortedFrame, LeadsThereAndBack) {
   for (const char* lens : {"barrel", "fisheye"}) {
-    const BentFrame frame(camera_with(lens));
+    const DistortedFrame frame(camera_with(lens));
     for (const ellipse::Ellipse& ideal : {ellipse::Ellipse{120.0, 90.0, 60.0, 50.0, 0.3},
                                           ellipse::Ellipse{560.0, 300.0, 40.0, 25.0, -0.7}}) {
       const auto shown = frame.to_picture(ideal);
@@ -108,7 +108,7 @@ class Truthful : public Method {
  public:
   Truthful(const char* name, bool knows_lens, bool means_ideal)
       : Method(name), knows_lens_(knows_lens), means_ideal_(means_ideal) {}
-  void start(const BentFrame* bent) override { bent_ = bent; }
+  void start(const DistortedFrame* bent) override { bent_ = bent; }
   [[nodiscard]] bool knows_lens() const override { return knows_lens_; }
   Answer find(const Frame& frame, const cv::Mat& /*picture*/, std::int64_t /*pts_ns*/) override {
     Answer answer;
@@ -120,7 +120,7 @@ class Truthful : public Method {
  private:
   bool knows_lens_;
   bool means_ideal_;
-  const BentFrame* bent_ = nullptr;
+  const DistortedFrame* bent_ = nullptr;
 };
 
 TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {
@@ -135,7 +135,7 @@ TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {
   int judged = 0;
   int off = 0;
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
-    if (evaluation.frames[i].frame->truth.visible_fraction.value_or(0.0) < kLeastToStart) continue;
+    if (evaluation.frames[i].frame->truth.visible_fraction.value_or(0.0) < kMinToStart) continue;
     const auto result = [&](std::size_t method) { return evaluation.methods[method].results[i]; };
     EXPECT_EQ(result(0).outcome, Outcome::kTruePositive);
     EXPECT_EQ(result(0).centre_error_px, 0.0);

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/homography.hpp"
+#include "core/geometry/homography.hpp"
 #include "examples/landing/pipeline.hpp"
 #include "examples/landing/pipeline_eye.hpp"
 #include "examples/landing/report.hpp"
@@ -275,7 +275,7 @@ Flight short_flight() {
 TEST(Landing, EndsOnTheMovingPadAndAgainTheSame) {
   const Outcome outcome = landing::fly(short_flight());
   ASSERT_TRUE(outcome.has_touched_down);
-  EXPECT_LE(outcome.off.norm(), landing::kMostOff);
+  EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
   EXPECT_LE(outcome.drift, 1.0);
   EXPECT_LE(outcome.sink, 1.2);
   EXPECT_GT(outcome.frames[static_cast<std::size_t>(Phase::kDescend)], 30);
@@ -293,7 +293,7 @@ TEST(Landing, BreaksOffWhereThePadIsHiddenAndTriesAgain) {
   const Outcome outcome = landing::fly(flight);
   EXPECT_GE(outcome.climbs, 1);
   ASSERT_TRUE(outcome.has_touched_down);
-  EXPECT_LE(outcome.off.norm(), landing::kMostOff);
+  EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
   // It was up again before it came down.
   double highest = 0.0;
   bool was_low = false;

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/target_selection.hpp"
-#include "core/tracker.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/tracking/tracker.hpp"
 #include "examples/evaluate/randomized_hough.hpp"
 #include "tests/support/picture.hpp"
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/examples/programs.hpp"
 #include "tests/support/temporary_folder.hpp"

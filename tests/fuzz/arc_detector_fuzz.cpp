@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/arc_detector.hpp"
+#include "core/detection/arcs/arc_detector.hpp"
 
 namespace {
 

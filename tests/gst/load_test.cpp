@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "gst/lateness.hpp"
-#include "gst/load_watch.hpp"
-#include "gst/track_stats.hpp"
+#include "gst/track/lateness.hpp"
+#include "gst/track/load_watch.hpp"
+#include "gst/track/track_stats.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/gst/tracker_harness.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
 #include "tests/gst/support.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/ellipse.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "tests/gst/own_tests.hpp"
 #include "tests/gst/support.hpp"
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "core/camera.hpp"
-#include "core/camera_file.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/camera_file.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/gst/support.hpp"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
 #include "tests/gst/support.hpp"
 

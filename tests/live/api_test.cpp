@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/live/live_clients.hpp"
 #include "tests/live/live_program.hpp"

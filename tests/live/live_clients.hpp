@@ -22,10 +22,10 @@ using live::share;
 
 /// How long these clients wait before they give up [s]: what is waited for comes at once on an idle
 /// machine, and late on a busy one.
-inline constexpr int kMostSeconds = 60;
+inline constexpr int kMaxSeconds = 60;
 
 /// Runs the main loop until something is so. @return false where it does not come to be.
-inline bool wait_until(const std::function<bool()>& is_so, int seconds = kMostSeconds) {
+inline bool wait_until(const std::function<bool()>& is_so, int seconds = kMaxSeconds) {
   const gint64 deadline = g_get_monotonic_time() + seconds * G_USEC_PER_SEC;
   while (!is_so()) {
     if (g_get_monotonic_time() > deadline) return false;
@@ -70,7 +70,7 @@ class Client {
              const std::string& body = "",
              const Headers& headers = {}) const {
     Answer answer = ask_once(method, path, body, headers);
-    for (int i = 0; i < 10 * kMostSeconds && answer.status == kTooOften; ++i) {
+    for (int i = 0; i < 10 * kMaxSeconds && answer.status == kTooOften; ++i) {
       g_usleep(100'000);
       answer = ask_once(method, path, body, headers);
     }
@@ -142,7 +142,7 @@ inline double value_of(const Client& client, const std::string& name) {
 
 /// Reads an endless answer until it has what is looked for so many times, or until nothing comes.
 inline std::string read_stream(const std::string& url, const std::string& part, int times) {
-  const Ref<SoupSession> session(soup_session_new_with_options("timeout", kMostSeconds, nullptr));
+  const Ref<SoupSession> session(soup_session_new_with_options("timeout", kMaxSeconds, nullptr));
   const Ref<SoupMessage> message(soup_message_new("GET", url.c_str()));
   const Ref<GInputStream> stream(soup_session_send(session.get(), message.get(), nullptr, nullptr));
   std::string text;
@@ -215,7 +215,7 @@ class SocketClient {
     soup_websocket_connection_send_text(connection_.get(), text.c_str());
   }
   /// Waits for a message and takes it; empty where none comes.
-  std::string next(int seconds = kMostSeconds) {
+  std::string next(int seconds = kMaxSeconds) {
     if (!wait_until([this] { return !messages_.empty(); }, seconds)) return "";
     std::string message = std::move(messages_.front());
     messages_.pop_front();

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/camera/circle_pose.hpp"
 #include "core/scene/random.hpp"
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/support/cameras.hpp"
 #include "tests/support/ray_cast.hpp"
 

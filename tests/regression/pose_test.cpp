@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // How exact the pose of a followed pad is, on rendered flights from 15 m to 1 m.
-#include "core/pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -14,10 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "core/camera/circle_pose.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/scene/random.hpp"
 #include "core/scene/renderer.hpp"
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 
 namespace ellipse {
 namespace {

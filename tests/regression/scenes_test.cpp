@@ -13,7 +13,7 @@
 
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
-#include "core/tracker.hpp"
+#include "core/tracking/tracker.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -23,7 +23,7 @@ constexpr int kWidth = 640;
 constexpr int kHeight = 360;
 constexpr std::uint64_t kSeed = 201;
 constexpr double kRightIou = 0.8;
-constexpr double kLeastVisible = 0.3;
+constexpr double kMinVisible = 0.3;
 
 /// What was measured when the row was written last. Who makes a tracker better moves them.
 struct Limits {
@@ -142,7 +142,7 @@ class Watched {
     const bool is_right =
         truth.outer_edge &&
         iou_inside(target->ellipse, *truth.outer_edge, kWidth, kHeight) >= kRightIou;
-    const bool is_judged = truth.visible_fraction >= kLeastVisible || truth.visible_fraction <= 0.0;
+    const bool is_judged = truth.visible_fraction >= kMinVisible || truth.visible_fraction <= 0.0;
     right_ += is_right ? 1 : 0;
     false_ += !is_right && is_judged ? 1 : 0;
   }

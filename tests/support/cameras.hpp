@@ -1,6 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include "core/camera.hpp"
+#include "core/camera/camera.hpp"
 
 namespace support {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image_view.hpp"
+#include "core/image/image_view.hpp"
 #include "core/scene/random.hpp"
 #include "core/scene/renderer.hpp"
 

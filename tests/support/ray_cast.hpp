@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/camera/camera.hpp"
+#include "core/camera/circle_pose.hpp"
 #include "tests/support/picture.hpp"
 
 namespace support {

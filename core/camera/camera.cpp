@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "core/camera/camera.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/camera/lens_model.hpp"
+
+namespace ellipse {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+constexpr double kWidestRad = 1.53;  // 87.7 degrees: near 90 the ideal plane is endless
+constexpr double kMinSlope = 0.05;   // of the radial map, where it is still one to one
+constexpr int kRadialSteps = 512;    // by which that is told
+constexpr int kTableSteps = 3;
+constexpr double kTableMargin = 1.05;  // for the tangential part
+constexpr int kMaxIterations = 20;
+constexpr double kNearPx = 1e-5;  // from where one step more is exact
+
+// At focal length 1.
+LensPoint distorted(const Camera& camera, const Vector2d& p) {
+  const Distorted<double> at = camera.lens == LensModel::kFisheye
+                                   ? kannala_brandt(camera.distortion, p.x(), p.y())
+                                   : brown_conrady(camera.distortion, p.x(), p.y());
+  LensPoint point{{at.x, at.y}, {}};
+  point.slope << at.x_by_x, at.x_by_y, at.y_by_x, at.y_by_y;
+  return point;
+}
+
+Vector2d beside_radial(const Camera& camera, const Vector2d& p) {
+  if (camera.lens == LensModel::kFisheye) return {0.0, 0.0};
+  const Distorted<double> aside = tangential(camera.distortion, p.x(), p.y());
+  return {aside.x, aside.y};
+}
+
+// How fast the distorted radius grows with the angle to the axis.
+double radial_slope(const Camera& camera, double theta) {
+  if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).derivative;
+  const double r = std::tan(theta);
+  const Slope<double> factor = rational_factor(camera.distortion, r * r);
+  return factor.value > 0.0 ? factor.value + 2.0 * r * r * factor.derivative : 0.0;
+}
+
+double radial_place(const Camera& camera, double theta) {
+  if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).value;
+  const double r = std::tan(theta);
+  return r * rational_factor(camera.distortion, r * r).value;
+}
+
+// A linear way to a place at focal length 1, or back.
+struct Axis {
+  float scale;
+  float offset;
+};
+
+struct Distortion {
+  std::array<float, 8> distortion;
+  float largest_squared;
+  float focal_ratio;  // fx / fy
+  Axis to_x, to_y, from_x, from_y;
+};
+
+template <LensModel kModel>
+ELLIPSE_INLINE void distort_all(const Distortion& by, const CurveSamples& places) {
+  for (std::size_t k = 0; k < places.count; ++k) {
+    const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
+    const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
+    const float nx = places.nx[k];
+    const float ny = places.ny[k];
+    const Distorted<float> at = kModel == LensModel::kFisheye ? kannala_brandt(by.distortion, x, y)
+                                                              : brown_conrady(by.distortion, x, y);
+    const float x_by_y = at.x_by_y * by.focal_ratio;
+    const float y_by_x = at.y_by_x / by.focal_ratio;
+    // A curve's normal goes with the inverse transposed.
+    const float across_x = at.y_by_y * nx - y_by_x * ny;
+    const float across_y = at.x_by_x * ny - x_by_y * nx;
+    const float along = std::sqrt(across_x * across_x + across_y * across_y);
+    const bool is_shown = x * x + y * y <= by.largest_squared;
+    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kNowhere;
+    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kNowhere;
+    places.nx[k] = across_x / along;
+    places.ny[k] = across_y / along;
+    places.px_per_ideal_along[k] = along;
+    places.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
+  }
+}
+
+void distort_baseline(LensModel model, const Distortion& by, const CurveSamples& places) {
+  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, places)
+                               : distort_all<LensModel::kBrownConrady>(by, places);
+}
+
+ELLIPSE_AVX2 void bend_avx2(LensModel model, const Distortion& by, const CurveSamples& places) {
+  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, places)
+                               : distort_all<LensModel::kBrownConrady>(by, places);
+}
+
+void check(bool is_right, const char* what) {
+  if (!is_right) throw std::invalid_argument(what);
+}
+
+}  // namespace
+
+Camera Camera::with_hfov(double hfov_rad, int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = width / 2.0 / std::tan(hfov_rad / 2.0);
+  camera.cx = (width - 1) / 2.0;
+  camera.cy = (height - 1) / 2.0;
+  return camera;
+}
+
+bool Camera::is_distorted() const {
+  return lens == LensModel::kFisheye ||
+         std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0.0; });
+}
+
+Camera Camera::resized(int new_width, int new_height) const {
+  const double sx = static_cast<double>(new_width) / width;
+  const double sy = static_cast<double>(new_height) / height;
+  Camera result = *this;
+  result.width = new_width;
+  result.height = new_height;
+  result.fx *= sx;
+  result.fy *= sy;
+  result.cx = (cx + 0.5) * sx - 0.5;
+  result.cy = (cy + 0.5) * sy - 0.5;
+  return result;
+}
+
+Eigen::Matrix3d Camera::matrix() const {
+  Eigen::Matrix3d k;
+  k << fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0;
+  return k;
+}
+
+void Camera::validate() const {
+  constexpr double kLargest = 1e6;
+  const auto is_length = [](double v) { return v > 0.0 && v <= kLargest; };
+  const auto is_place = [](double v) { return std::abs(v) <= kLargest; };
+  check(width > 0 && width <= kLargest, "width is not between 1 and 1e6 px");
+  check(height > 0 && height <= kLargest, "height is not between 1 and 1e6 px");
+  check(is_length(fx), "fx is not above 0 and at most 1e6 px");
+  check(is_length(fy), "fy is not above 0 and at most 1e6 px");
+  check(is_place(cx), "cx is no place in a picture");
+  check(is_place(cy), "cy is no place in a picture");
+  for (const double k : distortion) check(std::isfinite(k), "distortion is not finite");
+}
+
+Lens::Lens(const Camera& camera)
+    : camera_(camera),
+      focal_(camera.fx, camera.fy),
+      inverse_focal_(focal_.cwiseInverse()),
+      middle_(camera.cx, camera.cy) {
+  double widest = 0.0;
+  for (int i = 1; i <= kRadialSteps; ++i) {
+    const double theta = kWidestRad * i / kRadialSteps;
+    if (!(radial_slope(camera, theta) > kMinSlope)) break;
+    widest = theta;
+  }
+  largest_squared_ = std::pow(std::tan(widest), 2);
+  largest_picture_ = radial_place(camera, widest);
+  if (camera.is_distorted()) make_table();
+}
+
+// As far as the picture's corners. The radial part is undone by Newton's method, from the angle
+// next to it.
+void Lens::make_table() {
+  const Vector2d farthest(std::max(camera_.cx + 1.0, camera_.width - camera_.cx),
+                          std::max(camera_.cy + 1.0, camera_.height - camera_.cy));
+  const double end =
+      std::min(largest_picture_, kTableMargin * farthest.cwiseProduct(inverse_focal_).norm());
+  table_scale_ = kTableSize / (end * end);
+  table_[0] = 1.0F;
+  double theta = 0.0;
+  for (std::size_t i = 1; i <= kTableSize; ++i) {
+    const double wanted = std::sqrt(static_cast<double>(i) / table_scale_);
+    for (int step = 0; step < kTableSteps; ++step) {
+      const double t = std::tan(theta);
+      const double per_angle = camera_.lens == LensModel::kFisheye ? 1.0 : 1.0 + t * t;
+      theta += (wanted - radial_place(camera_, theta)) / (per_angle * radial_slope(camera_, theta));
+    }
+    table_[i] = static_cast<float>(std::tan(theta) / wanted);
+  }
+  table_.back() = table_[kTableSize];
+}
+
+// Without the tangential part.
+Vector2d Lens::from_table(const Vector2d& distorted) const {
+  const double at = distorted.squaredNorm() * table_scale_;
+  if (!(at <= kTableSize)) return Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const auto k = static_cast<std::size_t>(at);
+  const auto beyond = static_cast<float>(at - static_cast<double>(k));
+  return static_cast<double>(table_[k] + beyond * (table_[k + 1] - table_[k])) * distorted;
+}
+
+Vector2d Lens::near_ideal(const Vector2d& picture_px) const {
+  if (!(table_scale_ > 0.0)) return picture_px;
+  const Vector2d wanted = ray(picture_px);
+  const Vector2d first = from_table(wanted);
+  const Vector2d aside = beside_radial(camera_, first);
+  return pixel(aside.isZero(0.0) ? first : from_table(wanted - aside));
+}
+
+std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) const {
+  const Vector2d p = ray(ideal_px);
+  if (!(p.squaredNorm() <= largest_squared_)) return std::nullopt;
+  LensPoint point = distorted(camera_, p);
+  point.picture_px = pixel(point.picture_px);
+  point.slope(0, 1) *= focal_.x() * inverse_focal_.y();
+  point.slope(1, 0) *= focal_.y() * inverse_focal_.x();
+  return point;
+}
+
+void Lens::bend(const Vector2d& origin_px, double scale, const CurveSamples& places) const {
+  Distortion by{};
+  for (std::size_t i = 0; i < by.distortion.size(); ++i) {
+    by.distortion[i] = static_cast<float>(camera_.distortion[i]);
+  }
+  by.largest_squared = static_cast<float>(largest_squared_);
+  by.focal_ratio = static_cast<float>(camera_.fx / camera_.fy);
+  const auto axis = [](double factor, double offset) {
+    return Axis{static_cast<float>(factor), static_cast<float>(offset)};
+  };
+  const Vector2d first = ray(origin_px);
+  const Vector2d back = (middle_ - origin_px) / scale;
+  by.to_x = axis(scale * inverse_focal_.x(), first.x());
+  by.to_y = axis(scale * inverse_focal_.y(), first.y());
+  by.from_x = axis(focal_.x() / scale, back.x());
+  by.from_y = axis(focal_.y() / scale, back.y());
+  (best_simd() == Simd::kAvx2 ? bend_avx2 : distort_baseline)(camera_.lens, by, places);
+}
+
+std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) const {
+  const Vector2d wanted = ray(picture_px);
+  const double radius = wanted.norm();
+  if (!(radius <= 1.1 * largest_picture_)) return std::nullopt;
+  // A start that is right at small angles, and for an equidistant lens at all.
+  Vector2d p = wanted;
+  if (camera_.lens == LensModel::kFisheye && radius > 0.0) {
+    p *= std::tan(std::min(radius, kWidestRad)) / radius;
+  }
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const double beyond = p.squaredNorm() / largest_squared_;
+    if (beyond > 1.0) p /= std::sqrt(beyond);
+    const LensPoint here = distorted(camera_, p);
+    const Vector2d rest = wanted - here.picture_px;
+    p += here.slope.inverse() * rest;
+    if (rest.cwiseProduct(focal_).squaredNorm() < kNearPx * kNearPx) return pixel(p);
+  }
+  return std::nullopt;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+#include "core/camera/camera_file.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/core/persistence.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace ellipse {
+namespace {
+
+constexpr std::size_t kMaxFile = 1 << 20;  // bytes
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr double kMinFocal = 1.0;  // px: shorter ones are a slip of units
+
+// The keys that different programs use for the same thing.
+using Keys = std::initializer_list<const char*>;
+constexpr Keys kWidthKeys = {"image_width", "image_Width", "width"};
+constexpr Keys kHeightKeys = {"image_height", "image_Height", "height"};
+constexpr Keys kMatrixKeys = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "k"};
+constexpr Keys kDistortionKeys = {
+    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "d"};
+constexpr Keys kModelKeys = {"distortion_model"};
+constexpr Keys kFisheyeKeys = {"fisheye_model"};
+
+// One file, and the way to say what is wrong with it.
+class File {
+ public:
+  explicit File(const std::string& path) : path_(path) {
+    // Whoever opens a FIFO waits for its other end.
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      throw std::invalid_argument(path + ": is not a regular file");
+    }
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw std::invalid_argument(path + ": cannot be read");
+    text_.resize(kMaxFile + 1);
+    stream.read(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+    if (text_.size() > kMaxFile) throw std::invalid_argument(path + ": is larger than 1 MB");
+    if (text_.find('\0') != std::string::npos) {
+      throw std::invalid_argument(path + ": is no text");
+    }
+    if (text_.rfind(kByteOrderMark, 0) == 0) text_.erase(0, kByteOrderMark.size());
+    parse();
+  }
+
+  // The node of the first of these keys that is there; else an empty one.
+  [[nodiscard]] cv::FileNode find(Keys keys, const char*& found) const {
+    for (const char* key : keys) {
+      const cv::FileNode node = storage_[key];
+      if (node.empty()) continue;
+      found = key;
+      return node;
+    }
+    found = *keys.begin();
+    return {};
+  }
+
+  [[noreturn]] void refuse(const char* key, const std::string& reason) const {
+    const int line = line_of(key);
+    throw std::invalid_argument(path_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + key +
+                                " " + reason);
+  }
+
+ private:
+  void parse() {
+    const std::size_t first = text_.find_first_not_of(" \t\r\n");
+    if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
+    if (is_cut_off(text_[first])) {
+      throw std::invalid_argument(path_ + ": is no calibration: it ends too early");
+    }
+    // OpenCV reads YAML under its own first line only, which those of ROS have not.
+    const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
+    const std::string text = is_bare ? "%YAML:1.0\n---\n" + as_opencv_reads() : text_;
+    const int added = is_bare ? 2 : 0;
+    try {
+      storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    } catch (const cv::Exception& error) {
+      const std::string& told = error.func;  // there OpenCV's parsers say what is wrong
+      throw std::invalid_argument(path_ + line_in(told, added) +
+                                  ": is no calibration: " + reason_in(error));
+    } catch (const std::exception&) {  // std::length_error, where a key has no letters
+      throw std::invalid_argument(path_ + ": is no calibration");
+    }
+    if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
+    if (!storage_.root().isMap()) {
+      throw std::invalid_argument(path_ + ": is no calibration: it has no keys");
+    }
+  }
+
+  // OpenCV's parsers of XML and JSON may read beyond the end of what does not end as it should.
+  [[nodiscard]] bool is_cut_off(char first) const {
+    if (first != '<' && first != '{') return false;
+    const std::string_view end = first == '<' ? "</opencv_storage>" : "}";
+    const std::string_view text(text_.data(), text_.find_last_not_of(" \t\r\n") + 1);
+    return !text.ends_with(end);
+  }
+
+  // Others' YAML may have "---" of its own: kept as an empty line. And lists whose dashes stand
+  // below the key's first letter, as `ros2 topic echo` prints them: indented.
+  [[nodiscard]] std::string as_opencv_reads() const {
+    std::istringstream lines(text_);
+    std::string text;
+    std::string line;
+    while (std::getline(lines, line)) {
+      if (line.rfind("---", 0) == 0) line.replace(0, 3, "   ");
+      if (line.rfind("- ", 0) == 0) text += "  ";
+      text += line;
+      text += '\n';
+    }
+    return text;
+  }
+
+  // OpenCV's messages are "name(line): reason".
+  [[nodiscard]] static std::string line_in(const std::string& message, int added) {
+    const std::size_t open = message.find('(');
+    const std::size_t close = message.find("):");
+    if (open == std::string::npos || close == std::string::npos || close < open) return {};
+    const int line = std::atoi(message.c_str() + open + 1) - added;
+    return line > 0 ? ":" + std::to_string(line) : std::string();
+  }
+
+  [[nodiscard]] static std::string reason_in(const cv::Exception& error) {
+    const std::string& message = error.func;
+    const std::size_t close = message.find("): ");
+    return close == std::string::npos ? error.err : message.substr(close + 3);
+  }
+
+  // Of a key: a word at a line's begin, behind blanks, quotes or a bracket. 0 where it is not.
+  [[nodiscard]] int line_of(std::string_view key) const {
+    std::istringstream lines(text_);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      const std::size_t first = line.find_first_not_of(" \t\"<{");
+      if (first == std::string::npos || line.compare(first, key.size(), key) != 0) continue;
+      const std::size_t end = first + key.size();
+      if (end < line.size() && std::string_view(":>\" \t").find(line[end]) != std::string::npos) {
+        return number;
+      }
+    }
+    return 0;
+  }
+
+  std::string path_;
+  std::string text_;
+  cv::FileStorage storage_;
+};
+
+double number(const File& file, const char* key, const cv::FileNode& node) {
+  if (!node.isInt() && !node.isReal()) file.refuse(key, "is not a number");
+  const double value = node.real();
+  if (!std::isfinite(value)) file.refuse(key, "is not finite");
+  return value;
+}
+
+int size(const File& file, Keys keys) {
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(keys, key);
+  if (node.empty()) file.refuse(key, "is missing");
+  const double value = number(file, key, node);
+  if (!(value >= 1.0 && value <= 65536.0) || value != std::floor(value)) {
+    file.refuse(key, "is not a whole number from 1 to 65536");
+  }
+  return static_cast<int>(value);
+}
+
+// Either a plain list, or rows, cols and data as OpenCV and ROS both have them.
+std::vector<double> numbers(const File& file, const char* key, const cv::FileNode& node) {
+  const cv::FileNode data = node.isMap() ? node["data"] : node;
+  if (data.empty() || !data.isSeq()) file.refuse(key, "has no data");
+  std::vector<double> values;
+  for (const cv::FileNode& each : data) values.push_back(number(file, key, each));
+  if (node.isMap()) {
+    const double rows = number(file, key, node["rows"]);
+    const double cols = number(file, key, node["cols"]);
+    if (rows * cols != static_cast<double>(values.size())) {
+      file.refuse(key, "has not rows x cols numbers");
+    }
+  }
+  return values;
+}
+
+void read_matrix(const File& file, Camera& camera) {
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(kMatrixKeys, key);
+  if (node.empty()) file.refuse(key, "is missing");
+  const std::vector<double> k = numbers(file, key, node);
+  if (k.size() != 9) file.refuse(key, "is not a 3 x 3 matrix");
+  if (k[1] != 0.0) file.refuse(key, "has a skew");
+  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    file.refuse(key, "is not of the form [fx 0 cx; 0 fy cy; 0 0 1]");
+  }
+  if (!(k[0] >= kMinFocal && k[4] >= kMinFocal)) {
+    file.refuse(key, "has a focal length that is not at least 1 px");
+  }
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  try {
+    camera.validate();
+  } catch (const std::invalid_argument& error) {
+    file.refuse(key, std::string("is out of range: ").append(error.what()));
+  }
+}
+
+LensModel model_of(const File& file) {
+  const char* key = nullptr;
+  const cv::FileNode fisheye = file.find(kFisheyeKeys, key);
+  if (!fisheye.empty() && number(file, key, fisheye) != 0.0) return LensModel::kFisheye;
+  const cv::FileNode node = file.find(kModelKeys, key);
+  if (node.empty()) return LensModel::kBrownConrady;
+  const std::string name = node.isString() ? node.string() : std::string();
+  if (name == "plumb_bob" || name == "rational_polynomial" || name == "none") {
+    return LensModel::kBrownConrady;
+  }
+  if (name == "equidistant" || name == "fisheye") return LensModel::kFisheye;
+  file.refuse(key, "is none of: plumb_bob, rational_polynomial, equidistant, fisheye, none");
+}
+
+// Whether the lens shows the middle half of the picture, each direction once. Farther out many a
+// calibration's polynomial turns back, where no picture was taken for it.
+bool is_one_to_one(const Camera& camera) {
+  constexpr int kDirections = 16;
+  constexpr int kSteps = 4;
+  const Lens lens(camera);
+  const Eigen::Vector2d corner(camera.width / 2.0, camera.height / 2.0);
+  for (int i = 0; i < kDirections * kSteps; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kDirections;
+    const int step = 1 + i / kDirections;
+    const double radius = 0.5 * corner.norm() * step / kSteps;
+    const Eigen::Vector2d aside(radius * std::cos(angle), radius * std::sin(angle));
+    const auto ideal = lens.ideal_from_picture(corner + aside);
+    const auto there = ideal ? lens.picture_from_ideal(*ideal) : std::nullopt;
+    if (!there || !(there->slope.determinant() > 0.0)) return false;
+  }
+  return true;
+}
+
+void read_distortion(const File& file, Camera& camera) {
+  camera.lens = model_of(file);
+  const char* key = nullptr;
+  const cv::FileNode node = file.find(kDistortionKeys, key);
+  if (node.empty()) {
+    if (camera.lens == LensModel::kFisheye) file.refuse(key, "is missing");
+    return;
+  }
+  const std::vector<double> k = numbers(file, key, node);
+  const bool is_fisheye = camera.lens == LensModel::kFisheye;
+  if (is_fisheye && k.size() != 4) file.refuse(key, "of a fisheye has not 4 numbers");
+  if (!is_fisheye && k.size() != 0 && k.size() != 4 && k.size() != 5 && k.size() != 8 &&
+      k.size() != 12 && k.size() != 14) {
+    file.refuse(key, "has not 4, 5 or 8 numbers");
+  }
+  const std::size_t known = camera.distortion.size();
+  if (std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(known, k.size())),
+                  k.end(),
+                  [](double v) { return v != 0.0; })) {
+    file.refuse(key, "has a thin prism or a tilted sensor, which are not modelled");
+  }
+  std::copy_n(k.begin(), std::min(known, k.size()), camera.distortion.begin());
+  if (camera.is_distorted() && !is_one_to_one(camera)) {
+    file.refuse(key, "is of no lens: the picture turns back within the middle half of it");
+  }
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path) {
+  const File file(path);
+  Camera camera;
+  camera.width = size(file, kWidthKeys);
+  camera.height = size(file, kHeightKeys);
+  read_matrix(file, camera);
+  read_distortion(file, camera);
+  return camera;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+#include "core/camera/circle_pose.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kStretchNoise = 2.3;
+constexpr double kTiltOfNoise = 8.0;
+constexpr double kMemory = 0.98;         // of the inner edges' evidence, from frame to frame
+constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance, that frames average out
+constexpr double kModelDegrees = 4.0;    // of freedom, of the scale of the errors
+constexpr double kErrorOverSigma = 0.4;  // measured, .25 to .6: stated sigmas are too large
+constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
+constexpr double kMaxInnerOdds = 12.0;   // logarithm: inner edges may belong to something else
+constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
+constexpr double kTurnPerFrame = 0.05;   // by which a normal moves between frames [rad]
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// Two unit vectors that make a right-handed frame with the normal.
+Eigen::Matrix<double, 3, 2> plane_axes(const Vector3d& normal) {
+  const Vector3d first = normal.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> axes;
+  axes << first, normal.cross(first);
+  return axes;
+}
+
+// The pad's plane in front of the camera: columns are its axes and its centre [radii].
+Matrix3d camera_from_plane(const CirclePose& pose) {
+  Matrix3d plane;
+  plane << plane_axes(pose.normal), pose.position;
+  return plane;
+}
+
+using RingChange = Eigen::Matrix<double, 5, 1>;
+
+// By which a circle's image differs from the unit circle of a view, to first order.
+std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
+  const auto there = image ? with_outer_edge(view, *image) : std::nullopt;
+  if (!there) return std::nullopt;
+  Matrix3d between = view.inverse() * *there;
+  between /= between(2, 2);
+  return change_of(between - Matrix3d::Identity()).head<5>();
+}
+
+// How badly the two solutions explain the inner edges.
+struct InnerMisfit {
+  std::array<double, 2> chi_squared{};
+  double separation = 0.0;  // chi-square between the two predictions
+  int degrees = 0;
+};
+
+// Compares one inner edge with what both solutions predict for a circle of its radius, which is
+// fitted: four of its five parameters are left to tell the solutions apart.
+void add_misfit(const Camera& camera,
+                const std::array<CirclePose, 2>& poses,
+                const RingUncertainty& outer,
+                const FittedEllipse& inner,
+                InnerMisfit& misfit) {
+  const Matrix3d& view = inner.uncertainty.view;
+  const auto measured = ring_change(view, inner.ellipse);
+  const auto outer_ellipse = project_circle(outer.view, 1.0);
+  if (!measured || !outer_ellipse) return;
+  const double size_px = std::sqrt(inner.ellipse.semi_major * inner.ellipse.semi_minor);
+  // An error of the outer edge moves the prediction along.
+  const RingMatrix along = ring_changes(outer.view, view);
+  RingMatrix covariance = inner.uncertainty.information.inverse() +
+                          along * outer.information.inverse() * along.transpose();
+  covariance *= kErrorOverSigma * kErrorOverSigma;
+  covariance.diagonal().array() += std::pow(kInnerBiasPx / size_px, 2);
+  const RingMatrix information = covariance.inverse();
+
+  const double ratio = size_px / std::sqrt(outer_ellipse->semi_major * outer_ellipse->semi_minor);
+  std::array<RingChange, 2> residuals;
+  RingMatrix weights = information;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    constexpr double kStep = 1e-3;  // of the radius, for its derivative
+    constexpr int kSteps = 2;
+    const Matrix3d predicted = image_from_pad(camera, poses[k]);
+    double radius = ratio;
+    for (int step = 0; step <= kSteps; ++step) {
+      const auto here = ring_change(view, project_circle(predicted, radius));
+      const auto there = ring_change(view, project_circle(predicted, (1.0 + kStep) * radius));
+      if (!here || !there) return;
+      const RingChange by_radius = (*there - *here) / kStep;
+      residuals[k] = *measured - *here;
+      const RingChange weighted = information * by_radius;
+      radius *= 1.0 + std::clamp(weighted.dot(residuals[k]) / weighted.dot(by_radius), -0.5, 0.5);
+      weights = information - weighted * weighted.transpose() / weighted.dot(by_radius);
+    }
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    misfit.chi_squared[k] += residuals[k].dot(weights * residuals[k]);
+  }
+  const RingChange apart = residuals[1] - residuals[0];
+  misfit.separation += apart.dot(weights * apart);
+  misfit.degrees += 4;
+}
+
+// Log likelihood ratio of the first solution, with the scale of the errors unknown: Student's t. So
+// where neither fits, as on a pad that is not flat, there is little to choose between them.
+double log_odds(const InnerMisfit& misfit) {
+  const double odds =
+      0.5 * (misfit.degrees + kModelDegrees) *
+      std::log((kModelDegrees + misfit.chi_squared[1]) / (kModelDegrees + misfit.chi_squared[0]));
+  return std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
+}
+
+double from_level(const CirclePose& pose, const Vector3d& gravity) {
+  return angle_between(pose.normal, -gravity) / kLevelRad;
+}
+
+}  // namespace
+
+std::optional<std::array<CirclePose, 2>> circle_poses(const Camera& camera, const Ellipse& ideal) {
+  const Matrix3d from_circle = camera.matrix().inverse() * image_from_pad(ideal);
+  const Matrix3d to_circle = from_circle.inverse();
+  Matrix3d cone = to_circle.transpose() * Vector3d(1.0, 1.0, -1.0).asDiagonal() * to_circle;
+  // [KanataniLiu1993]: the cone's matrix Q with det Q = -1.
+  cone /= std::cbrt(-cone.determinant());
+  if (!cone.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(cone);
+  const Vector3d& l = eigen.eigenvalues();  // ascending
+  if (!(l(0) < 0.0 && l(1) > 0.0)) return std::nullopt;
+  // [KanataniLiu1993]: the plane's normal, and its distance l1^(3/2) r.
+  const double across = std::sqrt(std::max(0.0, (l(2) - l(1)) / (l(2) - l(0))));
+  const double along = std::sqrt((l(1) - l(0)) / (l(2) - l(0)));
+  const double distance = l(1) * std::sqrt(l(1));
+  const Vector3d aside = eigen.eigenvectors().col(2);
+  Vector3d axis = eigen.eigenvectors().col(0);
+  if (axis.z() < 0.0) axis = -axis;
+  std::array<CirclePose, 2> poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Vector3d away = along * axis + (i == 0 ? across : -across) * aside;
+    // The centre is the pole of the plane's vanishing line.
+    const Vector3d towards = cone.ldlt().solve(away);
+    poses[i].position = distance / away.dot(towards) * towards;
+    poses[i].normal = -away;
+    if (!poses[i].position.allFinite() || !(poses[i].position.z() > 0.0)) return std::nullopt;
+  }
+  return poses;
+}
+
+Vector2d projected_centre(const Camera& camera, const CirclePose& pose) {
+  return (camera.matrix() * pose.position).hnormalized();
+}
+
+Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose) {
+  return camera.matrix() * camera_from_plane(pose);
+}
+
+// The edge moves by five parameters of the pose: a shift, and turns about two axes in the plane.
+Matrix3d position_covariance(const Camera& camera,
+                             const CirclePose& pose,
+                             const RingUncertainty& picture) {
+  const Matrix3d plane = camera_from_plane(pose);
+  const Matrix3d inverse = plane.inverse();
+  RingMatrix changes;
+  for (int i = 0; i < 3; ++i) {
+    changes.col(i) = change_of(inverse * Vector3d::Unit(i) * Eigen::RowVector3d::UnitZ()).head<5>();
+  }
+  const Eigen::RowVector3d first = Eigen::RowVector3d::UnitX();
+  const Eigen::RowVector3d second = Eigen::RowVector3d::UnitY();
+  changes.col(3) = change_of(inverse * pose.normal * second).head<5>();
+  changes.col(4) = change_of(-inverse * pose.normal * first).head<5>();
+  const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
+  RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
+  // Near the view straight on the stretch goes with the tilt's square: it tells the tilt the less,
+  // the nearer it is to its own noise, and at its noise no better than by that one's square root.
+  const double noise = std::sqrt(covariance(3, 3) + covariance(4, 4));
+  const double cosine = pose.normal.dot(pose.position.normalized());
+  const double stretch = 0.25 * (1.0 - cosine * cosine);
+  const double wider = std::hypot(1.0, kStretchNoise * noise / std::max(stretch, 1e-12));
+  covariance.bottomRows<2>() *= wider;
+  covariance.rightCols<2>() *= wider;
+  RingMatrix information = changes.transpose() * covariance.inverse() * changes;
+  information(3, 3) += 1.0 / (kTiltOfNoise * noise);
+  information(4, 4) += 1.0 / (kTiltOfNoise * noise);
+  return information.inverse().topLeftCorner<3, 3>();
+}
+
+// Puts what is known of the last frame's solutions into the order of this frame's. Near the view
+// straight on the two solutions meet, and which was which is lost.
+void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
+  if (last_) {
+    const auto turn = [&](std::size_t here, std::size_t there) {
+      return angle_between(poses[here].normal, (*last_)[there].normal);
+    };
+    const double apart = angle_between(poses[0].normal, poses[1].normal) / kTurnPerFrame;
+    const double kept = 1.0 - std::exp(-0.5 * apart * apart);
+    const bool is_swapped = turn(0, 0) + turn(1, 1) > turn(0, 1) + turn(1, 0);
+    odds_ *= is_swapped ? -kept : kept;
+    inner_.odds *= is_swapped ? -kept : kept;
+    inner_.last_deviation *= is_swapped ? -1.0 : 1.0;
+    inner_.information *= kept;
+  }
+  last_ = poses;
+}
+
+double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
+  constexpr double kMaxDifferences = 30.0;
+  if (information > 0.0) {
+    differences = std::min(differences + 1.0, kMaxDifferences);
+    const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));
+    noise_share += (squared - noise_share) / differences;
+  }
+  last_deviation = deviation;
+  information = kMemory * information + separation;
+  odds += separation / information * (frame_odds - odds);
+  const double frames = std::max(1.0, information / separation);
+  const double noise = std::min(noise_share, kMaxNoiseShare);
+  return odds / (1.0 - noise + noise / frames);
+}
+
+double PoseEstimator::update_odds(const Camera& camera,
+                                  const std::array<CirclePose, 2>& poses,
+                                  const RingUncertainty& uncertainty,
+                                  std::span<const FittedEllipse> inner_edges,
+                                  const Vector3d& gravity) {
+  InnerMisfit misfit;
+  for (const FittedEllipse& inner : inner_edges) {
+    add_misfit(camera, poses, uncertainty, inner, misfit);
+  }
+  const double apart = std::sqrt(misfit.separation);
+  // In standard deviations, from where both solutions explain the inner edges equally well.
+  const double deviation = 0.5 * (misfit.chi_squared[1] - misfit.chi_squared[0]) / apart;
+  const bool has_inner = apart > 0.0 && std::isfinite(deviation);
+  const bool has_gravity = gravity.squaredNorm() > 0.0;
+  if (!has_inner && !has_gravity) return odds_;
+  double odds = inner_.odds;
+  if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation);
+  odds = std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
+  if (has_gravity) {
+    odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
+                   std::pow(from_level(poses[0], gravity), 2));
+  }
+  return odds;
+}
+
+std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
+                                                  const Ellipse& ideal,
+                                                  const RingUncertainty& uncertainty,
+                                                  std::span<const FittedEllipse> inner_edges,
+                                                  double radius_m,
+                                                  const Vector3d& gravity) {
+  const Camera& camera = lens.camera();
+  const auto poses = circle_poses(camera, ideal);
+  if (!poses) return std::nullopt;
+  follow_solutions(*poses);
+  const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
+  // A choice that nothing decides stays as it is.
+  constexpr double kUndecided = 1e-3;
+  odds_ = std::isfinite(odds) ? odds : 0.0;
+  const bool is_first = odds_ >= 0.0;
+  odds_ = std::copysign(std::max(std::abs(odds_), kUndecided), odds_);
+  const CirclePose& chosen = (*poses)[is_first ? 0 : 1];
+  const CirclePose& other = (*poses)[is_first ? 1 : 0];
+
+  TargetPose pose;
+  pose.bearing = chosen.position.normalized();
+  pose.angles_rad = {std::atan2(pose.bearing.x(), pose.bearing.z()),
+                     std::atan2(pose.bearing.y(), pose.bearing.z())};
+  const Vector2d centre = projected_centre(camera, chosen);
+  const auto bent = lens.picture_from_ideal(centre);
+  pose.centre_px = bent ? bent->picture_px : centre;
+  pose.normal = chosen.normal;
+  pose.other_normal = other.normal;
+  pose.certainty = 1.0 / (1.0 + std::exp(-std::abs(odds_)));
+  if (radius_m > 0.0) {
+    pose.radius_m = radius_m;
+    pose.position_m = radius_m * chosen.position;
+    pose.other_position_m = radius_m * other.position;
+    pose.covariance_m2 = radius_m * radius_m * position_covariance(camera, chosen, uncertainty);
+  }
+  return pose;
+}
+
+}  // namespace ellipse

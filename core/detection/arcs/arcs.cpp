@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/arcs/arcs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// Found by experiment, see docs/provenance.md.
+constexpr std::size_t kMinLength = 10;
+constexpr std::size_t kEnoughPoints = 48;  // of an arc
+constexpr double kMinTurn = 0.25;          // [rad]
+constexpr std::size_t kCornerReach = 3;    // [px] before and after
+constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
+constexpr std::size_t kSmoothing = 2;      // [px] before and after, of directions
+constexpr double kMinRetreat = 0.2;        // [rad], that ends an arc; or
+constexpr double kRetreatOverNoise = 5.0;  // so many of the noise's
+constexpr double kWholeTurnMin = 5.2;      // [rad], of a chain that is a whole ellipse
+constexpr double kWholeTurnMax = 7.4;
+constexpr double kWholeRms = 0.8;            // [px], and
+constexpr double kWholeRmsRelative = 0.012;  // of its radius: a crumpled pad
+constexpr double kMaxRankedTurn = 3.0;       // [rad]; more is no better
+
+// The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
+// branches, so that the compiler makes vectors of it. The angle takes the place of x. The
+// strength is |x| + |y|.
+void to_angles(float* __restrict x,
+               const float* __restrict y,
+               float* __restrict strengths,
+               std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const float ax = std::abs(x[i]);
+    const float ay = std::abs(y[i]);
+    const float larger = ax > ay ? ax : ay;
+    const float smaller = ax > ay ? ay : ax;
+    strengths[i] = ax + ay;
+    const float z = smaller / (larger + 1e-9F);
+    const float s = z * z;
+    const float low = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
+    const float octant = ay > ax ? 1.57079637F - low : low;
+    const float half = x[i] < 0.0F ? 3.14159274F - octant : octant;
+    x[i] = y[i] < 0.0F ? -half : half;
+  }
+}
+
+Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
+  const int x = pixel % stride;
+  const int y = pixel / stride;
+  return Eigen::Vector2i(x, y).cast<double>();
+}
+
+// The gradient maximum's place at a pixel, finer than pixels, in the ideal plane.
+Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
+  const Gradient* here = map.gradients() + pixel;
+  const bool is_flat = std::abs(here->x) > std::abs(here->y);
+  Eigen::Vector2d point = place_of(pixel, map.stride());
+  point[is_flat ? 0 : 1] += subpixel_maximum(here, is_flat ? 1 : map.stride()).offset_px;
+  return map.lens().near_ideal(point);
+}
+
+// A normal in the picture, taken to a place of the ideal plane.
+Eigen::Vector2d ideal_normal(const LensView& lens,
+                             const Eigen::Vector2d& ideal_px,
+                             const Eigen::Vector2d& in_picture) {
+  if (!lens.is_distorted()) return in_picture;
+  const auto place = lens.picture_from_ideal(ideal_px);
+  return place ? (place->slope.transpose() * in_picture).normalized() : in_picture;
+}
+
+}  // namespace
+
+double ArcSplitter::Piece::rank() const {
+  return static_cast<double>(end - begin) * std::min(std::abs(turn_rad), kMaxRankedTurn);
+}
+
+std::span<Arc> ArcSplitter::split(const GradientMap& map,
+                                  const ChainTracer& chains,
+                                  bool wants_all) {
+  pieces_.clear();
+  pixels_ = chains.pixels();
+  angles_.resize(std::max(angles_.size(), pixels_.size()));
+  smooth_.resize(angles_.size());
+  strengths_.resize(angles_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Gradient& g = map.gradients()[pixels_[i]];
+    angles_[i] = g.x;
+    smooth_[i] = g.y;
+  }
+  to_angles(angles_.data(), smooth_.data(), strengths_.data(), pixels_.size());
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    const Chain chain = chains.chain(i);
+    const std::size_t end = begin + chain.pixels.size();
+    split_chain(map, begin, end, chain.is_closed);
+    begin = end;
+  }
+  keep_best_pieces(wants_all);
+  arcs_.clear();
+  for (const Piece& piece : pieces_) arcs_.push_back(make_arc(map, piece));
+  return arcs_;
+}
+
+void ArcSplitter::keep_best_pieces(bool wants_all) {
+  const auto ranks_before = [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); };
+  const auto paired = pieces_.begin() + std::ptrdiff_t(std::min(pieces_.size(), kMaxPairedArcs));
+  std::partial_sort(pieces_.begin(), paired, pieces_.end(), ranks_before);
+  const auto single = std::partition(paired, pieces_.end(), [&](const Piece& piece) {
+    return wants_all && std::abs(piece.turn_rad) >= kMinSingleTurn;
+  });
+  const auto end = pieces_.begin() + std::min(single - pieces_.begin(), std::ptrdiff_t(kMaxArcs));
+  std::partial_sort(paired, end, single, ranks_before);
+  pieces_.erase(end, pieces_.end());
+}
+
+void ArcSplitter::unwrap(std::size_t begin, std::size_t end) {
+  float offset = 0.0F;
+  float previous = angles_[begin];
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const float raw = angles_[i];
+    if (raw - previous > std::numbers::pi_v<float>) offset -= static_cast<float>(kTwoPi);
+    if (raw - previous < -std::numbers::pi_v<float>) offset += static_cast<float>(kTwoPi);
+    angles_[i] = raw + offset;
+    previous = raw;
+  }
+}
+
+Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::size_t end) const {
+  // One origin for all arcs, so that their moments can be added.
+  Moments moments(Eigen::Vector2d(0.5 * map.width(), 0.5 * map.height()));
+  // A guess needs no more points than these: it is refined on the edges later.
+  const std::size_t step = (end - begin) / kEnoughPoints + 1;
+  for (std::size_t i = begin + step / 2; i < end; i += step) {
+    const Eigen::Vector2d point = maximum_at(map, pixels_[i]);
+    if (point.allFinite()) moments.add(point, static_cast<double>(step));
+  }
+  return moments;
+}
+
+bool ArcSplitter::is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end) {
+  const double turn = std::abs(angles_[end - 1] - angles_[begin]);
+  if (turn < kWholeTurnMin || turn > kWholeTurnMax) return false;
+  const auto fit = fit_with_residual(moments_of(map, begin, end));
+  if (!fit) return false;
+  const double radius = std::sqrt(fit->ellipse.semi_major * fit->ellipse.semi_minor);
+  return fit->rms_px < kWholeRms + kWholeRmsRelative * radius;
+}
+
+void ArcSplitter::split_chain(const GradientMap& map,
+                              std::size_t begin,
+                              std::size_t end,
+                              bool is_closed) {
+  unwrap(begin, end);
+  if (is_closed && is_whole_ellipse(map, begin, end)) {
+    add_piece(begin, end);
+    return;
+  }
+  // A run of pixels that turn sharply has its corner where they turn most.
+  std::size_t part = begin;
+  std::size_t corner = end;
+  float sharpest = 0.0F;
+  const auto cut = [&] {
+    if (corner == end) return;
+    split_smooth_part(map.noise(), part, corner > part ? corner - 1 : part);
+    part = corner + 2;
+    corner = end;
+    sharpest = 0.0F;
+  };
+  // A closed chain has no ends; near those of an open one no corner is told.
+  const std::size_t length = end - begin;
+  const std::size_t margin = is_closed ? 0 : kCornerReach;
+  for (std::size_t i = begin + margin; i + margin < end; ++i) {
+    const bool is_first = i < begin + kCornerReach;
+    const bool is_last = i + kCornerReach >= end;
+    const float before = angles_[is_first ? i + length - kCornerReach : i - kCornerReach];
+    const float after = angles_[is_last ? i + kCornerReach - length : i + kCornerReach];
+    float turn = std::abs(after - before);
+    if (is_first || is_last) turn = std::abs(std::remainder(turn, static_cast<float>(kTwoPi)));
+    if (turn > kCornerTurn) {
+      if (turn > sharpest) corner = i;
+      sharpest = std::max(sharpest, turn);
+    } else {
+      cut();
+    }
+  }
+  cut();
+  if (part < end) split_smooth_part(map.noise(), part, end);
+}
+
+void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width) {
+  float sum = 0.0F;
+  std::size_t count = 0;
+  for (std::size_t i = begin; i < std::min(end, begin + half_width); ++i, ++count) {
+    sum += angles_[i];
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    if (i + half_width < end) {
+      sum += angles_[i + half_width];
+      ++count;
+    }
+    if (i >= begin + half_width + 1) {
+      sum -= angles_[i - half_width - 1];
+      --count;
+    }
+    smooth_[i] = sum / static_cast<float>(count);
+  }
+}
+
+// Cuts where the direction retreats from its furthest.
+void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
+  if (end < begin + kMinLength) return;
+  float strength = 0.0F;
+  for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
+  const double length = static_cast<double>(end - begin);
+  // The mean of |x| + |y| is 1.27 times that of the norm.
+  const double angle_noise = 1.27 * noise * length / strength;
+  const std::size_t half_width = std::min(kSmoothing, (end - begin) / 4);
+  // Gradients of neighbours share their pixels: three of them are as good as one.
+  const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
+  const auto retreat =
+      static_cast<float>(std::max(kMinRetreat, kRetreatOverNoise * angle_noise * smoothed));
+  smooth_angles(begin, end, half_width);
+
+  std::size_t lowest_at = begin;
+  std::size_t highest_at = begin;
+  float lowest = smooth_[begin];
+  float highest = lowest;
+  int direction = 0;
+  std::size_t part = begin;
+  const auto turn_back_at = [&](std::size_t furthest) {
+    if (direction == 0) return;
+    add_piece(part, furthest + 1);
+    part = furthest;
+  };
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const float angle = smooth_[i];
+    if (angle > highest) {
+      highest = angle;
+      highest_at = i;
+    }
+    if (angle < lowest) {
+      lowest = angle;
+      lowest_at = i;
+    }
+    if (direction >= 0 && highest - angle > retreat) {
+      turn_back_at(highest_at);
+      direction = -1;
+      lowest = angle;
+      lowest_at = i;
+    } else if (direction <= 0 && angle - lowest > retreat) {
+      turn_back_at(lowest_at);
+      direction = 1;
+      highest = angle;
+      highest_at = i;
+    }
+  }
+  add_piece(part, end);
+}
+
+double ArcSplitter::mean_angle(std::size_t at, std::size_t begin, std::size_t end) const {
+  const std::size_t first = at >= begin + 2 ? at - 2 : begin;
+  const std::size_t last = std::min(end, at + 3);
+  double sum = 0.0;
+  for (std::size_t i = first; i < last; ++i) sum += angles_[i];
+  return sum / static_cast<double>(last - first);
+}
+
+void ArcSplitter::add_piece(std::size_t begin, std::size_t end) {
+  if (end < begin + kMinLength) return;
+  const double turn = mean_angle(end - 3, begin, end) - mean_angle(begin + 2, begin, end);
+  if (std::abs(turn) >= kMinTurn) pieces_.push_back({begin, end, turn});
+}
+
+Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
+  Arc arc;
+  arc.begin = piece.begin;
+  arc.end = piece.end;
+  arc.turn_rad = std::abs(piece.turn_rad);
+  // The chain runs with the bright side on its left: turning right, it turns around the dark.
+  arc.polarity = piece.turn_rad > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
+  const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double angle = mean_angle(at[k], arc.begin, arc.end);
+    arc.points[k] = map.lens().near_ideal(place_of(pixels_[at[k]], map.stride()));
+    arc.inwards[k] = -static_cast<int>(arc.polarity) *
+                     ideal_normal(map.lens(), arc.points[k], {std::cos(angle), std::sin(angle)});
+  }
+  arc.moments = moments_of(map, arc.begin, arc.end);
+  return arc;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,74 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/edges/chains.hpp"
+#include "core/edges/gradient_map.hpp"
+#include "core/edges/subpixel.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+
+namespace ellipse {
+
+/// A piece of a chain that turns to one side only, as an ellipse's edge does.
+struct Arc {
+  std::size_t begin = 0;  ///< Of all chains' pixels.
+  std::size_t end = 0;
+  double turn_rad = 0.0;  ///< By which it turns, above 0.
+  Polarity polarity = Polarity::kDarkInside;
+  // In the ideal plane:
+  std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, in its middle, near its end [px].
+  std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals there, towards its inside.
+  Moments moments{Eigen::Vector2d::Zero()};
+
+  [[nodiscard]] double length_px() const { return static_cast<double>(end - begin); }
+};
+
+/// Cuts chains into arcs: at corners, and where the curvature changes its sign.
+class ArcSplitter {
+ public:
+  /// The best arcs by length and turn, at most kMaxPairedArcs. Valid until the next call.
+  /// @param wants_all  Behind them the rest of those that can be tried alone, at most kMaxArcs
+  ///                   together.
+  /// Allocates only while it has not yet seen as many chains.
+  [[nodiscard]] std::span<Arc> split(const GradientMap& map,
+                                     const ChainTracer& chains,
+                                     bool wants_all = false);
+
+  static constexpr double kMinSingleTurn = 0.8;      ///< Of an arc that is tried alone [rad].
+  static constexpr std::size_t kMaxPairedArcs = 50;  ///< Pairs grow with its square.
+  static constexpr std::size_t kMaxArcs = 2048;      ///< Bounds the time spent on one image.
+
+ private:
+  struct Piece {
+    std::size_t begin;
+    std::size_t end;
+    double turn_rad;  // signed
+    [[nodiscard]] double rank() const;
+  };
+
+  void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
+  void split_smooth_part(double noise, std::size_t begin, std::size_t end);
+  void smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width);
+  void unwrap(std::size_t begin, std::size_t end);
+  [[nodiscard]] bool is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end);
+  [[nodiscard]] Moments moments_of(const GradientMap& map,
+                                   std::size_t begin,
+                                   std::size_t end) const;
+  [[nodiscard]] double mean_angle(std::size_t at, std::size_t begin, std::size_t end) const;
+  void add_piece(std::size_t begin, std::size_t end);
+  void keep_best_pieces(bool wants_all);
+  [[nodiscard]] Arc make_arc(const GradientMap& map, const Piece& piece) const;
+
+  std::span<const std::int32_t> pixels_;
+  std::vector<float> angles_;  // of the gradient [rad], without jumps along a chain
+  std::vector<float> smooth_;
+  std::vector<float> strengths_;  // of the gradient, |x| + |y|
+  std::vector<Piece> pieces_;
+  std::vector<Arc> arcs_;
+};
+
+}  // namespace ellipse

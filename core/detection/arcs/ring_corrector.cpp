@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/arcs/ring_corrector.hpp"
+
+#include <cmath>
+
+#include "core/edges/thin_ring.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kMaxPx = 30.0;  // semi-minor axis of a ring that may be thin
+constexpr double kGapPx =
+    2.4;  // between a thin ring's gradient maxima, within the refinement's reach
+constexpr double kMinSupport = 0.7;
+constexpr double kContrastTolerance = 0.4;  // between the edges' gradients, as a logarithm
+
+}  // namespace
+
+RingCorrector::RingCorrector() {
+  prepare_repulsion();  // a few milliseconds, that no frame shall take
+}
+
+void RingCorrector::correct(const ImageView& luma,
+                            double min_gradient,
+                            std::span<const Polarity> polarities,
+                            const LensView& lens,
+                            std::span<Detection> detections) {
+  maxima_.clear();
+  for (const Detection& detection : detections) maxima_.push_back(detection.ellipse);
+  for (std::size_t i = 0; i < maxima_.size(); ++i) {
+    const Ellipse& maximum = maxima_[i];
+    if (maximum.semi_minor > kMaxPx) continue;
+    const auto edge =
+        refined_on_picture(luma, maximum, polarities[i], min_gradient, kMaxRefinementSamples, lens);
+    const auto next = edge ? next_edge(luma, min_gradient, polarities, lens, i) : std::nullopt;
+    if (!next || next->support < kMinSupport) continue;
+    if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
+    const bool is_outer = maximum.semi_major > next->ellipse.semi_major;
+    detections[i].ellipse = is_outer ? without_repulsion({maximum, next->ellipse}).outer
+                                     : without_repulsion({next->ellipse, maximum}).inner;
+  }
+}
+
+// The closest edge that was found; else one on the picture, which is too near or too small to be
+// found alone.
+std::optional<RefinedEllipse> RingCorrector::next_edge(const ImageView& luma,
+                                                       double min_gradient,
+                                                       std::span<const Polarity> polarities,
+                                                       const LensView& lens,
+                                                       std::size_t i) const {
+  const Ellipse& edge = maxima_[i];
+  const Polarity other = opposite(polarities[i]);
+  const auto look_at = [&](const Ellipse& guess) {
+    return refined_on_picture(luma, guess, other, min_gradient, kMaxRefinementSamples, lens);
+  };
+  const Ellipse* closest = nullptr;
+  for (std::size_t k = 0; k < maxima_.size(); ++k) {
+    if (polarities[k] != other || !are_partners(edge, maxima_[k])) continue;
+    const double gap = std::abs(maxima_[k].semi_major - edge.semi_major);
+    if (closest == nullptr || gap < std::abs(closest->semi_major - edge.semi_major)) {
+      closest = &maxima_[k];
+    }
+  }
+  if (closest != nullptr) return look_at(*closest);
+  for (const double gap : {-kGapPx, kGapPx}) {
+    Ellipse guess = edge;
+    guess.semi_major += gap;
+    guess.semi_minor += gap;
+    if (!(guess.semi_minor > 1.0)) continue;
+    auto found = look_at(guess);
+    if (found && found->support >= kMinSupport) return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,55 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "core/detection/detector.hpp"
+
+namespace ellipse {
+
+struct TracedPass;
+struct TracedPiece;
+
+/// Canny's two thresholds [grey levels / px].
+struct EdgeThresholds {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// [Keipour2021] Algorithm 1, step by step on OpenCV: Canny's edges [Canny1986], the contours of
+/// [SuzukiAbe1985], one ellipse fitted to each contour and tested, the cheapest test first.
+///
+/// Keeps its pictures from call to call. OpenCV's edge and contour functions allocate inside.
+class ContourDetector final : public Detector {
+ public:
+  [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
+                                                  const Thresholds& thresholds) override;
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
+
+  /// Those of the last picture: what the adaptive rule has chosen, or what was asked for.
+  [[nodiscard]] const EdgeThresholds& edge_thresholds() const { return edge_thresholds_; }
+
+ private:
+  void add_detection(const Detection& detection);
+  void detect_edges(const ImageView& luma, const Thresholds& thresholds);
+  void take_to_ideal_plane();
+  void drop_short_contours(int min_size);
+  void try_contour(std::span<const cv::Point> contour,
+                   const Thresholds& thresholds,
+                   std::vector<TracedPiece> TracedPass::*stage);
+  void try_parts(const Thresholds& thresholds);
+  void trace_edges(const ImageView& luma);
+
+  cv::Mat smooth_;
+  cv::Mat gradient_x_;
+  cv::Mat gradient_y_;
+  cv::Mat edges_;
+  cv::Mat thick_edges_;
+  EdgeThresholds edge_thresholds_;
+  std::vector<int> histogram_;
+  std::vector<std::vector<cv::Point>> contours_;
+  std::vector<Detection> detections_;
+};
+
+}  // namespace ellipse

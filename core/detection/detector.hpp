@@ -1,0 +1,61 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <span>
+
+#include "core/camera/lens_view.hpp"
+#include "core/detection/thresholds.hpp"
+#include "core/geometry/ellipse.hpp"
+#include "core/image/image_view.hpp"
+
+namespace ellipse {
+
+class DetectionTrace;
+
+/// An ellipse that passed every test of a detector.
+struct Detection {
+  Ellipse ellipse;               ///< [px] of the picture that was searched, in its ideal plane.
+  double contour_overlap = 0.0;  ///< [Keipour2021] Eq. (1).
+  double ellipse_overlap = 0.0;  ///< [Keipour2021] Eq. (2).
+  double score = 0.0;            ///< Evidence for it; comparable within one detector only.
+  int candidate = -1;            ///< Its number in a DetectionTrace; -1 without one.
+};
+
+/// The two thresholds that say how well an ellipse must fit; [Keipour2021] Table I.
+struct Overlaps {
+  double contour = 0.0;  ///< ContourOverlap, 0 to 1.
+  double ellipse = 0.0;  ///< EllipseOverlap, 0 to 1.
+
+  bool operator==(const Overlaps&) const = default;
+};
+
+/// Finds all ellipses of a picture: DetectEllipses of [Keipour2021] Algorithm 1.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+
+  /// @param luma        Any size, also empty. Borrowed for the call only.
+  /// @param thresholds  Valid ones; see Thresholds::validate().
+  /// @return Every ellipse found, in no particular order. Valid until the next call.
+  ///
+  /// No content of the picture throws. Deterministic. One object serves one thread at a time.
+  [[nodiscard]] virtual std::span<const Detection> detect(const ImageView& luma,
+                                                          const Thresholds& thresholds) = 0;
+
+  /// The detector's own thresholds where nothing is known of the target.
+  [[nodiscard]] virtual Overlaps detecting_overlaps() const = 0;
+  /// The lowered ones, for the surroundings of a target that is being tracked.
+  [[nodiscard]] virtual Overlaps tracking_overlaps() const = 0;
+
+  /// Every call of detect() from now on tells there what it sees, and why it refuses what it
+  /// refuses; nullptr = no more. The detections stay the same to the bit. Borrowed.
+  void set_trace(DetectionTrace* trace) { trace_ = trace; }
+
+  /// Through what lens every picture from now on is seen; none by default.
+  void set_lens(const LensView& lens) { lens_ = lens; }
+
+ protected:
+  DetectionTrace* trace_ = nullptr;
+  LensView lens_;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/target_selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detection/detection_trace.hpp"
+
+namespace ellipse {
+namespace {
+
+// A circle's centre and its ring's centres part under perspective, and small fits are uncertain.
+constexpr double kConcentricRelative = 0.1;
+constexpr double kConcentricPx = 2.0;
+constexpr double kFlatnessTolerance = 0.15;
+
+// Two fits to one edge, from its two sides, differ by less than this.
+constexpr double kSameEdgeRelative = 0.01;
+constexpr double kSameEdgePx = 1.5;
+
+// From frame to frame.
+constexpr double kMaxGrowth = 2.0;
+
+constexpr double kMinShareOfBestScore = 0.25;
+
+bool are_concentric(const Ellipse& a, const Ellipse& b) {
+  const double largest = std::max(a.semi_major, b.semi_major);
+  const double apart = (a.center() - b.center()).norm();
+  const double flatness = std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major);
+  return apart <= kConcentricRelative * largest + kConcentricPx && flatness <= kFlatnessTolerance;
+}
+
+bool are_one_edge(const Ellipse& a, const Ellipse& b) {
+  const double tolerance = kSameEdgePx + kSameEdgeRelative * a.semi_major;
+  return std::abs(a.semi_major - b.semi_major) <= tolerance &&
+         std::abs(a.semi_minor - b.semi_minor) <= tolerance;
+}
+
+Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
+  const double apart = (candidate.center() - last.center()).norm();
+  const Verdict place = at_most(Reason::kOtherPlace, apart, last.semi_major);
+  if (!place.is_accepted()) return place;
+  const double axis = 2.0 * candidate.semi_major;
+  const double last_axis = 2.0 * last.semi_major;
+  const Verdict shrunk = at_least(Reason::kOtherSize, axis, last_axis / kMaxGrowth);
+  if (!shrunk.is_accepted()) return shrunk;
+  return at_most(Reason::kOtherSize, axis, last_axis * kMaxGrowth);
+}
+
+// Beside another member of the same set, both with enough of the set's best score: only the better
+// one is accepted.
+Verdict judge_beside(const Detection& member, const Detection& other) {
+  const bool is_edge = are_one_edge(member.ellipse, other.ellipse);
+  const double own = is_edge ? member.score : 2.0 * member.ellipse.semi_major;
+  const double others = is_edge ? other.score : 2.0 * other.ellipse.semi_major;
+  if (own > others) return {};
+  return {is_edge ? Reason::kSameEdge : Reason::kInnerEdge, own, others};
+}
+
+// Of a set that is not the best.
+Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
+  if (set.has_two_edges != best.has_two_edges) return {Reason::kSingle};
+  return {Reason::kWeakerSet, set.score, best.score};
+}
+
+}  // namespace
+
+ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
+  ConcentricSet set;
+  for (const Detection& other : detections) {
+    if (!are_concentric(ellipse, other.ellipse)) continue;
+    set.has_two_edges = set.has_two_edges || !are_one_edge(ellipse, other.ellipse);
+    set.score += other.score;
+    set.best_score = std::max(set.best_score, other.score);
+  }
+  return set;
+}
+
+std::optional<Detection> select_target(std::span<const Detection> detections,
+                                       const std::optional<Ellipse>& last_target,
+                                       DetectionTrace* trace) {
+  const auto reject = [&](const Detection& detection, const Verdict& verdict) {
+    if (trace != nullptr) trace->revise(detection.candidate, verdict);
+  };
+  const auto judge_place = [&](const Detection& detection) {
+    return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
+  };
+  const Detection* seed = nullptr;
+  ConcentricSet best;
+  for (const Detection& detection : detections) {
+    const Verdict place = judge_place(detection);
+    if (!place.is_accepted()) {
+      reject(detection, place);
+      continue;
+    }
+    const ConcentricSet set = set_around(detection.ellipse, detections);
+    if (seed == nullptr || best < set) {
+      seed = &detection;
+      best = set;
+    }
+  }
+  if (seed == nullptr) return std::nullopt;
+
+  const Detection* target = nullptr;
+  for (const Detection& member : detections) {
+    if (!judge_place(member).is_accepted()) continue;
+    if (!are_concentric(seed->ellipse, member.ellipse)) {
+      if (trace != nullptr) reject(member, judge_set(set_around(member.ellipse, detections), best));
+      continue;
+    }
+    const double least = kMinShareOfBestScore * best.best_score;
+    Verdict verdict = at_least(Reason::kWeakInSet, member.score, least);
+    if (verdict.is_accepted() && target != nullptr) verdict = judge_beside(member, *target);
+    if (verdict.is_accepted()) {
+      if (target != nullptr) reject(*target, judge_beside(*target, member));
+      target = &member;
+    } else {
+      reject(member, verdict);
+    }
+  }
+  if (target == nullptr) target = seed;
+  if (trace != nullptr) trace->choose(target->candidate);
+  return *target;
+}
+
+}  // namespace ellipse

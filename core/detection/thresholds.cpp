@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/thresholds.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+namespace ellipse {
+namespace {
+
+// The shortest contour that says anything of an ellipse, at whatever scale.
+constexpr int kMinContourSizePx = 12;
+
+}  // namespace
+
+void check_range(const char* field, double value, const Range& range) {
+  if (range.contains(value)) return;
+  std::ostringstream message;
+  message << field << " = " << value << " is not in [" << range.min << ", " << range.max << "]";
+  throw std::invalid_argument(message.str());
+}
+
+void Thresholds::validate() const {
+  check_range("contour_overlap", contour_overlap, kShareRange);
+  check_range("ellipse_overlap", ellipse_overlap, kShareRange);
+  check_range("min_axis_px", min_axis_px, kAxisRangePx);
+  check_range("max_axis_px", max_axis_px, {min_axis_px, kAxisRangePx.max});
+  check_range("max_axis_ratio", max_axis_ratio, kAxisRatioRange);
+  check_range("min_contour_size", min_contour_size, kContourSizeRangePx);
+  check_range("edge_high", edge_high, kEdgeRange);
+  check_range("edge_low", edge_low, {0.0, edge_high > 0.0 ? edge_high : kEdgeRange.max});
+}
+
+Verdict Thresholds::judge_axes_of(const Ellipse& e) const {
+  const Verdict large = at_most(Reason::kTooLarge, 2.0 * e.semi_major, max_axis_px);
+  if (!large.is_accepted()) return large;
+  const Verdict small = at_least(Reason::kTooSmall, 2.0 * e.semi_minor, min_axis_px);
+  if (!small.is_accepted()) return small;
+  return at_most(Reason::kTooFlat, e.aspect_ratio(), max_axis_ratio);
+}
+
+Thresholds Thresholds::at_scale(int scale) const {
+  Thresholds result = *this;
+  result.min_axis_px /= scale;
+  result.max_axis_px /= scale;
+  result.min_contour_size =
+      std::max(min_contour_size / scale, std::min(min_contour_size, kMinContourSizePx));
+  return result;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,55 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include "core/detection/verdict.hpp"
+#include "core/geometry/ellipse.hpp"
+
+namespace ellipse {
+
+/// The values that a setting may take. NaN is in no range.
+struct Range {
+  double min = 0.0;
+  double max = 0.0;
+
+  [[nodiscard]] constexpr bool contains(double value) const { return value >= min && value <= max; }
+};
+
+inline constexpr Range kShareRange{0.0, 1.0};
+inline constexpr Range kAxisRangePx{1.0, 32768.0};
+inline constexpr Range kAxisRatioRange{1.0, 100.0};
+inline constexpr Range kContourSizeRangePx{5.0, 2147483647.0};
+inline constexpr Range kEdgeRange{0.0, 1e4};
+
+/// Throws std::invalid_argument that names the field, the value and the range, where it is outside.
+void check_range(const char* field, double value, const Range& range);
+
+/// What a detection is judged by, with the names and the defaults of [Keipour2021] Table I and
+/// III.A (detecting).
+struct Thresholds {
+  double contour_overlap = 0.95;  ///< Eq. (1), smallest accepted share, 0 to 1.
+  double ellipse_overlap = 0.95;  ///< Eq. (2), smallest accepted share, 0 to 1.
+  double min_axis_px = 5.0;       ///< mnAxSize: smallest accepted minor axis, full length.
+  double max_axis_px = 700.0;     ///< mxAxSize: largest accepted major axis, full length.
+  double max_axis_ratio = 5.0;    ///< maxAxisRatio: largest accepted major / minor axis.
+  int min_contour_size = 50;      ///< minContourSize: shortest accepted contour [px].
+  double edge_low = 0.0;          ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
+  double edge_high = 0.0;         ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
+  bool wants_all = false;         ///< All ellipses, not just what a target is chosen from.
+
+  /// Throws std::invalid_argument that names the field, where a value is NaN, out of its range, or
+  /// a pair is the wrong way round.
+  void validate() const;
+
+  /// Whether both axes of an ellipse and their ratio are within the limits: too large, too small,
+  /// too flat, in this order.
+  [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;
+  [[nodiscard]] bool admit_axes_of(const Ellipse& e) const {
+    return judge_axes_of(e).is_accepted();
+  }
+
+  /// The thresholds for a picture whose pixels are `scale` times larger: lengths shrink with it.
+  [[nodiscard]] Thresholds at_scale(int scale) const;
+
+  bool operator==(const Thresholds&) const = default;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/chains.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace ellipse {
+namespace {
+
+constexpr std::size_t kMinLength = 10;       // pixels
+constexpr std::size_t kLongestWalk = 16384;  // pixels
+constexpr std::size_t kMinClosed = 16;       // pixels
+constexpr int kClosingGap = 3;               // pixels
+
+// For each octant of an edge the codes, as bits, by which a walk may go on: of free gradient maxima
+// whose edge turns by an eighth at most.
+constexpr std::array<std::uint32_t, 8> kOpen = [] {
+  std::array<std::uint32_t, 8> open{};
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    for (const unsigned turn : {7U, 0U, 1U}) {
+      open[octant] |= 1U << (maximum::kFree | ((octant + turn) & maximum::kOctant));
+    }
+  }
+  return open;
+}();
+
+}  // namespace
+
+// Walks along an edge, or against it, over gradient maxima where no walk has been yet.
+class ChainTracer::Walk {
+ public:
+  Walk(GradientMap& map, bool is_forward) : maxima_(map.maxima()), gradients_(map.gradients()) {
+    const int stride = map.stride();
+    const std::array<std::int32_t, 8> steps = {
+        1, stride + 1, stride, stride - 1, -1, -stride - 1, -stride, -stride + 1};
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      steps_[k] = steps[(k + (is_forward ? 7U : 3U)) & 7U];
+    }
+  }
+
+  // Writes the pixels after the seed to `out`; returns its end.
+  std::int32_t* run(std::int32_t seed, std::int32_t* out) const {
+    const std::int32_t* const last = out + kLongestWalk;
+    std::int32_t at = seed;
+    unsigned octant = maxima_[seed] & maximum::kOctant;
+    while (out != last) {
+      at = next_of(at, octant);
+      if (at < 0) break;
+      const unsigned code = maxima_[at];
+      maxima_[at] = static_cast<std::uint8_t>(code ^ (maximum::kFree | maximum::kChained));
+      octant = code & maximum::kOctant;
+      *out++ = at;
+    }
+    return out;
+  }
+
+ private:
+  // Whether a pixel has one of the codes that are open to a walk.
+  [[nodiscard]] bool is_open(std::int32_t pixel, std::uint32_t open) const {
+    return ((open >> (maxima_[pixel] & (maximum::kFree | maximum::kOctant))) & 1U) != 0;
+  }
+
+  [[nodiscard]] int strength(std::int32_t pixel) const {
+    return std::abs(gradients_[pixel].x) + std::abs(gradients_[pixel].y);
+  }
+
+  // Straight on, else to the stronger side, else over a gap of one pixel. -1: the end.
+  [[nodiscard]] std::int32_t next_of(std::int32_t at, unsigned octant) const {
+    const std::uint32_t open = kOpen[octant];
+    const std::int32_t ahead = at + steps_[octant + 1U];
+    if (is_open(ahead, open)) return ahead;
+    const std::int32_t left = at + steps_[octant];
+    const std::int32_t right = at + steps_[octant + 2U];
+    const bool has_right = is_open(right, open);
+    if (is_open(left, open)) return has_right && strength(right) >= strength(left) ? right : left;
+    if (has_right) return right;
+    for (const std::size_t side : {1U, 2U, 0U}) {
+      const std::int32_t beyond = ahead + steps_[octant + side];
+      if (is_open(beyond, open)) return beyond;
+    }
+    return -1;
+  }
+
+  std::uint8_t* maxima_;
+  const Gradient* gradients_;
+  std::array<std::int32_t, 10> steps_;  // to the left of octant k, then ahead, then to the right
+};
+
+namespace {
+
+bool are_near(std::int32_t a, std::int32_t b, int stride) {
+  return std::abs(a % stride - b % stride) <= kClosingGap &&
+         std::abs(a / stride - b / stride) <= kClosingGap;
+}
+
+// Calls use(index) for each free gradient maximum, until it says no. Most blocks have none any
+// more: a chain is walked from where it is met first.
+template <class Use>
+void for_each_free(const GradientMap& map, const Use& use) {
+  constexpr std::uint64_t kAllFree = 0x0101010101010101U * maximum::kFree;
+  const std::uint8_t* maxima = map.maxima();
+  for (const std::int32_t block : map.blocks()) {
+    std::array<std::uint64_t, GradientMap::kBlock / 8> words;
+    std::memcpy(words.data(), maxima + block, sizeof words);
+    std::uint64_t all = 0;
+    for (const std::uint64_t word : words) all |= word;
+    if ((all & kAllFree) == 0) continue;
+    for (std::int32_t i = block; i < block + GradientMap::kBlock; ++i) {
+      if ((maxima[i] & maximum::kFree) != 0 && !use(i)) return;
+    }
+  }
+}
+
+}  // namespace
+
+// The walk against the edge comes first, so that the one along it can follow it in place.
+void ChainTracer::add_chain(std::int32_t seed,
+                            std::uint8_t* maxima,
+                            const Walk& against,
+                            const Walk& along) {
+  maxima[seed] ^= maximum::kFree | maximum::kChained;
+  std::int32_t* const begin = pixels_.data() + count_;
+  std::int32_t* out = against.run(seed, begin);
+  std::reverse(begin, out);
+  *out++ = seed;
+  out = along.run(seed, out);
+  const auto length = static_cast<std::size_t>(out - begin);
+  if (length < kMinLength) {
+    for (const std::int32_t* pixel = begin; pixel != out; ++pixel) {
+      maxima[*pixel] ^= maximum::kChained;
+    }
+    return;
+  }
+  count_ += length;
+  begins_.push_back(count_);
+  is_closed_.push_back(length > kMinClosed && are_near(*begin, *(out - 1), stride_));
+}
+
+void ChainTracer::reserve(std::size_t chains) {
+  begins_.reserve(chains + 1);
+  is_closed_.reserve(chains);
+}
+
+void ChainTracer::trace(GradientMap& map) {
+  const auto pixels =
+      static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());
+  const std::size_t most = pixels / 4 + 64;
+  pixels_.resize(most + 2 * kLongestWalk + 1);
+  count_ = 0;
+  begins_.assign(1, 0);
+  is_closed_.clear();
+  stride_ = map.stride();
+  const Walk against(map, false);
+  const Walk along(map, true);
+  for_each_free(map, [&](std::int32_t pixel) {
+    add_chain(pixel, map.maxima(), against, along);
+    return count_ < most;
+  });
+}
+
+Chain ChainTracer::chain(std::size_t i) const {
+  return {pixels().subspan(begins_[i], begins_[i + 1] - begins_[i]), is_closed_[i] != 0};
+}
+
+}  // namespace ellipse

@@ -1,0 +1,39 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <optional>
+
+#include "core/camera/lens_view.hpp"
+#include "core/edges/subpixel.hpp"
+#include "core/geometry/ellipse.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/image/image_view.hpp"
+
+namespace ellipse {
+
+/// An ellipse on the picture.
+struct RefinedEllipse {
+  Ellipse ellipse;
+  RingUncertainty uncertainty;
+  double support = 0.0;   ///< Share of the places inside the picture with a gradient maximum near.
+  double gradient = 0.0;  ///< Mean of these gradient maxima [units of Gradient].
+};
+
+inline constexpr int kMaxRefinementSamples = 96;
+
+/// Refines an ellipse that is known within a pixel or two, on the picture itself: looks for the
+/// gradient maximum across its perimeter at some places, and computes no gradient elsewhere.
+///
+/// @param places  At most kMaxRefinementSamples. With fewer it is faster, and the noise tells more.
+/// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
+/// @param lens    The ellipse is of the ideal plane, before and after; the perimeter is searched as
+///                the lens bends it.
+/// @return nullopt where too few gradient maxima are near. Allocates nothing; the time depends on
+/// no size.
+[[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
+                                                               const Ellipse& e,
+                                                               Polarity polarity,
+                                                               double min_gradient,
+                                                               int places = kMaxRefinementSamples,
+                                                               const LensView& lens = {});
+
+}  // namespace ellipse

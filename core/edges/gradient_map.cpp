@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/gradient_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace ellipse {
+namespace {
+
+using Int = std::int16_t;
+
+constexpr int kPadLeft = 16;   // buffers begin before the first pixel,
+constexpr int kPadRight = 64;  // and go on behind the last one, so that blocks may overrun
+constexpr int kBlock = GradientMap::kBlock;
+
+// Found by experiment, see docs/provenance.md.
+constexpr int kNoiseRows = 16;  // about
+constexpr double kNoiseQuantile = 0.3;
+constexpr double kThresholdOverNoise = 4.0;
+constexpr double kMinNoise = 20.0;  // rounding to grey levels alone makes as much
+constexpr int kHistogramBins = 1536;
+constexpr int kHistogramShift = 4;
+constexpr double kMaxThreshold = 6000.0;
+
+// These loops are plain: the compiler makes vectors of them, twice on x86-64, and of NEON's kind on
+// AArch64. Sixteen bits are enough: the largest gradient is 16 x 255 x 6 = 24480.
+
+ELLIPSE_INLINE void filter_columns_body(const std::uint8_t* const* rows,
+                                        Int* __restrict smooth,
+                                        Int* __restrict difference,
+                                        int n) {
+  const std::uint8_t* __restrict a = rows[0];
+  const std::uint8_t* __restrict b = rows[1];
+  const std::uint8_t* __restrict c = rows[2];
+  const std::uint8_t* __restrict d = rows[3];
+  const std::uint8_t* __restrict e = rows[4];
+  for (int i = 0; i < n; ++i) {
+    smooth[i] = static_cast<Int>(a[i] + e[i] + 4 * (b[i] + d[i]) + 6 * c[i]);
+    difference[i] = static_cast<Int>((e[i] - a[i]) + 2 * (d[i] - b[i]));
+  }
+}
+
+// The magnitude is max(larger, 7/8 larger + 1/2 smaller): the Euclidean norm within 3 %.
+ELLIPSE_INLINE void filter_rows_body(const Int* __restrict smooth,
+                                     const Int* __restrict difference,
+                                     Int* __restrict gx,
+                                     Int* __restrict gy,
+                                     Int* __restrict magnitude,
+                                     Gradient* __restrict both,
+                                     int n) {
+  for (int i = 0; i < n; ++i) {
+    const Int* s = smooth + i;
+    const Int* d = difference + i;
+    const Int x = static_cast<Int>(s[2] - s[-2] + 2 * (s[1] - s[-1]));
+    const Int y = static_cast<Int>(d[-2] + d[2] + 4 * (d[-1] + d[1]) + 6 * d[0]);
+    const Int ax = static_cast<Int>(x < 0 ? -x : x);
+    const Int ay = static_cast<Int>(y < 0 ? -y : y);
+    const Int larger = ax > ay ? ax : ay;
+    const Int smaller = ax > ay ? ay : ax;
+    const Int mixed = static_cast<Int>(larger - (larger >> 3) + (smaller >> 1));
+    magnitude[i] = larger > mixed ? larger : mixed;
+    gx[i] = x;
+    gy[i] = y;
+    both[i] = {x, y};
+  }
+}
+
+// The rows around the one whose gradient maxima are wanted.
+struct MaximaRows {
+  const Int* gx;
+  const Int* gy;
+  const Int* above;
+  const Int* here;
+  const Int* below;
+};
+
+// Also lists the blocks that have gradient maxima, as distances from the first pixel; returns how
+// many.
+ELLIPSE_INLINE int mark_maxima_body(
+    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  int count = 0;
+  for (int begin = 0; begin < n; begin += kBlock) {
+    const Int* __restrict m = rows.here + begin;
+    std::uint8_t* __restrict out = codes + begin;
+    Int any = 0;
+    for (int i = 0; i < kBlock; ++i) any = static_cast<Int>(any | (m[i] > least ? -1 : 0));
+    if (any == 0) {
+      std::memset(out, 0, kBlock);
+      continue;
+    }
+    blocks[count++] = begin;
+    const Int* __restrict gx = rows.gx + begin;
+    const Int* __restrict gy = rows.gy + begin;
+    const Int* __restrict up = rows.above + begin;
+    const Int* __restrict down = rows.below + begin;
+    for (int i = 0; i < kBlock; ++i) {
+      const Int ax = static_cast<Int>(gx[i] < 0 ? -gx[i] : gx[i]);
+      const Int ay = static_cast<Int>(gy[i] < 0 ? -gy[i] : gy[i]);
+      const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient lies along the row
+      const Int before = static_cast<Int>((m[i - 1] & is_flat) | (up[i] & ~is_flat));
+      const Int after = static_cast<Int>((m[i + 1] & is_flat) | (down[i] & ~is_flat));
+      const Int larger = ax > ay ? ax : ay;
+      const Int smaller = ax > ay ? ay : ax;
+      // tan(22.5 degrees) = 0.414; 1/2 - 1/16 - 1/64 = 0.422
+      const Int diagonal = static_cast<Int>((larger >> 1) - (larger >> 4) - (larger >> 6));
+      const Int is_diagonal = static_cast<Int>(smaller > diagonal ? -1 : 0);
+      const Int is_left = static_cast<Int>(gx[i] < 0 ? -1 : 0);
+      const Int is_down = static_cast<Int>(gy[i] > 0 ? -1 : 0);
+      const Int slanted = static_cast<Int>(((is_left & 6) ^ (is_down & 2)) + 1);
+      const Int straight =
+          static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
+      const Int octant = static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
+      const Int is_maximum = static_cast<Int>((m[i] > least ? -1 : 0) & (m[i] >= before ? -1 : 0) &
+                                              (m[i] > after ? -1 : 0));
+      out[i] = static_cast<std::uint8_t>(is_maximum & (octant | maximum::kFree));
+    }
+  }
+  return count;
+}
+
+void filter_columns(const std::uint8_t* const* rows, Int* smooth, Int* difference, int n) {
+  filter_columns_body(rows, smooth, difference, n);
+}
+void filter_rows(
+    const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, Gradient* both, int n) {
+  filter_rows_body(smooth, difference, gx, gy, m, both, n);
+}
+int mark_maxima(
+    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  return mark_maxima_body(rows, codes, least, n, blocks);
+}
+ELLIPSE_AVX2 void filter_columns_avx2(const std::uint8_t* const* rows, Int* s, Int* d, int n) {
+  filter_columns_body(rows, s, d, n);
+}
+ELLIPSE_AVX2 void filter_rows_avx2(
+    const Int* smooth, const Int* difference, Int* gx, Int* gy, Int* m, Gradient* both, int n) {
+  filter_rows_body(smooth, difference, gx, gy, m, both, n);
+}
+ELLIPSE_AVX2 int mark_maxima_avx2(
+    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+  return mark_maxima_body(rows, codes, least, n, blocks);
+}
+
+struct Kernels {
+  decltype(&filter_columns) columns;
+  decltype(&filter_rows) rows;
+  decltype(&mark_maxima) maxima;
+};
+
+const Kernels& kernels_of(Simd simd) {
+  static constexpr Kernels kBaseline{filter_columns, filter_rows, mark_maxima};
+  static constexpr Kernels kAvx2{filter_columns_avx2, filter_rows_avx2, mark_maxima_avx2};
+  return simd == Simd::kAvx2 ? kAvx2 : kBaseline;
+}
+
+bool is_saturated(std::uint8_t level) {
+  return level < 2 || level > 253;
+}
+
+// Pictures of two sizes may take turns: what is too long stays so.
+template <class T>
+void grow(std::vector<T>& values, std::size_t size) {
+  values.resize(std::max(values.size(), size));
+}
+
+}  // namespace
+
+void gradients_along(
+    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients) {
+  const std::ptrdiff_t along = is_row ? 1 : luma.stride;
+  const std::ptrdiff_t across = is_row ? luma.stride : 1;
+  std::array<int, kLongestLine + 4> smooth{};
+  std::array<int, kLongestLine + 4> difference{};
+  const std::uint8_t* c = luma.row(y) + x - 2 * along;
+  for (std::size_t i = 0; i < gradients.size() + 4; ++i, c += along) {
+    const int a = c[-2 * across];
+    const int b = c[-across];
+    const int d = c[across];
+    const int e = c[2 * across];
+    smooth[i] = a + e + 4 * (b + d) + 6 * *c;
+    difference[i] = (e - a) + 2 * (d - b);
+  }
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const int* s = smooth.data() + i;
+    const int* t = difference.data() + i;
+    const auto in_line = static_cast<Int>(s[4] - s[0] + 2 * (s[3] - s[1]));
+    const auto athwart = static_cast<Int>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
+    gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
+  }
+}
+
+std::int16_t* GradientMap::row_of(std::vector<std::int16_t>& rows, int y) {
+  const std::ptrdiff_t length = kPadLeft + width_ + kPadRight;
+  return rows.data() + length * ((y + kRows) % kRows) + kPadLeft;
+}
+
+void GradientMap::resize(const ImageView& luma) {
+  width_ = luma.width;
+  height_ = luma.height;
+  stride_ = (width_ + kPadRight) / kBlock * kBlock;
+  const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
+  const auto length = static_cast<std::size_t>(width_) + kPadLeft + kPadRight;
+  grow(gradients_, pixels);
+  grow(maxima_, pixels + kPadRight);
+  grow(blocks_, pixels / kBlock);
+  grow(smooth_, length);
+  grow(difference_, length);
+  grow(x_, kRows * length);
+  grow(y_, kRows * length);
+  grow(magnitude_, kRows * length);
+  histogram_.resize(kHistogramBins);
+}
+
+void GradientMap::compute_row(const ImageView& luma, int y) {
+  std::array<const std::uint8_t*, 5> rows;
+  for (int k = 0; k < 5; ++k) {
+    rows[static_cast<std::size_t>(k)] = luma.row(std::clamp(y + k - 2, 0, height_ - 1));
+  }
+  Int* smooth = smooth_.data() + kPadLeft;
+  Int* difference = difference_.data() + kPadLeft;
+  const Kernels& kernels = kernels_of(simd_);
+  kernels.columns(rows.data(), smooth, difference, width_);
+  for (int k = 1; k <= 2; ++k) {  // the border repeats its last pixel
+    smooth[-k] = smooth[0];
+    difference[-k] = difference[0];
+    smooth[width_ - 1 + k] = smooth[width_ - 1];
+    difference[width_ - 1 + k] = difference[width_ - 1];
+  }
+  Gradient* out = gradients_.data() + static_cast<std::ptrdiff_t>(y) * stride_;
+  kernels.rows(
+      smooth, difference, row_of(x_, y), row_of(y_, y), row_of(magnitude_, y), out, width_);
+}
+
+// The gradient of noise is Rayleigh distributed, whose quantile q is sigma sqrt(-2 ln(1 - q))
+// [Rosin1997]; a quantile so low that edges have no part in it tells sigma.
+void GradientMap::measure_noise(const ImageView& luma, double floor) {
+  std::fill(histogram_.begin(), histogram_.end(), 0);
+  int samples = 0;
+  const int step = std::max(1, height_ / kNoiseRows);
+  for (int y = kBorder; y < height_ - kBorder; y += step) {
+    compute_row(luma, y);
+    const Int* m = row_of(magnitude_, y);
+    const std::uint8_t* levels = luma.row(y);
+    for (int x = 2; x < width_ - 2; x += 2) {
+      if (is_saturated(levels[x])) continue;  // without noise, whatever the sensor's is
+      ++histogram_[static_cast<std::size_t>(std::min(m[x] >> kHistogramShift, kHistogramBins - 1))];
+      ++samples;
+    }
+  }
+  double quantile = 0.0;
+  int below = 0;
+  for (int bin = 0; bin < kHistogramBins && below <= kNoiseQuantile * samples; ++bin) {
+    below += histogram_[static_cast<std::size_t>(bin)];
+    quantile = (bin + 0.5) * (1 << kHistogramShift);
+  }
+  if (samples == 0) quantile = 0.0;
+  noise_ = std::max(kMinNoise, quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile)));
+  threshold_ = std::clamp(kThresholdOverNoise * noise_, kGradientGain * floor, kMaxThreshold);
+}
+
+void GradientMap::compute(const ImageView& luma, double threshold, double floor) {
+  resize(luma);
+  if (luma.empty()) return;
+  measure_noise(luma, floor);
+  if (threshold > 0.0) threshold_ = std::min(kGradientGain * threshold, 32767.0);
+  block_count_ = 0;
+  for (int y = 1; y < height_ - 1; ++y) {
+    compute_row(luma, y);
+    mark_row(y - 1);
+  }
+  for (int y = std::max(0, height_ - 2); y < height_; ++y) mark_row(y);
+}
+
+void GradientMap::mark_row(int y) {
+  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(y) * stride_;
+  std::uint8_t* codes = maxima_.data() + begin;
+  const int inside = width_ - 2 * kBorder;
+  if (inside <= 0 || y < kBorder || y >= height_ - kBorder) {
+    std::memset(codes, 0, static_cast<std::size_t>(stride_));
+    return;
+  }
+  const MaximaRows rows{row_of(x_, y) + kBorder,
+                        row_of(y_, y) + kBorder,
+                        row_of(magnitude_, y - 1) + kBorder,
+                        row_of(magnitude_, y) + kBorder,
+                        row_of(magnitude_, y + 1) + kBorder};
+  std::int32_t* blocks = blocks_.data() + block_count_;
+  std::memset(codes, 0, kBorder);
+  const int count =
+      kernels_of(simd_).maxima(rows, codes + kBorder, static_cast<Int>(threshold_), inside, blocks);
+  for (int i = 0; i < count; ++i) blocks[i] += static_cast<std::int32_t>(begin) + kBorder;
+  block_count_ += static_cast<std::size_t>(count);
+  // The last block may have overrun.
+  const int end = width_ - kBorder;
+  std::memset(codes + end, 0, static_cast<std::size_t>(stride_ - end));
+}
+
+}  // namespace ellipse

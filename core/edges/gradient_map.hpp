@@ -1,0 +1,109 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/camera/lens_view.hpp"
+#include "core/image/image_view.hpp"
+#include "core/image/simd.hpp"
+
+namespace ellipse {
+
+/// The gradient at a pixel, from dark to bright. A slope of one grey level per pixel is
+/// kGradientGain.
+struct Gradient {
+  std::int16_t x = 0;
+  std::int16_t y = 0;
+};
+
+/// What the 5 x 5 kernels make of a slope of one grey level per pixel.
+inline constexpr double kGradientGain = 128.0;
+
+/// Pixels where the gradient has its gradient maximum: one byte a pixel, 0 where there is none. The
+/// low three bits tell the direction of the edge, which is the gradient turned by 90 degrees from x
+/// to y, in eighths of a turn from +x to +y.
+namespace maximum {
+inline constexpr std::uint8_t kOctant = 0x07;
+inline constexpr std::uint8_t kFree = 0x08;     ///< No walk has been here yet.
+inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
+}  // namespace maximum
+
+/// The gradients of some pixels, at most kLongestLine, as GradientMap computes them: from (x, y) on
+/// to the right, or down. All at least two pixels from the border.
+void gradients_along(
+    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
+inline constexpr std::size_t kLongestLine = 16;
+
+/// The gradient of a picture and its gradient maxima, in one pass over the rows.
+///
+/// Exact integer arithmetic: separable 5 x 5 kernels, smoothing [1 4 6 4 1] one way and difference
+/// [-1 -2 0 2 1] the other [FaridSimoncelli2004]. A gradient maximum is a pixel above the threshold
+/// whose magnitude is not below its two neighbours' along the axis closest to the gradient
+/// [Canny1986].
+class GradientMap {
+ public:
+  explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}
+
+  /// @param threshold  Least gradient of a gradient maximum [grey levels per pixel]; 0 = by the
+  /// noise.
+  /// @param floor      Least threshold by the noise [grey levels per pixel].
+  /// Allocates only when the picture grows. O(pixels).
+  void compute(const ImageView& luma, double threshold, double floor);
+
+  /// Through what lens the picture is seen; none by default.
+  void set_lens(const LensView& lens) { lens_ = lens; }
+  [[nodiscard]] const LensView& lens() const { return lens_; }
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// From row to row, of both maps [pixels].
+  [[nodiscard]] int stride() const { return stride_; }
+
+  [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }
+  [[nodiscard]] const std::uint8_t* maxima() const { return maxima_.data(); }
+  [[nodiscard]] std::uint8_t* maxima() { return maxima_.data(); }
+  /// Where the runs of kBlock pixels begin that have gradient maxima: indices into the maps,
+  /// ascending.
+  [[nodiscard]] std::span<const std::int32_t> blocks() const {
+    return {blocks_.data(), block_count_};
+  }
+
+  /// Standard deviation of the gradient's noise in one direction [units of Gradient].
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] double threshold() const { return threshold_; }
+
+  /// No gradient maximum is nearer to the border: the kernels reach beyond it [pixels].
+  static constexpr int kBorder = 3;
+  static constexpr int kBlock = 32;  // pixels
+
+ private:
+  static constexpr int kRows = 3;  // of magnitudes that a gradient maximum is judged by
+
+  void resize(const ImageView& luma);
+  void compute_row(const ImageView& luma, int y);
+  void mark_row(int y);
+  void measure_noise(const ImageView& luma, double floor);
+  [[nodiscard]] std::int16_t* row_of(std::vector<std::int16_t>& rows, int y);
+
+  Simd simd_;
+  LensView lens_;
+  int width_ = 0;
+  int height_ = 0;
+  int stride_ = 0;
+  double noise_ = 0.0;
+  double threshold_ = 0.0;
+  std::vector<Gradient> gradients_;
+  std::vector<std::uint8_t> maxima_;
+  std::vector<std::int32_t> blocks_;
+  std::size_t block_count_ = 0;
+  std::vector<std::int16_t> smooth_;      // one row, smoothed down the columns
+  std::vector<std::int16_t> difference_;  // one row, differences down the columns
+  std::vector<std::int16_t> x_;           // kRows rows each
+  std::vector<std::int16_t> y_;
+  std::vector<std::int16_t> magnitude_;
+  std::vector<int> histogram_;
+};
+
+}  // namespace ellipse

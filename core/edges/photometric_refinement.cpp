@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/photometric_refinement.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/image/simd.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
+constexpr int kBefore = 6;  // of these, before the edge's own
+constexpr std::size_t kMaxSectors = 80;
+constexpr double kUsualSectors = 64.0;
+constexpr double kShortestSector = 6.0;  // lines
+constexpr double kLongestPx = 1e6;       // perimeter that lines are counted of
+constexpr double kFewLines = 96.0;
+constexpr double kMaxLines = 800.0;
+constexpr std::size_t kMinSectors = 8;
+constexpr std::size_t kNeighbours = 3;  // on each side, that share the two levels
+constexpr double kUsualStepPx = 2.3;    // half the width of the blurred step
+constexpr double kMinStepPx = 1.8;
+constexpr double kMaxStepPx = 5.0;
+constexpr double kAlike = 9.0;       // chi-square, of two levels
+constexpr double kNoiseFloor = 1.0;  // of a sector [grey levels^2]
+constexpr double kTukeyReachPx = 1.0;
+constexpr double kTukeyOfSigma = 4.7;
+constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution's absolute values
+constexpr double kMinShare = 0.5;
+
+// What is summed over a sector's pixels: the step s of height 1 between the two levels, its slope
+// g, its change w as it gets narrower, and the brightness i.
+enum Sum { k1, kS, kSS, kI, kIS, kII, kG, kGS, kGG, kIG, kW, kWS, kWG, kWW, kIW, kSums };
+using Sums = Eigen::Array<double, kSums, 1>;
+
+struct Sector {
+  Sums sums = Sums::Zero();
+  Eigen::Vector2d outwards{0.0, 0.0};  // sum of the normals,
+  double curvature = 0.0;              // and of the curvatures [1/px]
+  int lines = 0;
+};
+
+// Where a line of pixels crosses the perimeter.
+struct Crossing {
+  const std::uint8_t* pixel = nullptr;  // next to it
+  std::ptrdiff_t along = 0;             // to the next one of the line [bytes]
+  float offset = 0.0F;                  // from that pixel [px]
+  float slope = 0.0F;                   // of the distance from the perimeter, along the line,
+  float bend = 0.0F;                    // and half its second derivative
+};
+
+// The sums of a sector's lines, lane by lane.
+struct LaneSums {
+  alignas(32) float of[kSums][kLanes] = {};
+};
+
+// For every processor, and once more for those with wider registers: the same numbers.
+template <bool kWithWidth>
+ELLIPSE_INLINE void add_line(const Crossing& crossing,
+                             float inside_px,
+                             float inverse_step,
+                             LaneSums& sums) {
+  constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
+  alignas(16) std::uint8_t levels[kLanes];
+  const std::uint8_t* pixel = crossing.pixel - kBefore * crossing.along;
+  for (std::uint8_t& level : levels) {
+    level = *pixel;
+    pixel += crossing.along;
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const float t = static_cast<float>(lane - kBefore) - crossing.offset;
+    const float distance = t * (crossing.slope + crossing.bend * t);
+    const float one = distance >= -inside_px && distance <= kOutsidePx ? 1.0F : 0.0F;
+    // Its slope is (1 - x^2)^3: much like a Gaussian's, without an exponential.
+    const float x = std::min(1.0F, std::max(-1.0F, distance * inverse_step));
+    const float xx = x * x;
+    const float rest = 1.0F - xx;
+    const float g = 35.0F / 32.0F * inverse_step * (one * rest * rest * rest);
+    const float s =
+        one * (0.5F + x * (35.0F + xx * (-35.0F + xx * (21.0F - 5.0F * xx))) * (1.0F / 32.0F));
+    const float i = one * (static_cast<float>(levels[lane]) - 128.0F);
+    sums.of[k1][lane] += one;
+    sums.of[kS][lane] += s;
+    sums.of[kSS][lane] += s * s;
+    sums.of[kI][lane] += i;
+    sums.of[kIS][lane] += i * s;
+    sums.of[kII][lane] += i * i;
+    sums.of[kG][lane] += g;
+    sums.of[kGS][lane] += g * s;
+    sums.of[kGG][lane] += g * g;
+    sums.of[kIG][lane] += i * g;
+    if constexpr (kWithWidth) {
+      const float w = distance * g;
+      sums.of[kW][lane] += w;
+      sums.of[kWS][lane] += w * s;
+      sums.of[kWG][lane] += w * g;
+      sums.of[kWW][lane] += w * w;
+      sums.of[kIW][lane] += i * w;
+    }
+  }
+}
+
+using AddLine = void (*)(const Crossing&, float inside_px, float inverse_step, LaneSums&);
+
+template <bool kWithWidth>
+void add_line_baseline(const Crossing& crossing, float inside, float inverse, LaneSums& sums) {
+  add_line<kWithWidth>(crossing, inside, inverse, sums);
+}
+
+template <bool kWithWidth>
+ELLIPSE_AVX2 void add_line_avx2(const Crossing& crossing,
+                                float inside,
+                                float inverse,
+                                LaneSums& sums) {
+  add_line<kWithWidth>(crossing, inside, inverse, sums);
+}
+
+class Accumulator {
+ public:
+  Accumulator(double inside_px, double step_px, bool tells_width)
+      : inside_px_(static_cast<float>(std::min(inside_px, kPhotometricBandPx))),
+        inverse_step_(static_cast<float>(1.0 / step_px)) {
+    if (best_simd() == Simd::kAvx2) {
+      add_ = tells_width ? add_line_avx2<true> : add_line_avx2<false>;
+    } else {
+      add_ = tells_width ? add_line_baseline<true> : add_line_baseline<false>;
+    }
+  }
+
+  void add(const Crossing& crossing) { add_(crossing, inside_px_, inverse_step_, sums_); }
+
+  [[nodiscard]] Sums take() {
+    Sums sums;
+    for (int k = 0; k < kSums; ++k) {
+      float sum = 0.0F;
+      for (const float lane : sums_.of[k]) sum += lane;
+      sums[k] = sum;
+    }
+    sums_ = {};
+    return sums;
+  }
+
+ private:
+  float inside_px_;
+  float inverse_step_;
+  AddLine add_;
+  LaneSums sums_;
+};
+
+struct Pass {
+  double max_lines = 0.0;  // others are left out
+  bool tells_width = false;
+  double step_px = 0.0;
+};
+
+// The pixels beside an ellipse, sector by sector around it.
+class Band {
+ public:
+  Band(const ImageView& luma, const Ellipse& e, double inside_px, const Pass& pass)
+      : accumulator_(inside_px, pass.step_px, pass.tells_width),
+        center_(e.center()),
+        shape_(shape_matrix(e)),
+        conic_(shape_.inverse()),
+        luma_(luma) {
+    const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
+    stride_ = static_cast<int>(std::ceil(lines / pass.max_lines));
+    lines_of_sector_ =
+        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kUsualSectors)));
+    for (int quarter = 0; quarter < 4; ++quarter) read(quarter);
+    close_sector();
+  }
+
+  [[nodiscard]] std::span<const Sector> sectors() const { return {sectors_.data(), count_}; }
+
+  // Where the perimeter has this normal.
+  [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector2d& outwards) const {
+    const Eigen::Vector2d along = shape_ * outwards;
+    return center_ + along / std::sqrt(outwards.dot(along));
+  }
+
+ private:
+  // The quarter whose normals are within 45 degrees of an axis, by lines of pixels along it: the
+  // top one by columns from left to right, the right one by rows downwards, and so on around.
+  void read(int quarter) {
+    const int axis = quarter % 2;  // from line to line
+    const int other = 1 - axis;
+    const double side = quarter == 1 || quarter == 2 ? 1.0 : -1.0;
+    const int forth = quarter < 2 ? 1 : -1;
+    Eigen::Vector2d normal;
+    normal[other] = side;
+    normal[axis] = -forth;
+    const double from = place(normal)[axis];
+    normal[axis] = forth;
+    const double to = place(normal)[axis];
+    const Eigen::Array2i size(luma_.width, luma_.height);
+    const double end = size[axis];
+    const int low = static_cast<int>(std::ceil(std::clamp(std::min(from, to), 0.0, end)));
+    const int high = static_cast<int>(std::floor(std::clamp(std::max(from, to), -1.0, end - 1.0)));
+    const std::ptrdiff_t along = axis == 0 ? luma_.stride : 1;
+    const std::ptrdiff_t step = axis == 0 ? 1 : luma_.stride;
+    const double c = 1.0 / conic_(other, other);
+    const double slant = -conic_(0, 1) * c;
+    const double stretch = conic_.determinant();
+    const double determinant = stretch * c;
+    for (int line = forth > 0 ? low : high; line >= low && line <= high; line += forth * stride_) {
+      Eigen::Vector2d at;
+      at[axis] = line - center_[axis];
+      at[other] = slant * at[axis] +
+                  side * std::sqrt(std::max(0.0, (1.0 - determinant * at[axis] * at[axis]) * c));
+      const double crossing = center_[other] + at[other];
+      if (!(crossing >= kBefore && crossing < size[other] - kLanes + kBefore)) continue;
+      const int nearest = static_cast<int>(std::floor(crossing + 0.5));
+      const Eigen::Vector2d gradient = conic_ * at;
+      const double inverse = 1.0 / gradient.norm();
+      const Eigen::Vector2d outwards = inverse * gradient;
+      const double curvature = stretch * inverse * inverse * inverse;
+      sectors_[count_].outwards += outwards;
+      sectors_[count_].curvature += curvature;
+      accumulator_.add({luma_.data + nearest * along + line * step,
+                        along,
+                        static_cast<float>(crossing - nearest),
+                        static_cast<float>(outwards[other]),
+                        static_cast<float>(0.5 * curvature * outwards[axis] * outwards[axis])});
+      if (++sectors_[count_].lines >= lines_of_sector_) close_sector();
+    }
+  }
+
+  void close_sector() {
+    Sector& sector = sectors_[count_];
+    sector.sums = accumulator_.take();
+    if (2 * sector.lines >= lines_of_sector_ && count_ + 1 < kMaxSectors) {
+      ++count_;
+    } else {
+      sector = {};
+    }
+  }
+
+  Accumulator accumulator_;
+  Eigen::Vector2d center_;
+  Eigen::Matrix2d shape_;
+  Eigen::Matrix2d conic_;
+  std::array<Sector, kMaxSectors> sectors_;
+  std::size_t count_ = 0;
+  ImageView luma_;
+  int stride_ = 1;
+  int lines_of_sector_ = 0;
+};
+
+// The two levels and the step between them that explain a sector's pixels best.
+struct Step {
+  // Level inside, contrast, and contrast x (offset inwards, narrower).
+  Eigen::Vector4d values = Eigen::Vector4d::Zero();
+  double offset_variance = 0.0;  // of values[2], per variance of the noise
+};
+
+Eigen::Matrix4d normal_matrix(const Sums& sums) {
+  Eigen::Matrix4d normal;
+  normal << sums[k1], sums[kS], sums[kG], sums[kW],  //
+      sums[kS], sums[kSS], sums[kGS], sums[kWS],     //
+      sums[kG], sums[kGS], sums[kGG], sums[kWG],     //
+      sums[kW], sums[kWS], sums[kWG], sums[kWW];
+  return normal;
+}
+
+Eigen::Vector4d right_side(const Sums& sums) {
+  return {sums[kI], sums[kIS], sums[kIG], sums[kIW]};
+}
+
+template <int kValues>
+Step solved(const Sums& sums) {
+  Eigen::Matrix<double, kValues, kValues> normal =
+      normal_matrix(sums).topLeftCorner<kValues, kValues>();
+  normal.diagonal() *= 1.0 + 1e-9;
+  const Eigen::Matrix<double, kValues, kValues> covariance = normal.inverse();
+  Step step;
+  step.values.template head<kValues>() = covariance * right_side(sums).head<kValues>();
+  step.offset_variance = covariance(2, 2);
+  return step;
+}
+
+Step fitted(const Sums& sums) {
+  return sums[kWW] > 0.0 ? solved<4>(sums) : solved<3>(sums);
+}
+
+// Sum of the squared differences between the pixels and a step.
+double squares(const Sums& sums, const Eigen::Vector4d& values) {
+  return std::max(
+      0.0,
+      sums[kII] - 2.0 * values.dot(right_side(sums)) + values.dot(normal_matrix(sums) * values));
+}
+
+// What a sector tells of the edge.
+struct Edge {
+  const Sector* sector = nullptr;
+  double offset_px = 0.0;  // outwards
+  double variance = 0.0;
+  double narrower = 0.0;  // than it was taken for: change of the width's logarithm
+};
+
+// The neighbours tell the levels better than the sector alone, unless they show something else: a
+// shadow, or what is in front of the target.
+std::optional<Edge> edge_of(std::span<const Sector> sectors,
+                            std::size_t i,
+                            double brighter_outside,
+                            double min_contrast) {
+  const std::size_t n = sectors.size();
+  const Sums& own = sectors[i].sums;
+  Sums near = own;
+  for (std::size_t k = 1; k <= kNeighbours; ++k) {
+    near += sectors[(i + k) % n].sums + sectors[(i + n - k) % n].sums;
+  }
+  const Step alone = fitted(own);
+  if (!(brighter_outside * alone.values[1] >= min_contrast)) return std::nullopt;
+  Step shared = fitted(near);
+  // The offset is its own.
+  shared.values[2] = (own[kIG] - shared.values[0] * own[kG] - shared.values[1] * own[kGS] -
+                      shared.values[3] * own[kWG]) /
+                     own[kGG];
+  const double rest = squares(own, alone.values);
+  const double noise = kNoiseFloor + rest / std::max(1.0, own[k1] - 3.0);
+  const bool is_alike = squares(own, shared.values) - rest < kAlike * noise;
+  const Eigen::Vector4d& values = is_alike ? shared.values : alone.values;
+  const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.offset_variance);
+  return Edge{&sectors[i],
+              -values[2] / values[1],
+              variance / (values[1] * values[1]),
+              shared.values[3] / values[1]};
+}
+
+}  // namespace
+
+std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
+                                                     const Ellipse& e,
+                                                     Polarity polarity,
+                                                     double inside_px,
+                                                     double min_contrast) {
+  if (!(inside_px >= kMinPhotometricBandPx)) return std::nullopt;
+  const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
+  Ellipse refined = e;
+  RingUncertainty uncertainty{};
+  Pass pass{kFewLines, true, kUsualStepPx};
+  for (int i = 0; i < 2; ++i) {
+    const Band band(luma, refined, inside_px, pass);
+    const auto sectors = band.sectors();
+    std::array<Edge, kMaxSectors> edges;
+    std::array<double, kMaxSectors> distances;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < sectors.size(); ++k) {
+      const auto edge = edge_of(sectors, k, brighter_outside, min_contrast);
+      if (!edge) continue;
+      distances[count] = std::abs(edge->offset_px);
+      edges[count++] = *edge;
+    }
+    if (count < kMinSectors || count < kMinShare * static_cast<double>(sectors.size())) {
+      return std::nullopt;
+    }
+    // Edges that are not quite elliptical scatter more than their pixels' noise lets them.
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(
+        distances.begin(), middle, distances.begin() + static_cast<std::ptrdiff_t>(count));
+    const double scatter = kSigmaOfMedian * *middle;
+    const double reach = std::max(kTukeyReachPx, kTukeyOfSigma * scatter);
+    GeometricFit fit(refined);
+    double narrower = 0.0;
+    double weights = 0.0;
+    for (const Edge& edge : std::span(edges).first(count)) {
+      const double weight =
+          tukey_weight(edge.offset_px, reach) / (edge.variance + scatter * scatter);
+      narrower += weight * edge.narrower;
+      weights += weight;
+      const Sector& sector = *edge.sector;
+      const Eigen::Vector2d outwards = sector.outwards.normalized();
+      const double drawn_in_px = 0.5 * kLensVariance * sector.curvature / sector.lines;
+      if (weight > 0.0) {
+        fit.add(band.place(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
+      }
+    }
+    uncertainty = {image_from_pad(refined), fit.information()};
+    const auto better = fit.solve();
+    if (!better) return std::nullopt;
+    refined = *better;
+    const double step_px = kUsualStepPx * std::exp(-narrower / weights);
+    pass = {kMaxLines, false, std::clamp(step_px, kMinStepPx, kMaxStepPx)};
+  }
+  return FittedEllipse{refined, uncertainty};
+}
+
+}  // namespace ellipse

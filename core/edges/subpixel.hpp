@@ -1,0 +1,47 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <algorithm>
+
+#include "core/edges/gradient_map.hpp"
+
+namespace ellipse {
+
+/// Which side of an edge is dark.
+enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
+
+[[nodiscard]] constexpr Polarity opposite(Polarity polarity) {
+  return polarity == Polarity::kDarkInside ? Polarity::kBrightInside : Polarity::kDarkInside;
+}
+
+/// Where the gradient maximum lies within its pixel, and how sharp it is.
+struct SubpixelMaximum {
+  float offset_px = 0.0F;  ///< Along the axis, from the pixel's centre.
+  float sharpness =
+      0.0F;  ///< Curvature of the gradient maximum's profile over its height [1/px^2].
+};
+
+/// Of the blur of a lens that is in focus [px^2].
+inline constexpr double kLensVariance = 0.36;
+
+/// How far inside a curved edge the gradient maximum of its smoothed gradient lies [px], per
+/// curvature [1/px]: smoothing of variance v draws the gradient maximum of an edge of curvature k
+/// in by v k / 2, to first order (own derivation from the mean of a disc's edge over a Gaussian).
+/// The 5 x 5 kernels have a variance of 1 along the edge.
+inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
+
+/// The vertex of the parabola through three pixels along the axis closest to the gradient
+/// [Devernay1995] 2. The gradients' projections on the middle one count.
+/// @param here  The middle one's gradient in a map; its neighbours are `step` before and behind.
+[[nodiscard]] inline SubpixelMaximum subpixel_maximum(const Gradient* here, int step) {
+  constexpr float kFarthest = 0.7F;
+  const float gx = here->x;
+  const float gy = here->y;
+  const float before = here[-step].x * gx + here[-step].y * gy;
+  const float height = gx * gx + gy * gy;
+  const float after = here[step].x * gx + here[step].y * gy;
+  const float curvature = before - 2.0F * height + after;
+  const float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  return {std::clamp(offset, -kFarthest, kFarthest), height > 0.0F ? -curvature / height : 0.0F};
+}
+
+}  // namespace ellipse

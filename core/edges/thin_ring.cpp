@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/thin_ring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+constexpr std::size_t kDirections = 8;  // over half a turn, see maxima_distances()
+constexpr double kLensBlur = 0.6;       // standard deviation [px], in focus
+constexpr double kWidest = 6.0;         // that is corrected [px]
+constexpr std::size_t kWidths = 31;     // in the table, from 0 to kWidest
+constexpr int kPhases = 8;              // of the pixels against the bar
+constexpr int kHalvings = 20;
+
+using PerWidth = std::array<double, kWidths>;
+
+Eigen::Vector2d direction(std::size_t i) {
+  const double angle = std::numbers::pi * static_cast<double>(i) / kDirections;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+// A bright bar, blurred by the lens, at a distance from its middle.
+double bar_at(double distance, double width) {
+  const double scale = 1.0 / (std::numbers::sqrt2 * kLensBlur);
+  return 0.5 *
+         (std::erf((0.5 * width + distance) * scale) + std::erf((0.5 * width - distance) * scale));
+}
+
+// What the 5 x 5 kernels of GradientMap make of the bar, along its normal, at a pixel beside it.
+double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
+  constexpr std::array<double, 5> kSmooth = {1, 4, 6, 4, 1};
+  constexpr std::array<double, 5> kDifference = {-1, -2, 0, 2, 1};
+  double slope = 0.0;
+  for (std::size_t j = 0; j < 5; ++j) {
+    for (std::size_t i = 0; i < 5; ++i) {
+      const Eigen::Vector2d pixel(x + static_cast<double>(i) - 2.0, static_cast<double>(j) - 2.0);
+      const double along =
+          normal.x() * kDifference[i] * kSmooth[j] + normal.y() * kSmooth[i] * kDifference[j];
+      slope += along * bar_at(normal.dot(pixel), width);
+    }
+  }
+  return -slope;
+}
+
+// How far from the bar's middle its gradient maximum is met, as the vertex of a parabola through
+// the pixel with the largest gradient and its neighbours, in the mean over where the pixels lie.
+double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
+  double sum = 0.0;
+  for (int phase = 0; phase < kPhases; ++phase) {
+    double x = (phase + 0.5) / kPhases;
+    std::array<double, 3> slopes = {slope_of_bar(normal, x - 1.0, width),
+                                    slope_of_bar(normal, x, width),
+                                    slope_of_bar(normal, x + 1.0, width)};
+    while (slopes[2] > slopes[1]) {
+      x += 1.0;
+      slopes = {slopes[1], slopes[2], slope_of_bar(normal, x + 1.0, width)};
+    }
+    const double curvature = slopes[0] - 2.0 * slopes[1] + slopes[2];
+    sum += x + 0.5 * (slopes[0] - slopes[2]) / curvature;
+  }
+  return normal.x() * sum / kPhases;
+}
+
+// How far apart the gradient maxima of bars are, by the bar's width; for normals at 0, 1/16 and 1/8
+// of a turn from an axis: the kernels are the same in all octants.
+const std::array<PerWidth, 3>& maxima_distances() {
+  static const auto kTable = [] {
+    std::array<PerWidth, 3> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      for (std::size_t k = 0; k < kWidths; ++k) {
+        const double width = kWidest * std::max(0.01, static_cast<double>(k)) / (kWidths - 1);
+        table[i][k] = 2.0 * maximum_of_bar(direction(i), width);
+      }
+    }
+    return table;
+  }();
+  return kTable;
+}
+
+double maxima_distance(double width, std::size_t direction) {
+  const double at = width / kWidest * (kWidths - 1);
+  if (at >= kWidths - 1) return width;
+  const auto k = static_cast<std::size_t>(at);
+  const std::size_t from_axis = std::min(direction % 4, 4 - direction % 4);
+  const PerWidth& table = maxima_distances()[from_axis];
+  return std::lerp(table[k], table[k + 1], at - static_cast<double>(k));
+}
+
+Eigen::Matrix2d stretch_of(const Ellipse& e) {
+  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d across(-axis.y(), axis.x());
+  return e.semi_major * axis * axis.transpose() + e.semi_minor * across * across.transpose();
+}
+
+}  // namespace
+
+void prepare_repulsion() {
+  (void)maxima_distances();
+}
+
+RingEdges without_repulsion(const RingEdges& maxima) {
+  const Eigen::Matrix2d outer = stretch_of(maxima.outer);
+  const Eigen::Matrix2d inner = stretch_of(maxima.inner);
+  const Eigen::Matrix2d middle = 0.5 * (outer + inner);
+  std::array<double, kDirections> radii;  // of the line in the ring's middle [px]
+  double gaps = 0.0;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    // The distance of an ellipse's tangent from its centre.
+    const Eigen::Vector2d normal = direction(i);
+    radii[i] = (middle * normal).norm();
+    const double gap = (outer * normal).norm() - (inner * normal).norm();
+    if (gap > kWidest) return maxima;
+    gaps += gap;
+  }
+  if (!(gaps > 0.0)) return maxima;
+
+  // The ring's width over its middle radius: the larger it is, the farther apart the gradient
+  // maxima.
+  double low = 0.0;
+  double high = 2.0;
+  for (int step = 0; step < kHalvings; ++step) {
+    const double share = 0.5 * (low + high);
+    double predicted = 0.0;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      predicted += maxima_distance(share * radii[i], i);
+    }
+    (predicted < gaps ? low : high) = share;
+  }
+  const Eigen::Matrix2d shape = middle * middle;
+  const auto at = [&](double factor, const Ellipse& maximum) {
+    return from_shape(maximum.center(), factor * factor * shape).value_or(maximum);
+  };
+  return {at(1.0 + 0.5 * low, maxima.outer), at(1.0 - 0.5 * low, maxima.inner)};
+}
+
+// Same centre and shape, another radius, as the two edges of a ring at least this thick.
+bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio) {
+  const double larger = std::max(a.semi_major, b.semi_major);
+  const double ratio = std::min(a.semi_major, b.semi_major) / larger;
+  if (ratio < 0.25 || ratio > largest_ratio) return false;
+  return (a.center() - b.center()).norm() < 0.06 * larger + 1.5 &&
+         std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "core/geometry/ellipse.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+// Into (-pi/2, pi/2]: an axis has no direction.
+double normalized_axis_angle(double angle_rad) {
+  angle_rad = std::remainder(angle_rad, std::numbers::pi);
+  return angle_rad <= -std::numbers::pi / 2 ? std::numbers::pi / 2 : angle_rad;
+}
+
+Interval clip(const Interval& a, double begin, double end) {
+  return {std::max(a.begin, begin), std::min(a.end, end)};
+}
+
+}  // namespace
+
+Eigen::Vector2d Ellipse::point_at(double t_rad) const {
+  const double u = semi_major * std::cos(t_rad);
+  const double v = semi_minor * std::sin(t_rad);
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {cx + c * u - s * v, cy + s * u + c * v};
+}
+
+Eigen::Vector2d half_extent(const Ellipse& e) {
+  return shape_matrix(e).diagonal().cwiseSqrt();
+}
+
+Interval chord(const Ellipse& e, double y) {
+  const Eigen::Matrix2d shape = shape_matrix(e);
+  const double dy = y - e.cy;
+  const double room = 1.0 - dy * dy / shape(1, 1);
+  if (!(room > 0.0)) return {};
+  const double middle = e.cx + shape(0, 1) / shape(1, 1) * dy;
+  const double half = std::sqrt(shape.determinant() / shape(1, 1) * room);
+  return {middle - half, middle + half};
+}
+
+double perimeter_px(const Ellipse& e) {
+  const double sum = e.semi_major + e.semi_minor;
+  const double h = std::pow((e.semi_major - e.semi_minor) / sum, 2);
+  // [Ramanujan1914] second approximation.
+  return std::numbers::pi * sum * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
+}
+
+Eigen::Matrix2d shape_matrix(const Ellipse& e) {
+  const Eigen::Vector2d major =
+      e.semi_major * Eigen::Vector2d(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d minor =
+      e.semi_minor * Eigen::Vector2d(-std::sin(e.angle_rad), std::cos(e.angle_rad));
+  return major * major.transpose() + minor * minor.transpose();
+}
+
+std::optional<Ellipse> from_shape(const Eigen::Vector2d& center, const Eigen::Matrix2d& shape) {
+  const double mean = 0.5 * (shape(0, 0) + shape(1, 1));
+  const double diff = 0.5 * (shape(0, 0) - shape(1, 1));
+  const double off = 0.5 * (shape(0, 1) + shape(1, 0));
+  const double radius = std::hypot(diff, off);
+  const double major_sq = mean + radius;
+  // The small eigenvalue by the determinant: mean - radius would cancel on flat ellipses.
+  const double minor_sq = (shape(0, 0) * shape(1, 1) - off * off) / major_sq;
+  if (!(minor_sq > 0.0) || !std::isfinite(major_sq) || !center.allFinite()) return std::nullopt;
+  return Ellipse{center.x(),
+                 center.y(),
+                 std::sqrt(major_sq),
+                 std::min(std::sqrt(minor_sq), std::sqrt(major_sq)),
+                 normalized_axis_angle(0.5 * std::atan2(off, diff))};
+}
+
+Eigen::Matrix3d conic_matrix(const Ellipse& e) {
+  const Eigen::Matrix2d inverse_shape = shape_matrix(e).inverse();
+  const Eigen::Vector2d linear = -inverse_shape * e.center();
+  Eigen::Matrix3d conic;
+  conic << inverse_shape, linear, linear.transpose(), -linear.dot(e.center()) - 1.0;
+  return conic;
+}
+
+std::optional<Ellipse> from_conic(const Eigen::Matrix3d& conic) {
+  const Eigen::Matrix2d quadratic = conic.topLeftCorner<2, 2>();
+  if (!(quadratic.determinant() > 0.0)) return std::nullopt;  // hyperbola, parabola, NaN
+  const Eigen::Vector2d center = -quadratic.inverse() * conic.topRightCorner<2, 1>();
+  const double level = -(conic(2, 2) + conic.topRightCorner<2, 1>().dot(center));
+  return from_shape(center, quadratic.inverse() * level);
+}
+
+std::optional<Ellipse> transformed(const Ellipse& e,
+                                   const Eigen::Matrix2d& linear,
+                                   const Eigen::Vector2d& translation_px) {
+  return from_shape(linear * e.center() + translation_px,
+                    linear * shape_matrix(e) * linear.transpose());
+}
+
+Ellipse scaled(const Ellipse& e, double factor) {
+  return {(e.cx + 0.5) * factor - 0.5,
+          (e.cy + 0.5) * factor - 0.5,
+          e.semi_major * factor,
+          e.semi_minor * factor,
+          e.angle_rad};
+}
+
+Ellipse translated(const Ellipse& e, double dx_px, double dy_px) {
+  return {e.cx + dx_px, e.cy + dy_px, e.semi_major, e.semi_minor, e.angle_rad};
+}
+
+double sampson_distance(const Ellipse& e, const Eigen::Vector2d& point_px) {
+  const double c = std::cos(e.angle_rad);
+  const double s = std::sin(e.angle_rad);
+  const Eigen::Vector2d d = point_px - e.center();
+  const double u = (c * d.x() + s * d.y()) / e.semi_major;
+  const double v = (c * d.y() - s * d.x()) / e.semi_minor;
+  const double r = std::hypot(u, v);
+  const double gradient = std::hypot(u / e.semi_major, v / e.semi_minor);
+  if (gradient == 0.0) return -e.semi_minor;
+  // [Sampson1982] f / |grad f| with f = r - 1, whose gradient is (u/a, v/b) / r.
+  return (r - 1.0) * r / gradient;
+}
+
+double max_difference_px(const Ellipse& a, const Ellipse& b) {
+  return std::max({std::abs(a.cx - b.cx),
+                   std::abs(a.cy - b.cy),
+                   std::abs(a.semi_major - b.semi_major),
+                   std::abs(a.semi_minor - b.semi_minor)});
+}
+
+double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
+  const double half_a = half_extent(a).y();
+  const double half_b = half_extent(b).y();
+  const double top = std::max(-0.5, std::min(a.cy - half_a, b.cy - half_b));
+  const double bottom = std::min(height - 0.5, std::max(a.cy + half_a, b.cy + half_b));
+  if (!(bottom > top)) return 0.0;
+
+  const int lines = std::clamp(static_cast<int>(std::ceil(2.0 * (bottom - top))), 512, 16384);
+  double common = 0.0;
+  double either = 0.0;
+  for (int i = 0; i < lines; ++i) {
+    const double y = top + (i + 0.5) * (bottom - top) / lines;
+    const Interval in_a = clip(chord(a, y), -0.5, width - 0.5);
+    const Interval in_b = clip(chord(b, y), -0.5, width - 0.5);
+    const double both = clip(in_a, in_b.begin, in_b.end).length();
+    common += both;
+    either += in_a.length() + in_b.length() - both;
+  }
+  return either > 0.0 ? common / either : 0.0;
+}
+
+double visible_fraction(const Ellipse& e, int width, int height) {
+  double inside = 0.0;
+  double total = 0.0;
+  walk_perimeter(e, [&](const PerimeterStep& step) {
+    const Eigen::Vector2d& p = step.point;
+    total += step.length_px;
+    if (p.x() >= -0.5 && p.y() >= -0.5 && p.x() < width - 0.5 && p.y() < height - 0.5) {
+      inside += step.length_px;
+    }
+  });
+  return total > 0.0 ? inside / total : 0.0;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,126 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "core/geometry/ellipse.hpp"
+#include "core/geometry/homography.hpp"
+
+namespace ellipse {
+
+/// Sums of x^i y^j, i + j <= 4, over points taken relative to an origin. All that a least-squares
+/// ellipse needs to know of its points, however many they are.
+class Moments {
+ public:
+  /// @param origin_px  A point near the data, such as its first one: it keeps the sums small.
+  explicit Moments(const Eigen::Vector2d& origin_px) : origin_(origin_px) {}
+
+  void add(const Eigen::Vector2d& point_px, double weight = 1.0);
+  /// The points of both. Both must have the same origin.
+  void add(const Moments& other);
+
+  [[nodiscard]] double count() const { return at(0, 0); }
+  [[nodiscard]] Eigen::Vector2d mean() const;
+  /// RMS distance of the points to their mean [px].
+  [[nodiscard]] double spread_px() const;
+  /// The moments of (p - mean) / spread.
+  [[nodiscard]] Moments standardized() const;
+  [[nodiscard]] double at(int i, int j) const { return sums_[index(i, j)]; }
+
+ private:
+  static constexpr int index(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
+
+  Eigen::Vector2d origin_;
+  std::array<double, 15> sums_{};  // by degree: 1, x, y, x^2, xy, y^2, x^3, ...
+};
+
+/// Fits one ellipse by direct least squares [Fitzgibbon1999] in the stable form of
+/// [HalirFlusser1998], on standardized points.
+///
+/// @param points_px  Image points [px], any order. Borrowed for the call only.
+/// @return nullopt for fewer than 5 points, and for points (nearly) on one line or at one place.
+///
+/// Deterministic, thread-safe, allocates nothing; O(N).
+[[nodiscard]] std::optional<Ellipse> fit_ellipse(std::span<const Eigen::Vector2d> points_px);
+
+/// The same from moments: O(1).
+[[nodiscard]] std::optional<Ellipse> fit_ellipse(const Moments& moments);
+
+/// An ellipse and how well it fits its points.
+struct MomentFit {
+  Ellipse ellipse;
+  /// RMS distance of the points [px], in the approximation of [Taubin1991].
+  double rms_px = 0.0;
+};
+
+/// The same with the residual, which the moments tell too: O(1).
+[[nodiscard]] std::optional<MomentFit> fit_with_residual(const Moments& moments);
+
+/// Where a point lies, seen from an ellipse's perimeter.
+struct PerimeterOffset {
+  Eigen::Vector2d anomaly;   ///< Cosine and sine of the eccentric anomaly.
+  double px_per_unit = 0.0;  ///< How far the perimeter moves if the axes grow by their own length.
+  double distance_px = 0.0;  ///< From the perimeter, above 0 outside; as sampson_distance().
+};
+
+/// Tukey's biweight [BeatonTukey1974]: 1 for no distance, 0 from `reach` on.
+[[nodiscard]] inline double tukey_weight(double distance, double reach) {
+  const double r = distance / reach;
+  return std::abs(r) < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
+}
+
+/// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
+/// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
+/// not.
+///
+/// The ellipse is {c + M u, |u| = 1}, M its axes: five parameters move c within M and stretch M
+/// symmetrically, so that no direction is singular, at a circle neither. Allocates nothing; O(1) a
+/// point.
+class GeometricFit {
+ public:
+  explicit GeometricFit(const Ellipse& start);
+
+  [[nodiscard]] PerimeterOffset offset_of(const Eigen::Vector2d& point_px) const;
+
+  void add(const PerimeterOffset& offset, double weight = 1.0);
+  void add(const Eigen::Vector2d& point_px, double weight = 1.0) {
+    add(offset_of(point_px), weight);
+  }
+
+  /// The ellipse after the step; nullopt for fewer than 5 points or a singular system.
+  [[nodiscard]] std::optional<Ellipse> solve() const;
+
+  /// Sum of the weighted squares: for weights of 1 over the variance of the points' distances, the
+  /// inverse covariance of T, S and E (see HomographyChange) in the view image_from_pad(start).
+  [[nodiscard]] RingMatrix information() const;
+
+ private:
+  Eigen::Vector2d center_;
+  Eigen::Matrix2d rotation_;  // M = rotation x axes
+  Eigen::Vector2d axes_;      // semi-major, semi-minor
+  Eigen::Vector2d inverse_axes_;
+  std::array<double, 15> normal_{};  // the upper triangle, row by row
+  std::array<double, 5> right_side_{};
+  int points_ = 0;
+};
+
+/// An ellipse and how well it is known.
+struct FittedEllipse {
+  Ellipse ellipse;
+  RingUncertainty uncertainty;
+};
+
+/// What a fit to edges around the part of an ellipse inside a frame would leave open.
+/// @param sigma_px  Standard deviation of an edge's place, every kIndependentPx of the perimeter.
+[[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
+                                                   double width,
+                                                   double height,
+                                                   double sigma_px);
+
+/// Edges nearer to each other along their ellipse err alike [px].
+inline constexpr double kIndependentPx = 6.0;
+
+}  // namespace ellipse

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/frame_clock.hpp"
+
+#include <algorithm>
+
+namespace ellipse {
+namespace {
+
+constexpr double kUnitNs = 1e9 / 30.0;
+constexpr double kLongestGap = 30.0;  // of these
+
+}  // namespace
+
+double FrameClock::advance_to(std::int64_t pts_ns) {
+  if (pts_ns < 0) {
+    now_ns_ += interval_ * kUnitNs;
+    return interval_;
+  }
+  const auto pts = static_cast<double>(pts_ns);
+  const double elapsed = (pts - now_ns_) / kUnitNs;
+  now_ns_ = pts;
+  interval_ = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
+  return interval_;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/edge_search.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/tracking/pad/visible_part.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr std::size_t kFineSteps = 4;  // in one of the circle's, where little of it is visible
+constexpr double kMinContrast = 4.0;   // [grey levels]
+constexpr double kContrastShare = 0.25;
+constexpr int kMaxSteps = 24;  // to each side of the expected place
+constexpr int kMaxBox = 3;     // samples that are averaged on each side of an edge
+constexpr int kLongestProfile = 2 * (kMaxSteps + kMaxBox) + 3;
+
+// Directions all around.
+const Eigen::Vector2d& direction(std::size_t fine_step) {
+  constexpr std::size_t kDirections = EdgeSearch::kCircleSteps * kFineSteps;
+  static const auto kTurn = [] {
+    std::array<Eigen::Vector2d, kDirections> turn;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kDirections;
+      turn[i] = {std::cos(angle), std::sin(angle)};
+    }
+    return turn;
+  }();
+  return kTurn[fine_step];
+}
+
+// The levels of some pixels across an edge.
+struct Profile {
+  std::array<float, kLongestProfile + 1> sums;  // of all levels before
+  std::size_t count = 0;
+  std::size_t box = 1;
+  float first = 0.0F;      // steps from the middle one to the first one
+  float step_px = 0.0F;    // along the normal
+  float middle_px = 0.0F;  // from where the edge is expected to the middle one
+};
+
+// Where the difference of the boxes before and behind is highest.
+void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample& sample) {
+  const auto& sums = profile.sums;
+  const std::size_t half = profile.box;
+  const float scale = 1.0F / static_cast<float>(half);
+  std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
+  for (std::size_t i = half; i + half <= profile.count; ++i) {
+    rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
+  }
+  for (std::size_t i = half + 1; i + half < profile.count; ++i) {
+    const float here = rises[i];
+    if (here < least || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
+    const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
+    const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
+    EdgeCandidate candidate{at * profile.step_px + profile.middle_px, here};
+    if (std::abs(candidate.distance_px) > reach_px) continue;
+    for (int k = 0; k < sample.count; ++k) {  // the strongest first
+      EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
+      if (candidate.contrast > other.contrast) std::swap(candidate, other);
+    }
+    if (sample.count < 3) {
+      sample.candidates[static_cast<std::size_t>(sample.count++)] = candidate;
+    }
+  }
+}
+
+}  // namespace
+
+void EdgeSearch::add(const Eigen::Matrix3d& view,
+                     const Eigen::Vector2d& place,
+                     const Eigen::Vector2d& to_bright,
+                     double contrast,
+                     int feature) {
+  const auto edge = view_of(view, place, to_bright);
+  if (!edge || samples_.size() >= kMaxSamples) return;
+  EdgeSample& sample = samples_.emplace_back();
+  sample.view = *edge;
+  sample.contrast = static_cast<float>(contrast);
+  sample.feature = feature;
+}
+
+struct EdgeSearch::Placement {
+  const PadView& view;
+  VisiblePart visible;
+  double px_per_radius;
+  double spacing_px = 0.0;
+
+  [[nodiscard]] double step_px(const PadCircle& circle) const {
+    return 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
+  }
+  [[nodiscard]] double length_px(const PadLine& line, const Interval& part) const {
+    return part.length() * (line.to - line.from).norm() * px_per_radius;
+  }
+};
+
+void EdgeSearch::place(const PadModel& model,
+                       const PadView& view,
+                       const ImageView& luma,
+                       int samples) {
+  samples_.clear();
+  samples_.reserve(kMaxSamples);
+  Placement placement{view, VisiblePart(view, luma), view.radius_px()};
+  std::array<SeenSteps, kMaxCircles> seen;
+  double total_px = 0.0;
+  const std::size_t circles = std::min(model.circles.size(), seen.size());
+  narrowest_ = 1e9;
+  for (std::size_t c = 0; c < circles; ++c) {
+    const PadCircle& circle = model.circles[c];
+    for (std::size_t i = 0; i < kCircleSteps; ++i) {
+      seen[c][i] = placement.visible.has(circle.radius * direction(kFineSteps * i));
+    }
+    const auto count = static_cast<double>(seen[c].count());
+    total_px += count * placement.step_px(circle);
+    if (c == 0) visible_fraction_ = count / kCircleSteps;
+    if (c == 0) continue;
+    narrowest_ = std::min(narrowest_, std::abs(model.circles[c - 1].radius - circle.radius));
+  }
+  for (const PadLine& line : model.lines) {
+    total_px += placement.length_px(line, placement.visible.clip(line.from, line.to));
+  }
+  if (!(total_px > 0.0)) return;
+
+  placement.spacing_px = std::max(2.0, total_px / samples);
+  for (std::size_t c = 0; c < circles; ++c) {
+    place_on_circle(placement, model.circles[c], seen[c], static_cast<int>(c));
+  }
+  for (std::size_t l = 0; l < model.lines.size(); ++l) {
+    place_on_line(placement, model.lines[l], static_cast<int>(circles + l));
+  }
+  if (view.lens.is_distorted()) bend(view.lens);
+}
+
+void EdgeSearch::place_on_circle(const Placement& placement,
+                                 const PadCircle& circle,
+                                 const SeenSteps& seen,
+                                 int feature) {
+  const double step_px = placement.step_px(circle);
+  const double spacing_px = placement.spacing_px;
+  const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+  const int fine = spacing_px < step_px ? static_cast<int>(kFineSteps) : 1;
+  double since_px = 0.5 * spacing_px;
+  for (std::size_t i = 0; i < kCircleSteps; ++i) {
+    if (!seen[i]) continue;
+    for (int k = 0; k < fine; ++k) {
+      since_px += step_px / fine;
+      if (since_px < spacing_px) continue;
+      const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
+      if (k > 0 && !placement.visible.has(circle.radius * outwards)) continue;
+      since_px = std::min(since_px - spacing_px, spacing_px);
+      add(placement.view.ideal_from_pad,
+          circle.radius * outwards,
+          sign * outwards,
+          circle.contrast,
+          feature);
+    }
+  }
+}
+
+void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, int feature) {
+  const Interval part = placement.visible.clip(line.from, line.to);
+  const int count = static_cast<int>(placement.length_px(line, part) / placement.spacing_px);
+  for (int i = 0; i < count; ++i) {
+    const double at = part.begin + part.length() * (i + 0.5) / count;
+    add(placement.view.ideal_from_pad,
+        line.from + at * (line.to - line.from),
+        line.to_bright,
+        line.contrast,
+        feature);
+  }
+}
+
+// All samples from the ideal plane to the picture.
+void EdgeSearch::bend(const LensView& lens) {
+  constexpr std::size_t kMost = kMaxSamples;
+  std::array<std::array<float, kMost>, 6> numbers;
+  auto& [x, y, nx, ny, across, along] = numbers;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const EdgeView& view = samples_[i].view;
+    x[i] = static_cast<float>(view.point.x());
+    y[i] = static_cast<float>(view.point.y());
+    nx[i] = static_cast<float>(view.normal.x());
+    ny[i] = static_cast<float>(view.normal.y());
+  }
+  lens.bend(
+      {0.0, 0.0},
+      {samples_.size(), x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    EdgeView& view = samples_[i].view;
+    view.point = {x[i], y[i]};
+    view.normal = {nx[i], ny[i]};
+    view.px_per_unit *= across[i];
+    view.row *= across[i];
+  }
+}
+
+void EdgeSearch::look(const ImageView& luma,
+                      double gain,
+                      double reach_px,
+                      const HomographyCovariance* covariance,
+                      double max_px) {
+  for (EdgeSample& sample : samples_) {
+    double reach = reach_px;
+    if (covariance != nullptr) {
+      const double variance = sample.view.row.dot(*covariance * sample.view.row);
+      // Rounding may leave less than 0 of a variance.
+      reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)) + 2.0, reach_px, max_px);
+    }
+    look_along(luma, gain, reach, sample);
+  }
+}
+
+// Differences of box averages across the edge, from dark to bright above 0. Read along the row or
+// column of pixels that is closest to the normal: no pixel has to be interpolated.
+void EdgeSearch::look_along(const ImageView& luma,
+                            double gain,
+                            double reach_px,
+                            EdgeSample& sample) const {
+  sample.count = 0;
+  sample.is_seen = false;
+  const Eigen::Vector2d& normal = sample.view.normal;
+  const int axis = std::abs(normal.x()) > std::abs(normal.y()) ? 0 : 1;
+  const int other = 1 - axis;
+  const double slope = normal[axis];
+  const Eigen::Array2i size(luma.width, luma.height);
+  const Eigen::Vector2d& point = sample.view.point;
+  const double line = std::floor(point[other] + 0.5);
+  if (!(line >= 0.0 && line < size[other])) return;
+  const double crossing = point[axis] + normal[other] / slope * (point[other] - line);
+  if (!(crossing >= 0.0 && crossing <= size[axis] - 1.0)) return;
+  const int middle = static_cast<int>(std::floor(crossing + 0.5));
+
+  const double reach = reach_px / std::abs(slope);
+  const int step = std::max(1, static_cast<int>(std::ceil(reach / kMaxSteps)));
+  const int steps = static_cast<int>(std::ceil(reach / step));
+  const double step_px = step * std::abs(slope);
+  const double gap_px = narrowest_ * sample.view.px_per_unit;
+  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step_px, 1.0, double(kMaxBox)));
+  const bool is_forth = slope > 0.0;
+  const int before = (is_forth ? middle : size[axis] - 1 - middle) / step;
+  const int behind = (is_forth ? size[axis] - 1 - middle : middle) / step;
+  const int first = -std::min(steps + box, before);
+  const int last = std::min(steps + box, behind);
+  sample.is_seen = first <= -box && last >= box;
+  if (!sample.is_seen) return;
+
+  const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
+  const std::ptrdiff_t stride = (is_forth ? step : -step) * along;
+  const std::uint8_t* pixel = luma.data + middle * along +
+                              static_cast<int>(line) * (axis == 0 ? luma.stride : 1) +
+                              first * stride;
+  Profile profile;
+  profile.count = static_cast<std::size_t>(last - first) + 1;
+  profile.box = static_cast<std::size_t>(box);
+  profile.first = static_cast<float>(first);
+  profile.step_px = static_cast<float>(step_px);
+  profile.middle_px = static_cast<float>(slope * (middle - crossing));
+  profile.sums[0] = 0.0F;
+  for (std::size_t i = 0; i < profile.count; ++i, pixel += stride) {
+    profile.sums[i + 1] = profile.sums[i] + static_cast<float>(*pixel);
+  }
+  const double least = std::max(kMinContrast, kContrastShare * gain * sample.contrast);
+  keep_edges(profile, static_cast<float>(least), reach_px, sample);
+}
+
+}  // namespace ellipse

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/homography_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kFocalOverWidth = 0.8;  // where no camera is known
+constexpr double kAlongShare = 0.7;      // of the shift, along the optical axis
+constexpr double kSlack = 0.0015;        // of the shape, for all that is not modelled
+constexpr double kLittleSlack = 0.05;    // of its variance, of size and turn
+constexpr double kLeast = 1e-9;          // variance that is added to all
+constexpr double kMaxTurn = 0.05;        // that rings alone leave unknown [rad]
+
+// The changes of a view by a camera that turns and shifts by what is usual in a frame.
+Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
+                                          const Camera& camera,
+                                          double turn_rad,
+                                          double shift) {
+  Eigen::Matrix<double, 6, 1> sigmas;
+  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
+  return change_by_camera(image_from_pad, camera.matrix()) * sigmas.asDiagonal();
+}
+
+}  // namespace
+
+Camera usual_camera(const Eigen::Vector2d& frame_px) {
+  const auto width = static_cast<int>(frame_px.x());
+  const auto height = static_cast<int>(frame_px.y());
+  return Camera::with_hfov(2.0 * std::atan(0.5 / kFocalOverWidth), width, height);
+}
+
+HomographyCovariance inverse_of(const HomographyCovariance& matrix) {
+  return matrix.ldlt().solve(HomographyCovariance::Identity());
+}
+
+HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
+                                  const Camera& camera,
+                                  double turn_rad,
+                                  double shift) {
+  const auto changes = usual_changes(image_from_pad, camera, turn_rad, shift);
+  return changes * changes.transpose();
+}
+
+// The likeliest motion of the camera under the usual ones is what moved the view.
+HomographyChange carried(const HomographyChange& velocity,
+                         const Eigen::Matrix3d& from,
+                         const Eigen::Matrix3d& to,
+                         const Camera& camera,
+                         double turn_rad,
+                         double shift) {
+  const auto here = usual_changes(from, camera, turn_rad, shift);
+  const auto there = usual_changes(to, camera, turn_rad, shift);
+  Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
+  normal.diagonal().array() += kSlack * kSlack;
+  const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
+  return velocity + (there - here) * motion;
+}
+
+HomographyFilter HomographyFilter::after(double frames,
+                                         const HomographyCovariance& noise_per_frame) const {
+  // A white acceleration of density q gives q t^3 / 3 for the position. The half below allows for
+  // more; on real footage neither is better throughout.
+  const HomographyCovariance noise = frames * noise_per_frame;
+  HomographyFilter next;
+  next.velocity = velocity;
+  next.pose = pose + frames * (homography_velocity + homography_velocity.transpose()) +
+              frames * frames * (velocity_variance + 0.5 * noise);
+  next.homography_velocity =
+      homography_velocity + frames * velocity_variance + 0.5 * frames * noise;
+  next.velocity_variance = velocity_variance + noise;
+  const double much = kSlack * kSlack;
+  const double little = kLittleSlack * much;
+  next.pose.diagonal() +=
+      (HomographyChange() << kLeast, kLeast, little, much, much, little, much, much).finished();
+  next.pose.diagonal().array() += kLeast;
+  return next;
+}
+
+HomographyFilter HomographyFilter::corrected(const HomographyEstimate& measured) const {
+  const HomographyCovariance gain = homography_velocity.transpose() * inverse_of(pose);
+  HomographyFilter result;
+  result.pose = inverse_of(measured.information);
+  result.velocity = velocity + gain * measured.change;
+  result.homography_velocity = result.pose * gain.transpose();
+  const HomographyCovariance reduced =
+      velocity_variance - gain * (pose - result.pose) * gain.transpose();
+  result.velocity_variance = 0.5 * (reduced + reduced.transpose());
+  result.velocity_variance.diagonal().array() += 1e-12;
+  return result;
+}
+
+void HomographyFilter::leave_turn_open() {
+  velocity(5) = 0.0;
+  const double factor = std::min(1.0, kMaxTurn / std::sqrt(pose(5, 5)));
+  pose.row(5) *= factor;
+  pose.col(5) *= factor;
+}
+
+double HomographyFilter::centre_sigma() const {
+  return std::sqrt(pose(0, 0) + pose(1, 1) + pose(6, 6) + pose(7, 7) +
+                   2.0 * (pose(0, 6) + pose(1, 7)));
+}
+
+}  // namespace ellipse

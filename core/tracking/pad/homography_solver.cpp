@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/homography_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/ellipse_fit.hpp"
+
+namespace ellipse {
+const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px) {
+  const EdgeCandidate* best = nullptr;
+  for (int k = 0; k < sample.count; ++k) {
+    const EdgeCandidate& candidate = sample.candidates[static_cast<std::size_t>(k)];
+    if (best == nullptr || std::abs(candidate.distance_px - predicted_px) <
+                               std::abs(best->distance_px - predicted_px)) {
+      best = &candidate;
+    }
+  }
+  return best;
+}
+
+std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> samples,
+                                                   const HomographyPrior& prior,
+                                                   const HomographyChange& start,
+                                                   double reach_px,
+                                                   double sigma_px,
+                                                   int iterations) {
+  HomographyEstimate estimate{start, {}};
+  for (int step = 0; step < iterations; ++step) {
+    HomographyCovariance& normal = estimate.information;
+    normal = prior.information;
+    HomographyChange right = prior.information * prior.mean;
+    for (const EdgeSample& sample : samples) {
+      const double predicted = sample.predicted_px(estimate.change);
+      const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+      if (edge == nullptr) continue;
+      const double weight =
+          tukey_weight(edge->distance_px - predicted, reach_px) / (sigma_px * sigma_px);
+      if (!(weight > 0.0)) continue;
+      const HomographyChange& row = sample.view.row;
+      for (int i = 0; i < 8; ++i) normal.col(i) += weight * row(i) * row;
+      right += weight * edge->distance_px * row;
+    }
+    const Eigen::LLT<HomographyCovariance, Eigen::Lower> factors(normal);
+    if (factors.info() != Eigen::Success) return std::nullopt;
+    estimate.change = factors.solve(right);
+    if (!estimate.change.allFinite()) return std::nullopt;
+  }
+  return estimate;
+}
+
+double explained(std::span<const EdgeSample> samples,
+                 const HomographyChange& change,
+                 double reach_px) {
+  double sum = 0.0;
+  for (const EdgeSample& sample : samples) {
+    const double predicted = sample.predicted_px(change);
+    const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+    if (edge != nullptr) sum += tukey_weight(edge->distance_px - predicted, reach_px);
+  }
+  return sum;
+}
+
+HomographySupport support_of(std::span<const EdgeSample> samples,
+                             const HomographyChange& change,
+                             double tolerance_px,
+                             int circles) {
+  HomographySupport support;
+  std::array<int, 8> seen{};
+  std::array<int, 8> met{};
+  std::array<float, EdgeSearch::kMaxSamples> gains;
+  for (const EdgeSample& sample : samples) {
+    if (!sample.is_seen) continue;
+    const double predicted = sample.predicted_px(change);
+    const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+    const bool is_matched =
+        edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
+    if (is_matched) gains[static_cast<std::size_t>(support.met)] = edge->contrast / sample.contrast;
+    ++support.seen;
+    support.met += is_matched ? 1 : 0;
+    if (sample.feature >= circles) continue;
+    const auto circle = static_cast<std::size_t>(sample.feature);
+    ++seen[circle];
+    met[circle] += is_matched ? 1 : 0;
+  }
+  if (support.seen == 0) return support;
+  support.coverage = static_cast<double>(support.met) / support.seen;
+  if (seen[0] > 0) support.outline = static_cast<double>(met[0]) / seen[0];
+  support.weakest = 1.0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] >= 4) {
+      support.weakest = std::min(support.weakest, static_cast<double>(met[i]) / seen[i]);
+    }
+  }
+  if (support.met > 0) {
+    const auto middle = gains.begin() + support.met / 2;
+    std::nth_element(gains.begin(), middle, gains.begin() + support.met);
+    support.gain = *middle;
+  }
+  return support;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/outer_edge.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "core/edges/edge_refinement.hpp"
+#include "core/edges/photometric_refinement.hpp"
+#include "core/edges/thin_ring.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kMinContrast = 0.3;     // of the expected one
+constexpr double kMaximumOfStep = 48.0;  // of GradientMap's gradient, per grey level
+constexpr double kMinSupport = 0.5;      // share of the perimeter with a gradient maximum
+constexpr int kPlaces = 48;              // half of what the detector takes: each frame pays
+constexpr double kThinRingPx = 6.0;
+constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
+constexpr double kReachOfNextEdgePx = 2.0;  // its blur
+constexpr double kNearPx = 1.0;
+constexpr double kNearRelative = 0.03;
+
+Polarity polarity_of(bool is_bright_outside) {
+  return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
+}
+
+// Adds an error common to all samples [radii]; averaging does not reduce it.
+RingMatrix widened(const RingMatrix& information, double sigma) {
+  RingMatrix covariance = information.inverse();
+  covariance.diagonal().array() += sigma * sigma;
+  return covariance.inverse();
+}
+
+// The gradient maxima along a circle near its predicted image.
+std::optional<FittedEllipse> on_maxima(const ImageView& luma,
+                                       const PadView& view,
+                                       const PadCircle& circle,
+                                       double min_contrast) {
+  const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
+  if (!predicted) return std::nullopt;
+  const auto edge = refined_on_picture(luma,
+                                       *predicted,
+                                       polarity_of(circle.is_bright_outside),
+                                       kMaximumOfStep * min_contrast,
+                                       kPlaces,
+                                       view.lens);
+  if (!edge || edge->support < kMinSupport) return std::nullopt;
+  return FittedEllipse{edge->ellipse, edge->uncertainty};
+}
+
+// Blur separates the gradient maxima of a thin ring's two edges.
+std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
+                                             const PadView& view,
+                                             const PadModel& model,
+                                             double ring_px,
+                                             double min_contrast) {
+  const PadCircle& outer = model.circles.front();
+  auto exact = on_maxima(luma, view, outer, min_contrast);
+  const bool is_ring =
+      model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
+  if (!exact || !is_ring || ring_px >= kThinRingPx) return exact;
+  const auto inner = on_maxima(luma, view, model.circles[1], min_contrast);
+  if (!inner) return exact;
+  const Ellipse blurred = exact->ellipse;
+  exact->ellipse = without_repulsion({blurred, inner->ellipse}).outer;
+  const double sigma_px = kRepulsionShare * max_difference_px(exact->ellipse, blurred);
+  const double radius_px = std::sqrt(blurred.semi_major * blurred.semi_minor);
+  exact->uncertainty.information = widened(exact->uncertainty.information, sigma_px / radius_px);
+  return exact;
+}
+
+}  // namespace
+
+std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
+                                                const PadView& view,
+                                                const PadModel& model,
+                                                double gain,
+                                                Refinement refinement) {
+  const auto outer = project_circle(view.ideal_from_pad, 1.0);
+  if (!outer || refinement == Refinement::kNone) return std::nullopt;
+  const PadCircle& circle = model.circles.front();
+  const double min_contrast = kMinContrast * circle.contrast * gain;
+  const double ring_px = model.circles.size() > 1
+                             ? (1.0 - model.circles[1].radius) * outer->semi_minor
+                             : std::numeric_limits<double>::infinity();
+  std::optional<FittedEllipse> exact;
+  if (refinement == Refinement::kPhotometric && !view.lens.is_distorted()) {
+    exact = refined_photometrically(luma,
+                                    *outer,
+                                    polarity_of(circle.is_bright_outside),
+                                    ring_px - kReachOfNextEdgePx,
+                                    min_contrast);
+  }
+  if (!exact) exact = on_outer_maxima(luma, view, model, ring_px, min_contrast);
+  if (!exact) return std::nullopt;
+  const bool is_near =
+      max_difference_px(exact->ellipse, *outer) <= kNearPx + kNearRelative * outer->semi_major;
+  return is_near ? exact : std::nullopt;
+}
+
+std::optional<FittedEllipse> refined_circle(const ImageView& luma,
+                                            const PadView& view,
+                                            const PadCircle& circle,
+                                            double gain) {
+  return on_maxima(luma, view, circle, kMinContrast * circle.contrast * gain);
+}
+
+}  // namespace ellipse

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/pad_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr int kRadii = 240;
+constexpr double kFirstRadius = 0.1;
+constexpr double kRadiusStep = 0.005;
+constexpr int kAngles = 128;
+constexpr int kMinVisible = 12;         // of the angles
+constexpr int kOuterSlack = 14;         // steps to both sides of radius 1
+constexpr double kMinContrast = 6.0;    // of the outer circle [grey levels]
+constexpr double kOuterContrast = 0.6;  // of the strongest step near radius 1
+constexpr double kInnerContrast = 0.5;  // of the outer circle's
+constexpr int kApart = 5;               // steps between circles
+constexpr std::size_t kMaxCircles = 5;
+constexpr double kMinAgreement = 0.7;  // of the angles with a circle's own step
+constexpr double kUnknown = -1.0;
+
+double radius_at(int i) {
+  return kFirstRadius + i * kRadiusStep;
+}
+
+int index_of(double radius) {
+  return static_cast<int>(std::lround((radius - kFirstRadius) / kRadiusStep));
+}
+
+// Brightness around circles.
+class RadialProfile {
+ public:
+  // Both are borrowed.
+  RadialProfile(const ImageView& luma, const PadView& view) : luma_(luma), view_(view) {
+    const double size_px =
+        std::max(1.0, std::floor(view.ideal_from_pad.topLeftCorner<2, 2>().norm()));
+    half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
+    for (std::size_t k = 0; k < kAngles; ++k) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / kAngles;
+      directions_[k] = {std::cos(angle), std::sin(angle)};
+    }
+    for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
+  }
+
+  // Outside less inside, in the median over the angles; 0 where too little is seen.
+  [[nodiscard]] double step(int i) const {
+    double sum = 0.0;
+    for (int j = 1; j <= half_width_; ++j) {
+      if (i - j < 0 || i + j >= kRadii) return 0.0;
+      const double outside = *(medians_.begin() + i + j);
+      const double inside = *(medians_.begin() + i - j);
+      if (outside == kUnknown || inside == kUnknown) return 0.0;
+      sum += outside - inside;
+    }
+    return sum / half_width_;
+  }
+
+  // Share of the angles with a step of the same sign and half the size.
+  [[nodiscard]] double agreement(int i) const {
+    const double whole = step(i);
+    int seen = 0;
+    int agreed = 0;
+    for (int k = 0; k < kAngles; ++k) {
+      const float outside = level(std::min(i + half_width_, kRadii - 1), k);
+      const float inside = level(std::max(i - half_width_, 0), k);
+      if (outside < 0.0F || inside < 0.0F) continue;
+      ++seen;
+      agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
+    }
+    return seen > 0 ? static_cast<double>(agreed) / seen : 0.0;
+  }
+
+ private:
+  [[nodiscard]] float level(int i, int k) const {
+    const double radius = radius_at(i);
+    const auto seen = view_.at(radius * *(directions_.begin() + k));
+    if (!seen) return static_cast<float>(kUnknown);
+    const double x = seen->point.x();
+    const double y = seen->point.y();
+    if (!(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
+      return static_cast<float>(kUnknown);
+    }
+    return luma_.at(static_cast<float>(x), static_cast<float>(y));
+  }
+
+  [[nodiscard]] double median(int i) const {
+    std::array<float, kAngles> seen;
+    auto end = seen.begin();
+    for (int k = 0; k < kAngles; ++k) {
+      const float here = level(i, k);
+      if (here >= 0.0F) *end++ = here;
+    }
+    const auto count = end - seen.begin();
+    if (count < kMinVisible) return kUnknown;
+    std::nth_element(seen.begin(), seen.begin() + count / 2, end);
+    return seen[static_cast<std::size_t>(count / 2)];
+  }
+
+  const ImageView& luma_;
+  const PadView& view_;
+  int half_width_ = 2;
+  std::array<Eigen::Vector2d, kAngles> directions_;
+  std::array<double, kRadii> medians_;
+};
+
+}  // namespace
+
+std::optional<PadModel> learn_circles(const ImageView& luma,
+                                      const PadView& view,
+                                      double ring_ratio) {
+  const RadialProfile profile(luma, view);
+  const auto strength = [&](int i) { return std::abs(profile.step(i)); };
+  const auto is_peak = [&](int i) {
+    bool is_highest = true;
+    for (int j = 1; j <= kApart && is_highest; ++j) {
+      is_highest = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
+    }
+    return is_highest;
+  };
+  const int one = index_of(1.0);
+  double strongest = 0.0;
+  for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
+    strongest = std::max(strongest, strength(i));
+  }
+  if (strongest < kMinContrast) return std::nullopt;
+  // The other edge of a thin ring may be as strong.
+  const auto is_outer = [&](int i) {
+    return strength(i) >= kOuterContrast * strongest && is_peak(i);
+  };
+  int outer = one;
+  for (int off = 0; off <= kOuterSlack && !is_outer(outer); ++off) {
+    outer = is_outer(one + off) ? one + off : one - off;
+  }
+  if (!is_outer(outer)) return std::nullopt;
+
+  PadModel model;
+  const auto add = [&](int i) {
+    model.circles.push_back({radius_at(i) / radius_at(outer), profile.step(i) > 0.0, strength(i)});
+  };
+  add(outer);
+  if (ring_ratio > 0.0) {
+    const PadCircle& edge = model.circles.front();
+    model.circles.push_back({ring_ratio, !edge.is_bright_outside, edge.contrast, true});
+  }
+  const int last = index_of(model.circles.back().radius * radius_at(outer));
+  for (int i = last - kApart; i >= kApart && model.circles.size() < kMaxCircles; --i) {
+    const bool is_strong = strength(i) >= kInnerContrast * strength(outer);
+    if (is_strong && is_peak(i) && profile.agreement(i) >= kMinAgreement) add(i);
+  }
+  return model;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/pad_tracker.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "core/camera/circle_pose.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/tracking/pad/coarse_search.hpp"
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kTurnNoise = 0.002;    // of the camera, per frame [rad]
+constexpr double kShiftNoise = 0.0015;  // [radii]
+constexpr double kFirstTurn = 0.03;     // a velocity that is not known yet
+constexpr double kFirstShift = 0.05;
+constexpr double kUsualShare = 0.35;  // of the expected motion
+constexpr double kSurpriseRate = 0.25;
+constexpr double kMinRatio = 0.5;  // by which one frame calms it down
+constexpr double kMinSurprise = 0.25;
+constexpr double kMaxSurprise = 64.0;
+constexpr double kEdgeSigmaPx = 0.6;
+constexpr int kFineSamples = 72;
+constexpr int kWideSamples = 128;
+constexpr double kNearReachPx = 4.0;
+constexpr double kNearMaxPx = 12.0;
+constexpr double kFineReachPx = 3.5;
+constexpr double kSmallChangePx = 1.0;  // the edges' normals are the same still
+constexpr double kTolerancePx = 1.2;
+constexpr double kToleranceRelative = 0.012;  // of the radius: crumpled pads
+constexpr double kNearCoverage = 0.7;
+constexpr double kWideCoverage = 0.6;
+constexpr double kWeakestCircle = 0.5;
+constexpr int kMinMatched = 10;
+constexpr double kLockCoverage = 0.7;
+constexpr int kMaxMisses = 12;
+constexpr int kHypotheses = 40;
+constexpr int kLockSteps = 3;
+constexpr double kLearningShare = 0.2;  // of what a frame tells of the radii
+constexpr double kMinVisibleToLearn = 0.4;
+constexpr double kMinRadiusToLearnPx = 24.0;
+constexpr double kGrowthToLearn = 1.4;
+constexpr double kVisibleToLearnLines = 0.6;
+constexpr double kCoverageToLearn = 0.8;
+constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
+constexpr int kTrialsOfLine = 6;
+constexpr double kMinMatchedOfLine = 0.5;
+constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
+constexpr double kMaxCentreSigma = 0.025;  // [radii], where less is visible
+constexpr double kPatternCoverage = 0.75;
+constexpr double kMinVisibleToRefine = 0.3;
+
+Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
+  Eigen::Matrix3d result = view;
+  result.topRows<2>() += by_px * view.row(2);
+  return result;
+}
+
+PadView seen_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
+  return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
+}
+
+// How far a change moves the edges.
+double rms_px(std::span<const EdgeSample> samples, const HomographyChange& change) {
+  double sum = 0.0;
+  for (const EdgeSample& sample : samples) sum += std::pow(sample.predicted_px(change), 2);
+  return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
+double tolerance_px(double radius_px) {
+  return kTolerancePx + kToleranceRelative * radius_px;
+}
+
+}  // namespace
+
+double PadTracker::radius_px() const {
+  return PadView(view_, lens_).radius_px();
+}
+
+// The outer edge leaves open which way a pad is tilted. Along a wrong view the profile smears the
+// inner circles over several radii: with a camera, the view that shows the sharpest ones is the
+// start.
+bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) {
+  std::array<Eigen::Matrix3d, 3> views;
+  std::size_t count = 0;
+  views[count++] = image_from_pad(outer_edge);
+  const auto poses = window.camera ? circle_poses(camera_, outer_edge) : std::nullopt;
+  if (poses) {
+    for (const CirclePose& pose : *poses) {
+      const Eigen::Matrix3d view = image_from_pad(camera_, pose);
+      views[count++] = view / view(2, 2);
+    }
+  }
+  double most = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto model = learn_circles(window.luma, seen_in(window, views[i]), ring_ratio_);
+    if (!model) continue;
+    double contrast = 0.0;
+    for (const PadCircle& circle : model->circles) contrast += circle.contrast;
+    if (contrast <= most) continue;
+    most = contrast;
+    model_ = std::move(*model);
+    view_ = views[i];
+  }
+  return most > 0.0;
+}
+
+bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
+  is_locked_ = false;
+  refined_.reset();
+  inner_count_ = 0;
+  camera_ = window.camera.value_or(usual_camera(window.frame_px));
+  lens_ = window.lens;
+  if (!learn_pad(window, outer_edge)) return false;
+  line_learner_.reserve(model_);
+  line_learner_.start();
+  gain_ = 1.0;
+  surprise_ = 1.0;
+  misses_ = 0;
+  learned_radius_px_ = 0.0;
+  motion_ = {};
+  motion_.pose.diagonal() << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6, 1e-4, 1e-4;
+  std::optional<Attempt> attempt;
+  for (int step = 0; step < kLockSteps; ++step) {
+    attempt = look_near(window, view_, motion_.pose);
+    if (!attempt) return false;
+    view_ = attempt->view;
+    learn_radii(attempt->last, 1.0);
+  }
+  if (attempt->support.coverage < kLockCoverage) return false;
+  motion_.pose = inverse_of(attempt->estimate.information);
+  motion_.velocity_variance = camera_noise(view_, camera_, kFirstTurn, kFirstShift);
+  is_locked_ = true;
+  if (window.camera) {
+    refine(window, attempt->visible);
+    measure_inner_edges(window);
+  }
+  return true;
+}
+
+HomographyFilter PadTracker::predicted(double frames, double looseness) const {
+  return motion_.after(
+      frames, surprise_ * looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
+}
+
+// From a change that is about right: all edges again, near it.
+std::optional<PadTracker::Attempt> PadTracker::finish(const LumaWindow& window,
+                                                      const Eigen::Matrix3d& start,
+                                                      const HomographyPrior& prior,
+                                                      const HomographyChange& change,
+                                                      double reach_px) {
+  const Eigen::Matrix3d view = moved(start, change);
+  search_.place(model_, seen_in(window, view), window.luma, kFineSamples);
+  if (search_.samples().size() < kMinMatched) return std::nullopt;
+  search_.look(window.luma, gain_, reach_px);
+  const HomographyPrior here{prior.mean - change, prior.information};
+  const auto estimate = solve_homography(
+      search_.samples(), here, HomographyChange::Zero(), reach_px, kEdgeSigmaPx, 3);
+  if (!estimate) return std::nullopt;
+  return attempt_of(view, {change + estimate->change, estimate->information}, estimate->change);
+}
+
+PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
+                                           const HomographyEstimate& estimate,
+                                           const HomographyChange& last) const {
+  const double radius = radius_px();
+  return {
+      moved(view, last),
+      estimate,
+      last,
+      support_of(
+          search_.samples(), last, tolerance_px(radius), static_cast<int>(model_.circles.size())),
+      search_.visible_fraction()};
+}
+
+// Where the prediction is good, one look tells all.
+std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& window,
+                                                         const Eigen::Matrix3d& start,
+                                                         const HomographyCovariance& covariance) {
+  const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
+  search_.place(model_, seen_in(window, start), window.luma, kFineSamples);
+  if (search_.samples().size() < kMinMatched) return std::nullopt;
+  search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMaxPx);
+  auto estimate = solve_homography(
+      search_.samples(), prior, HomographyChange::Zero(), kNearMaxPx, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  estimate =
+      solve_homography(search_.samples(), prior, estimate->change, kFineReachPx, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  std::optional<Attempt> attempt;
+  if (rms_px(search_.samples(), estimate->change) <= kSmallChangePx) {
+    attempt = attempt_of(start, *estimate, estimate->change);
+  } else {
+    attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+  }
+  if (attempt) last_coverage_ = attempt->support.coverage;
+  const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
+                       attempt->support.weakest >= kWeakestCircle &&
+                       attempt->support.met >= kMinMatched;
+  return is_good ? attempt : std::nullopt;
+}
+
+// Edges of other things are in reach as well: several hypotheses, each from four edges and what is
+// known of the motion, the best of which is refined.
+std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& window,
+                                                         const Eigen::Matrix3d& start,
+                                                         const HomographyCovariance& covariance,
+                                                         double reach_px) {
+  const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
+  search_.place(model_, seen_in(window, start), window.luma, kWideSamples);
+  const auto samples = search_.samples();
+  if (samples.size() < kMinMatched) return std::nullopt;
+  search_.look(window.luma, gain_, reach_px);
+  const double fit_px = std::max(3.0, 0.06 * radius_px());
+
+  HomographyChange best = HomographyChange::Zero();
+  double most = explained(samples, best, fit_px);
+  const auto consider = [&](const std::optional<HomographyEstimate>& estimate) {
+    if (!estimate) return;
+    const double score = explained(samples, estimate->change, fit_px);
+    if (score <= most) return;
+    most = score;
+    best = estimate->change;
+  };
+  consider(solve_homography(samples, prior, HomographyChange::Zero(), reach_px, kEdgeSigmaPx, 3));
+  std::uint32_t state = 12345;  // the same hypotheses for the same frame
+  const auto random = [&](std::size_t n) {
+    state ^= state << 13;
+    state ^= state >> 17;
+    state ^= state << 5;
+    return static_cast<std::size_t>(state >> 8) % n;
+  };
+  std::array<EdgeSample, 4> few;
+  const std::size_t n = samples.size();
+  for (int i = 0; i < kHypotheses; ++i) {
+    const std::size_t first = random(n);
+    for (std::size_t k = 0; k < few.size(); ++k) {
+      few[k] = samples[(first + k * n / few.size() + random(n / few.size() + 1)) % n];
+      if (few[k].count == 0) continue;
+      few[k].candidates[0] = few[k].candidates[random(static_cast<std::size_t>(few[k].count))];
+      few[k].count = 1;
+    }
+    consider(solve_homography(few, prior, best, 3.0 * reach_px, 2.0 * kEdgeSigmaPx, 1));
+  }
+  auto estimate = solve_homography(samples, prior, best, 2.0 * fit_px, kEdgeSigmaPx, 2);
+  if (estimate)
+    estimate = solve_homography(samples, prior, estimate->change, fit_px, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  auto attempt = finish(window, start, prior, estimate->change, std::max(4.0, 0.03 * radius_px()));
+  if (attempt) {
+    attempt = finish(window, start, prior, attempt->estimate.change, kFineReachPx);
+  }
+  const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
+                       attempt->support.weakest >= kWeakestCircle &&
+                       attempt->support.met >= kMinMatched;
+  return is_good ? attempt : std::nullopt;
+}
+
+std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double frames) {
+  if (!is_locked_) return std::nullopt;
+  camera_ = window.camera.value_or(usual_camera(window.frame_px));
+  lens_ = window.lens;
+  refined_.reset();
+  inner_count_ = 0;
+  const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
+  last_coverage_ = 0.0;
+  HomographyFilter before = predicted(frames, 1.0 + 0.5 * misses_);
+  auto attempt = look_near(window, prediction, before.pose);
+  if (!attempt) {
+    before = predicted(frames, 400.0);
+    const double reach_px = std::max(8.0, 0.16 * radius_px());
+    attempt = look_wide(window, prediction, before.pose, reach_px);
+    if (!attempt) {
+      const auto coarse = coarse_search(window.luma, model_, seen_in(window, prediction));
+      if (coarse) {
+        HomographyCovariance loose = HomographyCovariance::Zero();
+        loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
+        attempt = look_wide(
+            window, shifted(*coarse, window.origin_px), loose, std::max(8.0, 0.12 * radius_px()));
+        if (attempt) {
+          // The whole change, from the prediction.
+          const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
+          attempt->estimate.change = change_of(between / std::cbrt(between.determinant()));
+          before.pose += loose;
+          before.homography_velocity += loose;
+          before.velocity_variance += loose;
+        }
+      }
+    }
+  }
+  if (!attempt) {
+    miss(prediction, before);
+    return is_locked_ ? told(nullptr) : std::nullopt;
+  }
+  const Eigen::Matrix3d last_view = view_;
+  accept(*attempt, before);
+  refine(window, attempt->visible);
+  if (window.camera) measure_inner_edges(window);
+  motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
+  learn_lines(window, *attempt);
+  return told(&*attempt);
+}
+
+void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before) {
+  motion_ = before.corrected(attempt.estimate);
+  if (model_.lines.empty()) motion_.leave_turn_open();  // rings look the same from all sides
+  // How far the edges moved, over how far they were expected to.
+  double moved_px = 0.0;
+  double expected_px = 0.0;
+  for (const EdgeSample& sample : search_.samples()) {
+    moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
+    expected_px += sample.view.row.dot(before.pose * sample.view.row);
+  }
+  if (expected_px > 0.0) {
+    const double ratio =
+        std::clamp(moved_px / (kUsualShare * expected_px), kMinRatio, kMaxSurprise);
+    surprise_ = std::clamp(surprise_ * std::pow(ratio, kSurpriseRate), kMinSurprise, kMaxSurprise);
+  }
+  gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
+  judge_lines(attempt.last);
+  if (attempt.visible >= kMinVisibleToLearn) learn_radii(attempt.last, kLearningShare);
+  view_ = attempt.view;
+  misses_ = 0;
+}
+
+// The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
+void PadTracker::refine(const LumaWindow& window, double visible) {
+  if (visible < kMinVisibleToRefine) return;
+  const auto exact =
+      refined_outer_edge(window.luma, seen_in(window, view_), model_, gain_, refinement_);
+  if (!exact) return;
+  const auto view = with_outer_edge(
+      view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
+  if (!view) return;
+  view_ = *view;
+  refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
+}
+
+void PadTracker::measure_inner_edges(const LumaWindow& window) {
+  if (!refined_) return;
+  const PadView view = seen_in(window, view_);
+  for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
+    const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_);
+    if (!edge) continue;
+    inner_edges_[inner_count_++] = {
+        translated(edge->ellipse, window.origin_px.x(), window.origin_px.y()),
+        {shifted(edge->uncertainty.view, window.origin_px), edge->uncertainty.information}};
+  }
+}
+
+// The outer circle is the unit; where the others are met tells their radii.
+void PadTracker::learn_radii(const HomographyChange& change, double share) {
+  for (std::size_t i = 1; i < model_.circles.size(); ++i) {
+    PadCircle& circle = model_.circles[i];
+    if (circle.is_given) continue;
+    const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+    double sum = 0.0;
+    double weights = 0.0;
+    for (const EdgeSample& sample : search_.samples()) {
+      if (sample.feature != static_cast<int>(i)) continue;
+      const EdgeCandidate* edge = nearest_candidate(sample, sample.predicted_px(change));
+      if (edge == nullptr) continue;
+      const double beside_px = edge->distance_px - sample.predicted_px(change);
+      const double px = sample.view.px_per_unit;
+      const double weight = tukey_weight(beside_px, kFineReachPx) * px * px;
+      sum += weight * sign * beside_px / px;
+      weights += weight;
+    }
+    if (weights > 0.0) circle.radius += share * sum / weights;
+  }
+}
+
+// The larger the pad, the finer its lines: they are learned anew as it grows.
+void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
+  const double radius = radius_px();
+  const bool is_time =
+      radius >= kMinRadiusToLearnPx && radius >= kGrowthToLearn * learned_radius_px_;
+  if (!is_time || attempt.visible < kVisibleToLearnLines ||
+      attempt.support.coverage < kCoverageToLearn) {
+    return;
+  }
+  line_learner_.take(window.luma, seen_in(window, view_));
+  if (!line_learner_.is_ready()) return;
+  line_learner_.learn(model_);
+  line_learner_.start();
+  learned_radius_px_ = radius;
+  motion_.pose(5, 5) += kTurnOfLearnedLines * kTurnOfLearnedLines;
+}
+
+// A line that is often missed is none of the pad's: a shadow, an occluder.
+void PadTracker::judge_lines(const HomographyChange& change) {
+  const auto circles = static_cast<int>(model_.circles.size());
+  const auto samples = search_.samples();
+  for (std::size_t begin = 0; begin < samples.size();) {
+    const int feature = samples[begin].feature;
+    std::size_t end = begin;
+    int seen = 0;
+    int met = 0;
+    for (; end < samples.size() && samples[end].feature == feature; ++end) {
+      const double predicted = samples[end].predicted_px(change);
+      const EdgeCandidate* edge = nearest_candidate(samples[end], predicted);
+      seen += samples[end].is_seen ? 1 : 0;
+      met += edge != nullptr && std::abs(edge->distance_px - predicted) <= kTolerancePx ? 1 : 0;
+    }
+    begin = end;
+    if (feature < circles || seen < 2) continue;
+    PadLine& line = model_.lines[static_cast<std::size_t>(feature - circles)];
+    ++line.seen;
+    line.met += 2 * met >= seen ? 1 : 0;
+  }
+  std::erase_if(model_.lines, [](const PadLine& line) {
+    return line.seen >= kTrialsOfLine && line.met < kMinMatchedOfLine * line.seen;
+  });
+}
+
+void PadTracker::miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before) {
+  view_ = prediction;
+  motion_ = before;
+  motion_.velocity *= 0.8;
+  if (++misses_ > kMaxMisses) is_locked_ = false;
+}
+
+std::optional<EdgeTrack> PadTracker::told(const Attempt* attempt) const {
+  const auto ellipse = project_circle(view_, 1.0);
+  if (!ellipse) return std::nullopt;
+  EdgeTrack track;
+  track.ellipse = *ellipse;
+  track.coverage = last_coverage_;
+  if (attempt == nullptr) return track;
+  track.coverage = attempt->support.coverage;
+  track.outline = attempt->support.outline;
+  track.visible = attempt->visible;
+  track.is_seen = track.visible >= kEnoughVisible ||
+                  (motion_.centre_sigma() <= kMaxCentreSigma && track.coverage >= kPatternCoverage);
+  return track;
+}
+
+RingUncertainty PadTracker::uncertainty() const {
+  if (refined_) return *refined_;
+  return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
+}
+
+Rect PadTracker::region_after(double frames, int width, int height) const {
+  const Rect frame{0, 0, width, height};
+  const auto ideal = project_circle(moved(view_, frames * motion_.velocity), 1.0);
+  const auto ellipse = ideal ? bent(lens_, *ideal) : std::nullopt;
+  if (!ellipse) return frame;
+  const Eigen::Vector2d half = half_extent(*ellipse);
+  const double margin = 1.3 * ellipse->semi_major + 16.0;
+  const double left = std::floor(ellipse->cx - half.x() - margin);
+  const double top = std::floor(ellipse->cy - half.y() - margin);
+  const double right = std::ceil(ellipse->cx + half.x() + margin);
+  const double bottom = std::ceil(ellipse->cy + half.y() + margin);
+  const auto clamped = [](double v, int high) {
+    return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(high)));
+  };
+  const int x = clamped(left, width);
+  const int y = clamped(top, height);
+  return intersect({x, y, clamped(right, width) - x, clamped(bottom, height) - y}, frame);
+}
+
+}  // namespace ellipse

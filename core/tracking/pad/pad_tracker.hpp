@@ -1,0 +1,133 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "core/camera/camera.hpp"
+#include "core/camera/lens_view.hpp"
+#include "core/geometry/homography.hpp"
+#include "core/image/image_view.hpp"
+#include "core/tracking/pad/edge_search.hpp"
+#include "core/tracking/pad/homography_filter.hpp"
+#include "core/tracking/pad/homography_solver.hpp"
+#include "core/tracking/pad/line_learner.hpp"
+#include "core/tracking/pad/outer_edge.hpp"
+#include "core/tracking/pad/pad_model.hpp"
+
+namespace ellipse {
+
+/// The luma of a part of a frame.
+struct LumaWindow {
+  ImageView luma;
+  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
+  Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
+  LensView lens{};                      ///< Of whole frames; its camera outlives the tracking.
+  std::optional<Camera> camera{};       ///< Where it is known.
+};
+
+/// What one frame told.
+struct EdgeTrack {
+  Ellipse ellipse;        ///< The outer circle [px of the frame's ideal plane].
+  double coverage = 0.0;  ///< Share of the pad's edges in view that were matched.
+  double outline = 0.0;   ///< The same of its outer edge alone.
+  double visible = 0.0;   ///< Share of the outer circle inside the frame.
+  bool is_seen = false;   ///< Else its motion was continued.
+};
+
+/// Follows a pad by its edges: predicts its view, looks for each edge along its normal, and solves
+/// for the change of the view that explains them best, given what is known of its motion.
+///
+/// First near the prediction; if that fails, farther away, with several hypotheses; then on a
+/// coarse picture of the surroundings. One object follows one pad, on one thread. Deterministic.
+/// Allocates only while it locks.
+class PadTracker {
+ public:
+  /// Learns a pad from its outer edge. Whether its own edges confirm it.
+  [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
+
+  /// @param frames  Time since the last call, in thirtieths of a second.
+  /// nullopt where the pad is lost.
+  [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
+
+  /// @param refinement  Of the outer edge in each frame, which the view is then laid upon.
+  /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
+  void configure(Refinement refinement, double ring_ratio) {
+    refinement_ = refinement;
+    ring_ratio_ = ring_ratio;
+  }
+
+  [[nodiscard]] bool is_locked() const { return is_locked_; }
+
+  /// How well the outer edge is known in the last frame: by its refinement, else by all edges and
+  /// the motion.
+  [[nodiscard]] RingUncertainty uncertainty() const;
+  /// The circles inside the outer edge as the last frame showed them [px of its ideal plane]. Empty
+  /// without a camera, and where they were not measured. Until the next call.
+  [[nodiscard]] std::span<const FittedEllipse> inner_edges() const {
+    return {inner_edges_.data(), inner_count_};
+  }
+  void release() { is_locked_ = false; }
+
+  /// What the next frame must show for track() to look everywhere it may want to [px].
+  [[nodiscard]] Rect region_after(double frames, int width, int height) const;
+
+ private:
+  struct Attempt {
+    Eigen::Matrix3d view;
+    HomographyEstimate estimate;  // of the whole change from the prediction
+    HomographyChange last;        // change, since the samples were placed
+    HomographySupport support;
+    double visible = 0.0;
+  };
+
+  [[nodiscard]] HomographyFilter predicted(double frames, double looseness) const;
+  [[nodiscard]] std::optional<Attempt> look_near(const LumaWindow& window,
+                                                 const Eigen::Matrix3d& start,
+                                                 const HomographyCovariance& covariance);
+  [[nodiscard]] std::optional<Attempt> look_wide(const LumaWindow& window,
+                                                 const Eigen::Matrix3d& start,
+                                                 const HomographyCovariance& covariance,
+                                                 double reach_px);
+  [[nodiscard]] std::optional<Attempt> finish(const LumaWindow& window,
+                                              const Eigen::Matrix3d& start,
+                                              const HomographyPrior& prior,
+                                              const HomographyChange& change,
+                                              double reach_px);
+  [[nodiscard]] Attempt attempt_of(const Eigen::Matrix3d& view,
+                                   const HomographyEstimate& estimate,
+                                   const HomographyChange& last) const;
+  void accept(const Attempt& attempt, const HomographyFilter& before);
+  void refine(const LumaWindow& window, double visible);
+  void measure_inner_edges(const LumaWindow& window);
+  [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
+  void learn_radii(const HomographyChange& change, double share);
+  void learn_lines(const LumaWindow& window, const Attempt& attempt);
+  void judge_lines(const HomographyChange& change);
+  void miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before);
+  [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
+  [[nodiscard]] double radius_px() const;
+
+  std::optional<RingUncertainty> refined_;  // of the last frame
+  Refinement refinement_ = Refinement::kEdges;
+  double ring_ratio_ = 0.0;
+  PadModel model_;
+  EdgeSearch search_;
+  LineLearner line_learner_;
+  double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
+  Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
+  HomographyFilter motion_;
+  std::array<FittedEllipse, 2> inner_edges_;
+  std::size_t inner_count_ = 0;
+  Camera camera_;
+  LensView lens_;
+  double surprise_ = 1.0;  // of the motion, against its noise
+  double gain_ = 1.0;      // of the picture's contrast over the model's
+  int misses_ = 0;
+  double last_coverage_ = 0.0;  // near the prediction
+  bool is_locked_ = false;
+};
+
+}  // namespace ellipse

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/visible_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+// Found by experiment, see docs/provenance.md.
+constexpr double kMarginPx = 3.0;  // from the border
+constexpr double kFarPx = 1e6;
+constexpr int kBorderSteps = 8;  // of each side of the picture, by which a bent one is told
+constexpr int kHalvings = 6;     // by which the rest of a line is told
+
+// A rectangle of the ideal plane.
+struct IdealRect {
+  double left;
+  double top;
+  double right;
+  double bottom;
+};
+
+// All of it is inside the picture. Where the lens bends the picture's border, it is the part that
+// no side cuts.
+IdealRect inner_rect(const LensView& lens, double right, double bottom) {
+  if (!lens.is_distorted()) return {kMarginPx, kMarginPx, right, bottom};
+  IdealRect rect{-kFarPx, -kFarPx, kFarPx, kFarPx};
+  for (int i = 0; i <= kBorderSteps; ++i) {
+    const double at = static_cast<double>(i) / kBorderSteps;
+    const double x = std::lerp(kMarginPx, right, at);
+    const double y = std::lerp(kMarginPx, bottom, at);
+    // What the lens maps from nowhere is NaN, which no comparison takes.
+    rect.left = std::max(rect.left, lens.near_ideal({kMarginPx, y}).x());
+    rect.right = std::min(rect.right, lens.near_ideal({right, y}).x());
+    rect.top = std::max(rect.top, lens.near_ideal({x, kMarginPx}).y());
+    rect.bottom = std::min(rect.bottom, lens.near_ideal({x, bottom}).y());
+  }
+  return rect;
+}
+
+}  // namespace
+
+VisiblePart::VisiblePart(const PadView& view, const ImageView& luma)
+    : view_(view), right_px_(luma.width - 1 - kMarginPx), bottom_px_(luma.height - 1 - kMarginPx) {
+  const IdealRect rect = inner_rect(view.lens, right_px_, bottom_px_);
+  const Eigen::Matrix3d& h = view.ideal_from_pad;
+  borders_.row(0) = h.row(0) - rect.left * h.row(2);
+  borders_.row(1) = rect.right * h.row(2) - h.row(0);
+  borders_.row(2) = h.row(1) - rect.top * h.row(2);
+  borders_.row(3) = rect.bottom * h.row(2) - h.row(1);
+}
+
+bool VisiblePart::is_let_in(const Eigen::Vector2d& place) const {
+  const auto seen = view_.at(place);
+  return seen && seen->point.x() >= kMarginPx && seen->point.y() >= kMarginPx &&
+         seen->point.x() <= right_px_ && seen->point.y() <= bottom_px_;
+}
+
+Interval VisiblePart::clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
+  Interval part{0.0, 1.0};
+  for (int i = 0; i < 4; ++i) {
+    const double begin = borders_.row(i).head<2>().dot(from) + borders_(i, 2);
+    const double end = borders_.row(i).head<2>().dot(to) + borders_(i, 2);
+    if (begin < 0.0 && end < 0.0) return {0.0, 0.0};
+    if (begin < 0.0) part.begin = std::max(part.begin, begin / (begin - end));
+    if (end < 0.0) part.end = std::min(part.end, begin / (begin - end));
+  }
+  if (!view_.lens.is_distorted() || !(part.begin < part.end)) return part;
+  return {farthest(from, to, part.begin, 0.0), farthest(from, to, part.end, 1.0)};
+}
+
+// From a place of a line that is inside towards one of its ends, as far as the lens shows it.
+double VisiblePart::farthest(const Eigen::Vector2d& from,
+                             const Eigen::Vector2d& to,
+                             double inside,
+                             double end) const {
+  if (inside == end || has(from + end * (to - from))) return end;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (inside + end);
+    (has(from + middle * (to - from)) ? inside : end) = middle;
+  }
+  return inside;
+}
+
+}  // namespace ellipse

@@ -1,0 +1,40 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <Eigen/Core>
+
+#include "core/geometry/ellipse.hpp"
+#include "core/image/image_view.hpp"
+#include "core/tracking/pad/pad_view.hpp"
+
+namespace ellipse {
+
+/// The part of a pad's plane that a picture shows, but for what lies near its border. Borrows the
+/// view. Allocates nothing.
+class VisiblePart {
+ public:
+  VisiblePart(const PadView& view, const ImageView& luma);
+
+  [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
+    const bool is_within =
+        ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
+    return is_within || (view_.lens.is_distorted() && is_let_in(place));
+  }
+
+  /// The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
+  /// Through a lens within a hundredth or so, and empty where only the border's bend lets it in.
+  [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
+
+ private:
+  [[nodiscard]] bool is_let_in(const Eigen::Vector2d& place) const;
+  [[nodiscard]] double farthest(const Eigen::Vector2d& from,
+                                const Eigen::Vector2d& to,
+                                double inside,
+                                double end) const;
+
+  const PadView& view_;
+  double right_px_;  // of the last column that counts
+  double bottom_px_;
+  Eigen::Matrix<double, 4, 3> borders_;  // inside where b . (x, y, 1) >= 0 for all four
+};
+
+}  // namespace ellipse

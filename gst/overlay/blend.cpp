@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "gst/overlay/blend.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace {
+
+// What a component of the frame gets of red, green and blue, each 0 to 255, and of opacity.
+struct Mix {
+  float red = 0.0F;
+  float green = 0.0F;
+  float blue = 0.0F;
+  float offset = 0.0F;
+};
+using Mixes = std::array<Mix, 4>;
+
+Mixes rgb_mixes() {
+  return {Mix{.red = 1.0F}, Mix{.green = 1.0F}, Mix{.blue = 1.0F}, Mix{.offset = 255.0F}};
+}
+
+Mix mix_of(double scale, double red, double green, double blue, int offset) {
+  return {static_cast<float>(scale * red),
+          static_cast<float>(scale * green),
+          static_cast<float>(scale * blue),
+          static_cast<float>(offset)};
+}
+
+Mixes yuv_mixes(const GstVideoInfo& info) {
+  double kr = 0.299;  // [BT601], where the caps do not say
+  double kb = 0.114;
+  gst_video_color_matrix_get_Kr_Kb(info.colorimetry.matrix, &kr, &kb);
+  const double kg = 1.0 - kr - kb;
+  gint offset[GST_VIDEO_MAX_COMPONENTS];
+  gint scale[GST_VIDEO_MAX_COMPONENTS];
+  gst_video_color_range_offsets(info.colorimetry.range, info.finfo, offset, scale);
+  const double y = scale[0] / 255.0;
+  const double u = 0.5 * scale[1] / 255.0 / (1.0 - kb);
+  const double v = 0.5 * scale[2] / 255.0 / (1.0 - kr);
+  return {mix_of(y, kr, kg, kb, offset[0]),
+          mix_of(u, -kr, -kg, 1.0 - kb, offset[1]),
+          mix_of(v, 1.0 - kr, -kg, -kb, offset[2])};
+}
+
+// The sum of some premultiplied pixels.
+struct Sum {
+  int red = 0;
+  int green = 0;
+  int blue = 0;
+  int alpha = 0;
+
+  void add(std::uint32_t pixel) {
+    red += static_cast<int>(pixel >> 16U & 0xffU);
+    green += static_cast<int>(pixel >> 8U & 0xffU);
+    blue += static_cast<int>(pixel & 0xffU);
+    alpha += static_cast<int>(pixel >> 24U);
+  }
+};
+
+guint8 mixed(guint8 sample, const Mix& mix, const Sum& sum, int pixels) {
+  const auto under = static_cast<float>(sample);
+  const float alpha = static_cast<float>(sum.alpha) * (1.0F / 255.0F);
+  const float over = mix.red * static_cast<float>(sum.red) +
+                     mix.green * static_cast<float>(sum.green) +
+                     mix.blue * static_cast<float>(sum.blue);
+  const float level = under + (over + (mix.offset - under) * alpha) / static_cast<float>(pixels);
+  // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
+}
+
+// The samples of one component, each of which a block of pixels shares.
+class Plane {
+ public:
+  Plane(GstVideoFrame& frame, guint component)
+      : x_shift_(GST_VIDEO_FORMAT_INFO_W_SUB(frame.info.finfo, component)),
+        y_shift_(GST_VIDEO_FORMAT_INFO_H_SUB(frame.info.finfo, component)),
+        data_(static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, component))),
+        stride_(GST_VIDEO_FRAME_COMP_STRIDE(&frame, component)),
+        pixel_stride_(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component)) {}
+
+  void blend(const Canvas& canvas, const Mix& mix) const {
+    for (const auto& tile : canvas.tiles()) {
+      const int rows = std::min(Canvas::kTileSize, canvas.height() - tile->y);
+      for (int row = 0; row < rows; row += 1 << y_shift_) {
+        blend_row(*tile, row, std::min(rows, row + (1 << y_shift_)), canvas.width(), mix);
+      }
+    }
+  }
+
+ private:
+  void blend_row(const Canvas::Tile& tile, int top, int bottom, int width, const Mix& mix) const {
+    Canvas::Span span;
+    for (int row = top; row < bottom; ++row) span.add(tile.drawn[static_cast<std::size_t>(row)]);
+    const int columns = std::min(Canvas::kTileSize, width - tile.x);
+    guint8* samples = data_ + std::ptrdiff_t{(tile.y + top) >> y_shift_} * stride_;
+    for (int left = span.begin >> x_shift_ << x_shift_; left < span.end; left += 1 << x_shift_) {
+      const int right = std::min(columns, left + (1 << x_shift_));
+      Sum sum;
+      for (int row = top; row < bottom; ++row) {
+        for (int column = left; column < right; ++column) {
+          sum.add(tile.pixels[Canvas::Tile::index(column, row)]);
+        }
+      }
+      if (sum.alpha == 0) continue;
+      guint8& sample = samples[std::ptrdiff_t{(tile.x + left) >> x_shift_} * pixel_stride_];
+      sample = mixed(sample, mix, sum, (bottom - top) * (right - left));
+    }
+  }
+
+  guint x_shift_;
+  guint y_shift_;
+  guint8* data_;
+  std::ptrdiff_t stride_;
+  std::ptrdiff_t pixel_stride_;
+};
+
+}  // namespace
+
+void blend(const Canvas& canvas, GstVideoFrame& frame) {
+  const GstVideoFormatInfo* format = frame.info.finfo;
+  const Mixes mixes = GST_VIDEO_FORMAT_INFO_IS_RGB(format) ? rgb_mixes() : yuv_mixes(frame.info);
+  for (guint i = 0; i < GST_VIDEO_FORMAT_INFO_N_COMPONENTS(format); ++i) {
+    Plane(frame, i).blend(canvas, mixes[i]);
+  }
+}

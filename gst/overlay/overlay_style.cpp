@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "gst/overlay/overlay_style.hpp"
+
+GType gst_ellipse_overlay_flags_get_type(void) {
+  static const GFlagsValue kValues[] = {
+      {GST_ELLIPSE_OVERLAY_NONE, "Nothing", "none"},
+      {GST_ELLIPSE_OVERLAY_ELLIPSE, "The ellipse", "ellipse"},
+      {GST_ELLIPSE_OVERLAY_AXES, "Its axes", "axes"},
+      {GST_ELLIPSE_OVERLAY_CENTRE, "A cross at its centre", "centre"},
+      {GST_ELLIPSE_OVERLAY_ROI, "The region that was searched", "roi"},
+      {GST_ELLIPSE_OVERLAY_LABEL, "Its id, state and full axes", "label"},
+      {0, nullptr, nullptr},
+  };
+  static const GType kType = g_flags_register_static("GstEllipseOverlayFlags", kValues);
+  return kType;
+}
+
+void install_overlay_properties(GObjectClass* object_class,
+                                guint first_id,
+                                GstEllipseOverlayFlags default_parts) {
+  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                              GST_PARAM_MUTABLE_PLAYING);
+  g_object_class_install_property(object_class,
+                                  first_id,
+                                  g_param_spec_flags("overlay",
+                                                     "Overlay",
+                                                     "What is drawn into the picture",
+                                                     GST_TYPE_ELLIPSE_OVERLAY_FLAGS,
+                                                     default_parts,
+                                                     flags));
+  g_object_class_install_property(object_class,
+                                  first_id + 1,
+                                  g_param_spec_uint("overlay-color",
+                                                    "Overlay colour",
+                                                    "Colour of the lines as 0xAARRGGBB",
+                                                    0,
+                                                    G_MAXUINT32,
+                                                    OverlayStyle{}.color_argb,
+                                                    flags));
+  g_object_class_install_property(object_class,
+                                  first_id + 2,
+                                  g_param_spec_uint("line-width",
+                                                    "Line width",
+                                                    "Width of the lines in px",
+                                                    1,
+                                                    100,
+                                                    OverlayStyle{}.line_width_px,
+                                                    flags));
+}
+
+void set_overlay_property(OverlayStyle& style, guint which, const GValue* value) {
+  if (which == 0) style.parts = static_cast<GstEllipseOverlayFlags>(g_value_get_flags(value));
+  if (which == 1) style.color_argb = g_value_get_uint(value);
+  if (which == 2) style.line_width_px = g_value_get_uint(value);
+}
+
+void get_overlay_property(const OverlayStyle& style, guint which, GValue* value) {
+  if (which == 0) g_value_set_flags(value, style.parts);
+  if (which == 1) g_value_set_uint(value, style.color_argb);
+  if (which == 2) g_value_set_uint(value, style.line_width_px);
+}

@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: MIT */
+
+/**
+ * SECTION:element-ellipsetrack
+ * @title: ellipsetrack
+ *
+ * Finds and follows an elliptical target in video: a landing pad, any circle seen at an angle. Each
+ * buffer on which the target is found gets a #GstEllipseMeta; the pixels stay as they are unless
+ * #GstEllipseTrack:overlay asks for drawing.
+ *
+ * |[
+ * gst-launch-1.0 ellipsetestsrc ! ellipsetrack overlay=ellipse+centre ! videoconvert !
+ * autovideosink
+ * ]|
+ *
+ * Since: 0.1
+ */
+
+#include "gst/track/gstellipsetrack.h"
+
+#include <exception>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "gst/track/track_frame.hpp"
+#include "gst/track/video_view.hpp"
+
+GST_DEBUG_CATEGORY(gst_ellipse_track_debug);
+
+enum {
+  PROP_0,
+  PROP_TARGET,
+  PROP_STATS,
+  PROP_FIRST_SETTING,  // those of TrackProperties from here on
+};
+
+static void gst_ellipse_track_preset_init(gpointer iface, gpointer data);
+
+G_DEFINE_TYPE_WITH_CODE(GstEllipseTrack,
+                        gst_ellipse_track,
+                        GST_TYPE_VIDEO_FILTER,
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_PRESET, gst_ellipse_track_preset_init))
+
+GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
+    ellipsetrack,
+    "ellipsetrack",
+    GST_RANK_NONE,
+    GST_TYPE_ELLIPSE_TRACK,
+    GST_DEBUG_CATEGORY_INIT(gst_ellipse_track_debug, "ellipsetrack", 0, "ellipse tracker"))
+
+/* Properties */
+
+static bool is_stopped(GstEllipseTrack* self) {
+  return GST_STATE(self) == GST_STATE_NULL;
+}
+
+static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
+  if (refusal.empty()) return;
+  GST_WARNING_OBJECT(self, "setting refused: %s", refusal.c_str());
+  GST_ELEMENT_WARNING(
+      self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
+}
+
+// @return Why these values do not fit each other; empty where they do.
+static std::string misfit_of(const TrackProperties& properties) {
+  try {
+    properties.tracker.validate();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Applies a change if the result is valid. In the state NULL a value that does not fit the others
+// is kept in `wanted`, and comes into force with the one that makes it fit: the two values of a
+// pair may be set in any order. @return Why a change is refused; empty where it is not.
+static std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
+  TrackProperties next = shared.preset.value_or(shared.properties);
+  change.apply_to(next);
+  if (shared.preset) {
+    shared.preset = next;
+    return "";
+  }
+  if (is_stopped) {
+    if (!shared.wanted) shared.wanted = shared.properties;
+    change.apply_to(*shared.wanted);
+    if (misfit_of(*shared.wanted).empty()) next = *shared.wanted;
+  }
+  const std::string misfit = misfit_of(next);
+  if (misfit.empty()) shared.properties = next;
+  return misfit;
+}
+
+static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
+  GstControlBinding* binding = gst_object_get_control_binding(GST_OBJECT(self), pspec->name);
+  if (binding == nullptr) return false;
+  gst_object_unref(binding);
+  return true;
+}
+
+// What a controller sets at every frame is refused aloud once, until it is taken again.
+static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
+  const bool is_repeated = is_controlled(self, pspec);
+  GST_OBJECT_LOCK(self);
+  std::set<std::string>& refused = self->shared->refused;
+  const bool is_news = is_refused ? refused.insert(pspec->name).second : false;
+  if (!is_refused) refused.erase(pspec->name);
+  GST_OBJECT_UNLOCK(self);
+  return is_repeated && !is_news;
+}
+
+// The object lock, until the end of a scope.
+class ObjectLock {
+ public:
+  explicit ObjectLock(GstEllipseTrack* self) : object_(GST_OBJECT(self)) {
+    GST_OBJECT_LOCK(object_);
+  }
+  ~ObjectLock() { GST_OBJECT_UNLOCK(object_); }
+  ObjectLock(const ObjectLock&) = delete;
+  ObjectLock& operator=(const ObjectLock&) = delete;
+
+ private:
+  GstObject* object_;
+};
+
+// @return Why the value is refused; empty where it is not.
+static std::string set_or_refuse(GstEllipseTrack* self,
+                                 guint which,
+                                 const GValue* value,
+                                 const char* name) {
+  TrackShared& shared = *self->shared;
+  try {
+    const PropertyChange change(which, value);  // may read a file
+    const ObjectLock lock(self);
+    const std::string misfit = changed(shared, change, is_stopped(self));
+    shared.senseless.erase(name);
+    return misfit;
+  } catch (const std::exception& error) {
+    const ObjectLock lock(self);
+    if (is_stopped(self)) shared.senseless[name] = error.what();
+    return error.what();
+  }
+}
+
+// Refuses what does not fit together, names it, and keeps the old value.
+static void gst_ellipse_track_set_property(GObject* object,
+                                           guint id,
+                                           const GValue* value,
+                                           GParamSpec* pspec) {
+  auto* self = GST_ELLIPSE_TRACK(object);
+  if (id < PROP_FIRST_SETTING) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
+  const std::string refusal = set_or_refuse(self, id - PROP_FIRST_SETTING, value, pspec->name);
+  if (!is_told_already(self, pspec, !refusal.empty())) tell_refusal(self, refusal);
+}
+
+static void gst_ellipse_track_get_property(GObject* object,
+                                           guint id,
+                                           GValue* value,
+                                           GParamSpec* pspec) {
+  auto* self = GST_ELLIPSE_TRACK(object);
+  if (id < PROP_TARGET) {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    return;
+  }
+  GST_OBJECT_LOCK(self);
+  const std::optional<GstEllipseMeta> target = self->shared->target;
+  const TrackStats stats = self->shared->stats;
+  const TrackProperties properties = self->shared->properties;
+  GST_OBJECT_UNLOCK(self);
+  if (id == PROP_TARGET) {
+    if (target) g_value_take_boxed(value, gst_ellipse_meta_to_structure(&*target));
+  } else if (id == PROP_STATS) {
+    g_value_take_boxed(value, stats.to_structure());
+  } else {
+    properties.get(id - PROP_FIRST_SETTING, value);
+  }
+}
+
+static gboolean (*load_one_by_one)(GstPreset* preset, const gchar* name);
+
+// The values of a preset fit each other, but not those that they replace one by one: they come into
+// force together.
+static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* name) {
+  auto* self = GST_ELLIPSE_TRACK(preset);
+  TrackShared& shared = *self->shared;
+  GST_OBJECT_LOCK(self);
+  shared.preset = shared.properties;
+  GST_OBJECT_UNLOCK(self);
+  gboolean is_loaded = load_one_by_one(preset, name);
+  std::string refusal;
+  GST_OBJECT_LOCK(self);
+  const TrackProperties wanted = shared.preset.value_or(shared.properties);
+  try {
+    wanted.tracker.validate();
+    if (is_loaded) {
+      shared.properties = wanted;
+      shared.wanted.reset();
+      shared.senseless.clear();
+    }
+  } catch (const std::exception& error) {
+    refusal = error.what();
+    is_loaded = FALSE;
+  }
+  shared.preset.reset();
+  GST_OBJECT_UNLOCK(self);
+  tell_refusal(self, refusal);
+  return is_loaded;
+}
+
+static void gst_ellipse_track_preset_init(gpointer iface, gpointer /*data*/) {
+  auto* preset = static_cast<GstPresetInterface*>(iface);
+  load_one_by_one = preset->load_preset;
+  preset->load_preset = gst_ellipse_track_load_preset;
+}
+
+static void install_properties(GObjectClass* object_class) {
+  const auto readable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  g_object_class_install_property(
+      object_class,
+      PROP_TARGET,
+      g_param_spec_boxed("target",
+                         "Target",
+                         "The target in the last analysed frame, NULL where there was none",
+                         GST_TYPE_STRUCTURE,
+                         readable));
+  g_object_class_install_property(object_class,
+                                  PROP_STATS,
+                                  g_param_spec_boxed("stats",
+                                                     "Statistics",
+                                                     "What became of the frames; times in ns",
+                                                     GST_TYPE_STRUCTURE,
+                                                     readable));
+  TrackProperties::install(object_class, PROP_FIRST_SETTING);
+}
+
+/* Streaming */
+
+static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstBuffer* buffer) {
+  track_frame(GST_ELLIPSE_TRACK(base), buffer);
+  return GST_FLOW_OK;
+}
+
+// Lateness makes the analysis skip frames; the base class would drop them.
+static gboolean gst_ellipse_track_src_event(GstBaseTransform* base, GstEvent* event) {
+  auto* self = GST_ELLIPSE_TRACK(base);
+  if (GST_EVENT_TYPE(event) != GST_EVENT_QOS) {
+    return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->src_event(base, event);
+  }
+  GstClockTimeDiff jitter = 0;
+  GstClockTime timestamp = GST_CLOCK_TIME_NONE;
+  gst_event_parse_qos(event, nullptr, nullptr, &jitter, &timestamp);
+  GST_OBJECT_LOCK(self);
+  self->shared->lateness.observe(timestamp, jitter);
+  GST_OBJECT_UNLOCK(self);
+  return gst_pad_push_event(GST_BASE_TRANSFORM_SINK_PAD(base), event);
+}
+
+static void add_latency(GstEllipseTrack* self, GstQuery* query) {
+  gboolean is_live = FALSE;
+  GstClockTime min = 0;
+  GstClockTime max = GST_CLOCK_TIME_NONE;
+  gst_query_parse_latency(query, &is_live, &min, &max);
+  TrackShared& shared = *self->shared;
+  GST_OBJECT_LOCK(self);
+  shared.is_live = is_live != FALSE;
+  shared.told_latency = shared.stats.latency();
+  const GstClockTime own = shared.told_latency;
+  GST_OBJECT_UNLOCK(self);
+  if (is_live == FALSE) return;
+  gst_query_set_latency(query, TRUE, min + own, GST_CLOCK_TIME_IS_VALID(max) ? max + own : max);
+}
+
+static gboolean gst_ellipse_track_query(GstBaseTransform* base,
+                                        GstPadDirection direction,
+                                        GstQuery* query) {
+  const gboolean is_answered =
+      GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->query(base, direction, query);
+  if (is_answered && direction == GST_PAD_SRC && GST_QUERY_TYPE(query) == GST_QUERY_LATENCY) {
+    add_latency(GST_ELLIPSE_TRACK(base), query);
+  }
+  return is_answered;
+}
+
+static gboolean gst_ellipse_track_sink_event(GstBaseTransform* base, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) forget_stream(GST_ELLIPSE_TRACK(base));
+  return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->sink_event(base, event);
+}
+
+static gboolean gst_ellipse_track_start(GstBaseTransform* base) {
+  auto* self = GST_ELLIPSE_TRACK(base);
+  forget_stream(self);
+  GST_OBJECT_LOCK(self);
+  self->shared->stats = TrackStats();
+  GST_OBJECT_UNLOCK(self);
+  return TRUE;
+}
+
+static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
+  forget_stream(GST_ELLIPSE_TRACK(base));
+  return TRUE;
+}
+
+// @return Why a start would not do what was asked for; empty where it would.
+static std::string obstacle_to_start(GstEllipseTrack* self) {
+  TrackShared& shared = *self->shared;
+  const ObjectLock lock(self);
+  std::string obstacle = shared.wanted ? misfit_of(*shared.wanted) : "";
+  if (!shared.senseless.empty()) obstacle = shared.senseless.begin()->second;
+  if (obstacle.empty()) shared.wanted.reset();
+  return obstacle;
+}
+
+// What was refused before the start fails it: nobody hears the warnings of a pipeline that is not
+// playing yet.
+static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
+                                                           GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_NULL_TO_READY) {
+    const std::string obstacle = obstacle_to_start(GST_ELLIPSE_TRACK(element));
+    if (!obstacle.empty()) {
+      GST_ELEMENT_ERROR(
+          element, LIBRARY, SETTINGS, ("Setting refused: %s", obstacle.c_str()), (nullptr));
+      return GST_STATE_CHANGE_FAILURE;
+    }
+  }
+  return GST_ELEMENT_CLASS(gst_ellipse_track_parent_class)->change_state(element, transition);
+}
+
+static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
+                                                     GstQuery* decide_query,
+                                                     GstQuery* query) {
+  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+  return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)
+      ->propose_allocation(base, decide_query, query);
+}
+
+// Cropping by metadata is offered upstream where those downstream know it too.
+static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
+                                              GstQuery* /*query*/,
+                                              GType api,
+                                              const GstStructure* /*params*/) {
+  return api == GST_VIDEO_CROP_META_API_TYPE;
+}
+
+// Two fields are two moments: where something moves, its edges are combs. Mixed streams have such
+// frames among others.
+static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
+                                           GstCaps* /*in_caps*/,
+                                           GstVideoInfo* in_info,
+                                           GstCaps* /*out_caps*/,
+                                           GstVideoInfo* /*out_info*/) {
+  GST_DEBUG_OBJECT(filter,
+                   "%s %d x %d",
+                   GST_VIDEO_INFO_NAME(in_info),
+                   GST_VIDEO_INFO_WIDTH(in_info),
+                   GST_VIDEO_INFO_HEIGHT(in_info));
+  if (GST_VIDEO_INFO_IS_INTERLACED(in_info)) {
+    GST_ELEMENT_WARNING(filter,
+                        STREAM,
+                        FORMAT,
+                        ("Interlaced frames are searched as if they were whole ones."),
+                        ("put a deinterlacer in front"));
+  }
+  return TRUE;
+}
+
+static void gst_ellipse_track_reset(GstEllipseTrack* self) {
+  GST_OBJECT_LOCK(self);
+  self->shared->reset_is_due = true;
+  GST_OBJECT_UNLOCK(self);
+}
+
+/* Class */
+
+static void gst_ellipse_track_finalize(GObject* object) {
+  auto* self = GST_ELLIPSE_TRACK(object);
+  delete self->stream;
+  delete self->shared;
+  G_OBJECT_CLASS(gst_ellipse_track_parent_class)->finalize(object);
+}
+
+static void gst_ellipse_track_init(GstEllipseTrack* self) {
+  self->shared = new TrackShared();
+  self->stream = new TrackStream();
+  gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+}
+
+static void install_signals(GstEllipseTrackClass* klass) {
+  const GType type = G_TYPE_FROM_CLASS(klass);
+  g_signal_new("target-acquired",
+               type,
+               G_SIGNAL_RUN_LAST,
+               0,
+               nullptr,
+               nullptr,
+               nullptr,
+               G_TYPE_NONE,
+               1,
+               GST_TYPE_STRUCTURE);
+  g_signal_new(
+      "target-lost", type, G_SIGNAL_RUN_LAST, 0, nullptr, nullptr, nullptr, G_TYPE_NONE, 0);
+
+  g_signal_new_class_handler("reset",
+                             type,
+                             static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION),
+                             G_CALLBACK(gst_ellipse_track_reset),
+                             nullptr,
+                             nullptr,
+                             nullptr,
+                             G_TYPE_NONE,
+                             0);
+}
+
+static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
+  auto* object_class = G_OBJECT_CLASS(klass);
+  object_class->set_property = gst_ellipse_track_set_property;
+  object_class->get_property = gst_ellipse_track_get_property;
+  object_class->finalize = gst_ellipse_track_finalize;
+  install_properties(object_class);
+  install_signals(klass);
+
+  auto* element_class = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element_class,
+                                        "Ellipse tracker",
+                                        "Filter/Analyzer/Video",
+                                        "Detects and tracks an elliptical target on every buffer",
+                                        "The gst-ellipse authors");
+  add_video_pad_templates(element_class);
+  element_class->change_state = gst_ellipse_track_change_state;
+
+  auto* base_class = GST_BASE_TRANSFORM_CLASS(klass);
+  base_class->transform_ip = gst_ellipse_track_transform_ip;
+  base_class->src_event = gst_ellipse_track_src_event;
+  base_class->sink_event = gst_ellipse_track_sink_event;
+  base_class->start = gst_ellipse_track_start;
+  base_class->stop = gst_ellipse_track_stop;
+  base_class->query = gst_ellipse_track_query;
+  base_class->propose_allocation = gst_ellipse_track_propose_allocation;
+  base_class->filter_meta = gst_ellipse_track_filter_meta;
+  GST_VIDEO_FILTER_CLASS(klass)->set_info = gst_ellipse_track_set_info;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "gst/track/load_watch.hpp"
+
+#include <algorithm>
+
+namespace {
+
+constexpr int kCoarsestStep = 3;
+constexpr int kLastStep = 5;
+// A frame over the limit weighs as much as eight under half of it, because a followed target is
+// looked for in the whole frame at every eighth only.
+constexpr int kOver = 8;
+constexpr int kTooMuch = 3 * kOver;
+constexpr int kEnoughRest = -128;
+
+}  // namespace
+
+bool LoadWatch::add(GstClockTime processing_time, GstClockTime limit) {
+  const int before = step_;
+  if (limit == 0) {
+    *this = LoadWatch();
+    return before != 0;
+  }
+  if (processing_time > limit) score_ = std::max(score_, 0) + kOver;
+  if (processing_time < limit / 2) --score_;
+  if (score_ >= kTooMuch) step_ = std::min(step_ + 1, kLastStep);
+  if (score_ <= kEnoughRest) step_ = std::max(step_ - 1, 0);
+  if (score_ >= kTooMuch || score_ <= kEnoughRest) score_ = 0;
+  return step_ != before;
+}
+
+bool LoadWatch::takes_a_skip() {
+  skipped_ = skipped_ < skipped_in_a_row() ? skipped_ + 1 : 0;
+  return skipped_ > 0;
+}
+
+int LoadWatch::scale() const {
+  return 1 << std::min(step_, kCoarsestStep);
+}
+
+int LoadWatch::skipped_in_a_row() const {
+  return (1 << std::max(step_ - kCoarsestStep, 0)) - 1;
+}

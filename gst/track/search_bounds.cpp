@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "gst/track/search_bounds.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+namespace {
+
+// A box with any corner and any size, clipped to a frame.
+ellipse::Rect clipped(std::int64_t x,
+                      std::int64_t y,
+                      std::int64_t width,
+                      std::int64_t height,
+                      const ellipse::Rect& frame) {
+  const auto inside = [](std::int64_t at, int size) {
+    return static_cast<int>(std::clamp<std::int64_t>(at, 0, size));
+  };
+  const int left = inside(x, frame.width);
+  const int top = inside(y, frame.height);
+  const int right = inside(x + width, frame.width);
+  const int bottom = inside(y + height, frame.height);
+  return ellipse::intersect({left, top, right - left, bottom - top}, frame);
+}
+
+ellipse::Rect united(const ellipse::Rect& a, const ellipse::Rect& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  const int left = std::min(a.x, b.x);
+  const int top = std::min(a.y, b.y);
+  return {left,
+          top,
+          std::max(a.x + a.width, b.x + b.width) - left,
+          std::max(a.y + a.height, b.y + b.height) - top};
+}
+
+// One box around all: a target that goes from one region to the next stays the same target.
+// A type that no region has ever had is no quark, and must not become one: quarks stay for good.
+ellipse::Rect box_around_regions(GstBuffer* buffer,
+                                 const std::string& type,
+                                 const ellipse::Rect& frame) {
+  ellipse::Rect box;
+  const GQuark wanted = type.empty() ? 0 : g_quark_try_string(type.c_str());
+  if (!type.empty() && wanted == 0) return box;
+  gpointer state = nullptr;
+  while (GstMeta* meta = gst_buffer_iterate_meta_filtered(
+             buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
+    const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
+    if (wanted != 0 && roi->roi_type != wanted) continue;
+    box = united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
+  }
+  return box;
+}
+
+}  // namespace
+
+ellipse::Rect search_bounds(GstBuffer* buffer,
+                            const GstVideoInfo& info,
+                            const TrackProperties& properties) {
+  const ellipse::Rect frame{0, 0, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info)};
+  const ellipse::Rect& roi = properties.roi;
+  ellipse::Rect bounds = frame;
+  if (properties.roi_source == ROI_SOURCE_PROPERTY) {
+    bounds = clipped(roi.x, roi.y, roi.width, roi.height, frame);
+  } else if (properties.roi_source == ROI_SOURCE_META) {
+    bounds = box_around_regions(buffer, properties.roi_type, frame);
+  }
+  const GstVideoCropMeta* crop = gst_buffer_get_video_crop_meta(buffer);
+  if (crop == nullptr) return bounds;
+  return ellipse::intersect(bounds, clipped(crop->x, crop->y, crop->width, crop->height, frame));
+}

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "gst/track/target_meta.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "gst/ellipse/gstellipsesearchmeta.h"
+#include "gst/overlay/meta_outline.hpp"
+
+static GstEllipseMeta* attach(GstBuffer* buffer,
+                              GstEllipseRole role,
+                              const ellipse::Ellipse& e,
+                              const GstVideoInfo& info) {
+  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, role);
+  meta->cx = e.cx;
+  meta->cy = e.cy;
+  meta->semi_major = e.semi_major;
+  meta->semi_minor = e.semi_minor;
+  meta->angle_rad = e.angle_rad;
+  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
+  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
+  meta->pts = GST_BUFFER_PTS(buffer);
+  return meta;
+}
+
+static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
+  meta->has_pose = TRUE;
+  Eigen::Map<Eigen::Vector3d>(&meta->bearing_x) = pose.bearing;
+  meta->angle_x = pose.angles_rad.x();
+  meta->angle_y = pose.angles_rad.y();
+  meta->centre_x = pose.centre_px.x();
+  meta->centre_y = pose.centre_px.y();
+  Eigen::Map<Eigen::Vector3d>(&meta->normal_x) = pose.normal;
+  Eigen::Map<Eigen::Vector3d>(&meta->other_normal_x) = pose.other_normal;
+  meta->certainty = pose.certainty;
+  if (!(pose.radius_m > 0.0)) return;
+  meta->has_position = TRUE;
+  Eigen::Map<Eigen::Vector3d>(&meta->position_x) = pose.position_m;
+  Eigen::Map<Eigen::Vector3d>(&meta->other_position_x) = pose.other_position_m;
+  gdouble* to = meta->position_covariance;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = i; k < 3; ++k) *to++ = pose.covariance_m2(i, k);
+  }
+}
+
+static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
+                                                const ellipse::Target& target,
+                                                const ellipse::LensView& lens,
+                                                const GstVideoInfo& info,
+                                                GstClockTime processing_time) {
+  GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
+  meta->state = static_cast<GstEllipseState>(target.state);
+  meta->id = target.id;
+  meta->contour_overlap = target.contour_overlap;
+  meta->ellipse_overlap = target.ellipse_overlap;
+  meta->visible_fraction = target.visible_fraction;
+  meta->scale = static_cast<guint>(target.scale);
+  meta->roi_x = target.search_region.x;
+  meta->roi_y = target.search_region.y;
+  meta->roi_width = static_cast<guint>(target.search_region.width);
+  meta->roi_height = static_cast<guint>(target.search_region.height);
+  meta->processing_time = processing_time;
+  if (target.pose) write_pose(meta, *target.pose);
+  write_outline(meta, lens);
+  return meta;
+}
+
+static constexpr double kSameEllipsePx = 1.5;
+
+static void attach_candidate_metas(GstBuffer* buffer,
+                                   std::span<const ellipse::Detection> candidates,
+                                   const std::optional<ellipse::Target>& target,
+                                   const ellipse::LensView& lens,
+                                   const GstVideoInfo& info) {
+  for (const ellipse::Detection& candidate : candidates) {
+    // The target itself, which following it made a little different.
+    const bool is_target =
+        target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
+    if (is_target) continue;
+    GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
+    meta->contour_overlap = candidate.contour_overlap;
+    meta->ellipse_overlap = candidate.ellipse_overlap;
+    meta->visible_fraction = ellipse::visible_fraction(
+        lens, candidate.ellipse, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+    write_outline(meta, lens);
+  }
+}
+
+// Of what is seen of it in the picture.
+static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
+  const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
+  const Eigen::Vector2d half = ellipse::half_extent(e);
+  if (meta.n_outline == 0) return {e.center() - half, e.center() + half};
+  Eigen::AlignedBox2d box;
+  for (gsize i = 0; i < meta.n_outline; ++i) {
+    const Eigen::Vector2d point(meta.outline[2 * i], meta.outline[2 * i + 1]);
+    if (point.allFinite()) box.extend(point);
+  }
+  return box;
+}
+
+static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+  const Eigen::AlignedBox2d box = box_of(meta);
+  const auto first = [](double at, guint size) {
+    return static_cast<guint>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
+  };
+  const auto last = [](double at, guint size) {
+    return static_cast<guint>(std::clamp(std::ceil(at) + 1.0, 0.0, static_cast<double>(size)));
+  };
+  const guint left = first(box.min().x(), meta.frame_width);
+  const guint top = first(box.min().y(), meta.frame_height);
+  const guint right = last(box.max().x(), meta.frame_width);
+  const guint bottom = last(box.max().y(), meta.frame_height);
+  if (left >= right || top >= bottom) return;
+  GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
+      buffer, "ellipse", left, top, right - left, bottom - top);
+  gst_video_region_of_interest_meta_add_param(roi, gst_ellipse_meta_to_structure(&meta));
+}
+
+const GstEllipseMeta* attach_metas(GstBuffer* buffer,
+                                   const std::optional<ellipse::Target>& target,
+                                   const ellipse::Tracker& tracker,
+                                   const TrackProperties& properties,
+                                   const GstVideoInfo& info,
+                                   GstClockTime processing_time) {
+  gst_buffer_add_ellipse_search_meta(buffer, processing_time);
+  const GstEllipseMeta* meta = nullptr;
+  if (target) {
+    meta = attach_target_meta(buffer, *target, tracker.lens(), info, processing_time);
+    if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
+  }
+  if (properties.tracker.wants_candidates) {
+    attach_candidate_metas(buffer, tracker.candidates(), target, tracker.lens(), info);
+  }
+  return meta;
+}

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include "gst/track/track_frame.hpp"
+
+#include <bit>
+#include <exception>
+#include <string>
+
+#include "gst/overlay/blend.hpp"
+#include "gst/track/search_bounds.hpp"
+#include "gst/track/target_meta.hpp"
+#include "gst/track/track_report.hpp"
+#include "gst/track/video_view.hpp"
+
+// Frames between two looks at what they add to the latency; at the beginning fewer.
+static constexpr guint64 kLatencyInterval = 32;
+
+// Whatever C++ throws ends here. @return Whether nothing was thrown.
+template <class Body>
+static bool succeeds(GstEllipseTrack* self, const char* failure, const Body& body) {
+  std::string why = "unknown exception";
+  try {
+    body();
+    return true;
+  } catch (const std::exception& error) {
+    why = error.what();
+  } catch (...) {
+  }
+  GST_ELEMENT_WARNING(
+      self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("the stream goes on"));
+  return false;
+}
+
+static void emit_change(GstEllipseTrack* self,
+                        const std::optional<ellipse::Target>& before,
+                        const std::optional<ellipse::Target>& now,
+                        const GstEllipseMeta* meta) {
+  const bool is_same_target = before && now && before->id == now->id;
+  if (before && !is_same_target) g_signal_emit_by_name(self, "target-lost");
+  if (!now || is_same_target) return;
+  GstStructure* details = gst_ellipse_meta_to_structure(meta);
+  g_signal_emit_by_name(self, "target-acquired", details);
+  gst_structure_free(details);
+}
+
+// @return The metadata of the target, owned by the buffer; nullptr where there is none.
+static const GstEllipseMeta* publish(GstEllipseTrack* self,
+                                     GstBuffer* buffer,
+                                     const FrameTimes& times,
+                                     const TrackProperties& properties,
+                                     const std::optional<ellipse::Target>& target,
+                                     GstClockTime processing_time) {
+  const GstEllipseMeta* meta = attach_metas(buffer,
+                                            target,
+                                            self->stream->tracker,
+                                            properties,
+                                            GST_VIDEO_FILTER(self)->in_info,
+                                            processing_time);
+  const std::optional<ellipse::Target> before = self->stream->last_target;
+  self->stream->last_target = target;
+
+  GST_OBJECT_LOCK(self);
+  self->shared->stats.add_analysed(target, processing_time);
+  self->shared->target.reset();
+  if (meta != nullptr) self->shared->target = *meta;
+  GST_OBJECT_UNLOCK(self);
+
+  if (properties.messages == MESSAGES_EVERY_FRAME ||
+      (properties.messages == MESSAGES_ON_CHANGE && has_changed(before, target))) {
+    post_target_message(GST_ELEMENT(self), times, meta);
+  }
+  emit_change(self, before, target, meta);
+  return meta;
+}
+
+// Whoever plays a live pipeline asks for the latency again, where what was told does not hold.
+static void tell_latency(GstEllipseTrack* self) {
+  TrackShared& shared = *self->shared;
+  const guint64 frame = self->stream->frame;
+  if (frame % kLatencyInterval != 0 && !(frame < kLatencyInterval && std::has_single_bit(frame))) {
+    return;
+  }
+  bool is_news = false;
+  GST_OBJECT_LOCK(self);
+  const GstClockTime latency = shared.stats.latency();
+  if (shared.is_live) {
+    is_news = latency > shared.told_latency || 2 * latency < shared.told_latency;
+  }
+  GST_OBJECT_UNLOCK(self);
+  if (!is_news) return;
+  GST_DEBUG_OBJECT(self, "latency is now %" GST_TIME_FORMAT, GST_TIME_ARGS(latency));
+  gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+}
+
+// Starts over, and says so to those who still count on the target.
+static void forget_target(GstEllipseTrack* self,
+                          const TrackProperties& properties,
+                          const FrameTimes& times = {}) {
+  self->stream->tracker.reset();
+  const std::optional<ellipse::Target> before = self->stream->last_target;
+  self->stream->last_target.reset();
+  GST_OBJECT_LOCK(self);
+  self->shared->stats.forget_target();
+  self->shared->target.reset();
+  GST_OBJECT_UNLOCK(self);
+  if (!before) return;
+  if (properties.messages != MESSAGES_NONE) {
+    post_target_message(GST_ELEMENT(self), times, nullptr);
+  }
+  emit_change(self, before, std::nullopt, nullptr);
+}
+
+static TrackProperties take_properties(GstEllipseTrack* self) {
+  GST_OBJECT_LOCK(self);
+  TrackProperties properties = self->shared->properties;
+  const bool reset_is_due = self->shared->reset_is_due;
+  self->shared->reset_is_due = false;
+  GST_OBJECT_UNLOCK(self);
+  if (reset_is_due) forget_target(self, properties);
+  return properties;
+}
+
+static bool is_too_late(GstEllipseTrack* self, const FrameTimes& times) {
+  if (!gst_base_transform_is_qos_enabled(GST_BASE_TRANSFORM(self))) return false;
+  GST_OBJECT_LOCK(self);
+  const bool is_too_late = self->shared->lateness.takes_a_skip(times.running);
+  GST_OBJECT_UNLOCK(self);
+  return is_too_late;
+}
+
+static void watch_load(GstEllipseTrack* self,
+                       const FrameTimes& times,
+                       GstClockTime processing_time,
+                       GstClockTime limit) {
+  LoadWatch& load = self->stream->load;
+  if (!load.add(processing_time, limit)) return;
+  GST_DEBUG_OBJECT(
+      self, "scale %d, %d frames skipped in a row", load.scale(), load.skipped_in_a_row());
+  post_load_message(GST_ELEMENT(self), times, load, processing_time, limit);
+}
+
+static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
+                                          const FrameTimes& times,
+                                          const TrackProperties& properties,
+                                          const ellipse::Rect& bounds) {
+  if (self->stream->frame++ % properties.interval != 0) return Skip::kInterval;
+  if (bounds.empty()) return Skip::kRegion;
+  if (is_too_late(self, times)) return Skip::kLate;
+  // A limit that is taken away takes its skips with it.
+  if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);
+  if (self->stream->load.takes_a_skip()) return Skip::kLoad;
+  return std::nullopt;
+}
+
+static void skip(GstEllipseTrack* self, Skip reason) {
+  GST_LOG_OBJECT(self, "passes without analysis: %s", nick_of(reason));
+  GST_OBJECT_LOCK(self);
+  self->shared->stats.add_skipped(reason);
+  GST_OBJECT_UNLOCK(self);
+}
+
+static void draw(GstEllipseTrack* self,
+                 GstVideoFrame& frame,
+                 const GstEllipseMeta& meta,
+                 OverlayStyle style) {
+  style.has_casing = GST_VIDEO_FORMAT_INFO_IS_GRAY(frame.info.finfo);
+  Overlay& overlay = self->stream->overlay;
+  overlay.begin(GST_VIDEO_FRAME_WIDTH(&frame), GST_VIDEO_FRAME_HEIGHT(&frame));
+  overlay.draw(meta, style);
+  blend(overlay.canvas(), frame);
+}
+
+static void log_verdict(GstEllipseTrack* self,
+                        const GstEllipseMeta* meta,
+                        GstClockTime processing_time) {
+  if (meta == nullptr) {
+    GST_LOG_OBJECT(self, "nothing found, %" G_GUINT64_FORMAT " ns", processing_time);
+    return;
+  }
+  GST_LOG_OBJECT(self,
+                 "%s %" G_GUINT64_FORMAT " at %.2f, %.2f, axes %.2f, %.2f, %" G_GUINT64_FORMAT
+                 " ns",
+                 gst_ellipse_meta_get_state_name(meta),
+                 meta->id,
+                 meta->cx,
+                 meta->cy,
+                 meta->semi_major,
+                 meta->semi_minor,
+                 processing_time);
+}
+
+static void analyse(GstEllipseTrack* self,
+                    GstBuffer* buffer,
+                    const FrameTimes& times,
+                    const TrackProperties& properties,
+                    const ellipse::Rect& bounds) {
+  const bool draws = properties.overlay.parts != GST_ELLIPSE_OVERLAY_NONE;
+  MappedFrame mapped(
+      GST_VIDEO_FILTER(self)->in_info, buffer, draws ? GST_MAP_READWRITE : GST_MAP_READ);
+  if (!mapped.is_mapped()) {
+    GST_ELEMENT_WARNING(self, RESOURCE, READ, ("A buffer cannot be read."), ("it passes as it is"));
+    skip(self, Skip::kFailed);
+    return;
+  }
+  const GstClockTime start = gst_util_get_timestamp();
+  ellipse::Tracker& tracker = self->stream->tracker;
+  tracker.configure(properties.tracker);
+  const auto target = tracker.process(pixel_view_of(mapped.frame()),
+                                      static_cast<gint64>(times.pts),
+                                      {bounds, self->stream->load.scale()});
+  const GstClockTime processing_time = gst_util_get_timestamp() - start;
+  const GstEllipseMeta* meta = publish(self, buffer, times, properties, target, processing_time);
+  log_verdict(self, meta, processing_time);
+  watch_load(self, times, processing_time, properties.max_processing_time);
+  if (draws && meta != nullptr) draw(self, mapped.frame(), *meta, properties.overlay);
+}
+
+static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
+  auto* base = GST_BASE_TRANSFORM(self);
+  const FrameTimes times = times_of(base, buffer);
+  if (GST_CLOCK_TIME_IS_VALID(times.stream)) gst_object_sync_values(GST_OBJECT(self), times.stream);
+
+  const TrackProperties properties = take_properties(self);
+  const ellipse::Rect bounds = search_bounds(buffer, GST_VIDEO_FILTER(base)->in_info, properties);
+  if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
+    if (*reason == Skip::kRegion) forget_target(self, properties, times);
+    skip(self, *reason);
+  } else {
+    analyse(self, buffer, times, properties, bounds);
+  }
+}
+
+void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
+  const auto body = [&] { pass_on(self, buffer); };
+  if (!succeeds(self, "A frame could not be analysed", body)) skip(self, Skip::kFailed);
+  tell_latency(self);
+}
+
+void forget_stream(GstEllipseTrack* self) {
+  GST_DEBUG_OBJECT(self, "starts over");
+  succeeds(self, "The last stream could not be forgotten", [self] {
+    GST_OBJECT_LOCK(self);
+    const TrackProperties properties = self->shared->properties;
+    self->shared->lateness = Lateness();
+    GST_OBJECT_UNLOCK(self);
+    forget_target(self, properties);
+  });
+  self->stream->load = LoadWatch();
+  self->stream->frame = 0;
+}

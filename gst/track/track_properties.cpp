@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: MIT
+#include "gst/track/track_properties.hpp"
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "core/camera/camera_file.hpp"
+#include "core/tracking/setting_effect.hpp"
+#include "gst/track/track_enums.hpp"
+
+namespace {
+
+// In the order of their ids.
+enum {
+  PROP_DETECTOR,
+  PROP_TRACKING,
+  PROP_REFINE,
+  PROP_INTERVAL,
+  PROP_MESSAGES,
+  PROP_ATTACH_ROI_META,
+  PROP_CANDIDATES,
+  PROP_ROI_SOURCE,
+  PROP_ROI,
+  PROP_ROI_TYPE,
+  PROP_MAX_PROCESSING_TIME,
+  PROP_CAMERA_FILE,
+  PROP_GRAVITY,
+  PROP_OVERLAY,
+  PROP_OVERLAY_COLOR,
+  PROP_LINE_WIDTH,
+  PROP_FIRST_NUMBER,
+};
+
+constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                   GST_PARAM_MUTABLE_PLAYING);
+// GLib keeps a copy of a blurb that is put together.
+constexpr auto kPlayingOwnBlurb = static_cast<GParamFlags>(kPlaying & ~G_PARAM_STATIC_BLURB);
+
+GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
+  const double initial = info.get(ellipse::TrackerSettings{});
+  const auto flags = static_cast<GParamFlags>(kPlayingOwnBlurb |
+                                              (info.is_controllable ? GST_PARAM_CONTROLLABLE : 0));
+  const std::string blurb = ellipse::blurb_of(info.description, info.effect);
+  if (info.is_integer) {
+    return g_param_spec_uint(info.name,
+                             info.name,
+                             blurb.c_str(),
+                             static_cast<guint>(info.range.min),
+                             static_cast<guint>(info.range.max),
+                             static_cast<guint>(initial),
+                             flags);
+  }
+  return g_param_spec_double(
+      info.name, info.name, blurb.c_str(), info.range.min, info.range.max, initial, flags);
+}
+
+// The numbers of a vector of doubles, or of ints. An empty array is what GStreamer takes for the
+// default of every array: zeros.
+std::array<double, 3> vector_from(const GValue* value, const char* name) {
+  std::array<double, 3> numbers{};
+  if (gst_value_array_get_size(value) == 0) return numbers;
+  if (gst_value_array_get_size(value) != numbers.size()) {
+    throw std::invalid_argument(std::string(name) + " has not the form <x, y, z>");
+  }
+  for (guint i = 0; i < numbers.size(); ++i) {
+    const GValue* number = gst_value_array_get_value(value, i);
+    GValue real = G_VALUE_INIT;
+    g_value_init(&real, G_TYPE_DOUBLE);
+    const bool is_number = g_value_transform(number, &real) != FALSE;
+    numbers[i] = g_value_get_double(&real);
+    g_value_unset(&real);
+    if (!is_number) throw std::invalid_argument(std::string(name) + " is not made of numbers");
+  }
+  return numbers;
+}
+
+void write_vector(const std::array<double, 3>& numbers, GValue* value) {
+  for (const double number : numbers) {
+    GValue element = G_VALUE_INIT;
+    g_value_init(&element, G_TYPE_DOUBLE);
+    g_value_set_double(&element, number);
+    gst_value_array_append_and_take_value(value, &element);
+  }
+}
+
+// The same for a region.
+ellipse::Rect rect_from(const GValue* value) {
+  std::array<int, 4> numbers{};
+  if (gst_value_array_get_size(value) == 0) return {};
+  if (gst_value_array_get_size(value) != numbers.size()) {
+    throw std::invalid_argument("roi has not the form <x, y, width, height>");
+  }
+  for (guint i = 0; i < numbers.size(); ++i) {
+    const GValue* number = gst_value_array_get_value(value, i);
+    if (!G_VALUE_HOLDS_INT(number)) throw std::invalid_argument("roi is not made of ints");
+    numbers[i] = g_value_get_int(number);
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+void write_rect(const ellipse::Rect& rect, GValue* value) {
+  for (const int number : {rect.x, rect.y, rect.width, rect.height}) {
+    GValue element = G_VALUE_INIT;
+    g_value_init(&element, G_TYPE_INT);
+    g_value_set_int(&element, number);
+    gst_value_array_append_and_take_value(value, &element);
+  }
+}
+
+// nullptr where the property is none of the tracker's numbers.
+const ellipse::SettingInfo* number_info(guint which) {
+  const auto infos = ellipse::setting_infos();
+  const bool is_number = which >= PROP_FIRST_NUMBER && which - PROP_FIRST_NUMBER < infos.size();
+  return is_number ? &infos[which - PROP_FIRST_NUMBER] : nullptr;
+}
+
+class Installer {
+ public:
+  Installer(GObjectClass* object_class, guint first_id)
+      : object_class_(object_class), first_id_(first_id) {}
+
+  void operator()(guint which, GParamSpec* spec) const {
+    g_object_class_install_property(object_class_, first_id_ + which, spec);
+  }
+
+ private:
+  GObjectClass* object_class_;
+  guint first_id_;
+};
+
+void install_methods(const Installer& install, const TrackProperties& initial) {
+  install(PROP_DETECTOR,
+          g_param_spec_enum("detector",
+                            "Detector",
+                            "How ellipses are found in a picture",
+                            gst_ellipse_detector_get_type(),
+                            static_cast<gint>(initial.tracker.detector),
+                            kPlaying));
+  install(PROP_TRACKING,
+          g_param_spec_enum("tracking",
+                            "Tracking",
+                            "How the target is followed from frame to frame",
+                            gst_ellipse_tracking_get_type(),
+                            static_cast<gint>(initial.tracker.tracking),
+                            kPlaying));
+  const std::string blurb =
+      ellipse::blurb_of("How exact the ellipse is made of a target that is followed by its edges",
+                        ellipse::effect_of("refine"));
+  install(PROP_REFINE,
+          g_param_spec_enum("refine",
+                            "Refine",
+                            blurb.c_str(),
+                            gst_ellipse_refinement_get_type(),
+                            static_cast<gint>(initial.tracker.refine),
+                            kPlayingOwnBlurb));
+}
+
+void install_load(const Installer& install, const TrackProperties& initial) {
+  install(PROP_INTERVAL,
+          g_param_spec_uint("interval",
+                            "Interval",
+                            "Analyse every n-th frame; the others pass as they are",
+                            1,
+                            G_MAXUINT,
+                            initial.interval,
+                            kPlaying));
+  install(PROP_MAX_PROCESSING_TIME,
+          g_param_spec_uint64("max-processing-time",
+                              "Maximum processing time",
+                              "Time for a frame in ns: beyond it the search gets coarser, then "
+                              "frames pass without analysis; 0 = no limit",
+                              0,
+                              G_MAXUINT64,
+                              initial.max_processing_time,
+                              kPlaying));
+}
+
+void install_reports(const Installer& install, const TrackProperties& initial) {
+  install(PROP_MESSAGES,
+          g_param_spec_enum("messages",
+                            "Messages",
+                            "When an element message \"ellipse\" is posted on the bus",
+                            gst_ellipse_messages_get_type(),
+                            initial.messages,
+                            kPlaying));
+  install(PROP_ATTACH_ROI_META,
+          g_param_spec_boolean("attach-roi-meta",
+                               "Attach ROI meta",
+                               "Also attach the target's box as GstVideoRegionOfInterestMeta",
+                               initial.attach_roi_meta ? TRUE : FALSE,
+                               kPlaying));
+  install(PROP_CANDIDATES,
+          g_param_spec_boolean("candidates",
+                               "Candidates",
+                               "Also attach all other ellipses of the frame, as \"candidate\"; the "
+                               "detector then looks at every frame",
+                               initial.tracker.wants_candidates ? TRUE : FALSE,
+                               kPlaying));
+}
+
+void install_region(const Installer& install, const TrackProperties& initial) {
+  install(PROP_ROI_SOURCE,
+          g_param_spec_enum("roi-source",
+                            "ROI source",
+                            "Who says where in a frame is searched",
+                            gst_ellipse_roi_source_get_type(),
+                            initial.roi_source,
+                            kPlaying));
+  install(
+      PROP_ROI,
+      gst_param_spec_array(
+          "roi",
+          "ROI",
+          "The region that roi-source=property searches, as <x, y, width, "
+          "height> in px of the frame",
+          g_param_spec_int(
+              "number", "Number", "x, y, width or height in px", G_MININT, G_MAXINT, 0, kPlaying),
+          kPlaying));
+  install(PROP_ROI_TYPE,
+          g_param_spec_string("roi-type",
+                              "ROI type",
+                              "The regions that roi-source=meta counts; empty = of any type",
+                              "",
+                              kPlaying));
+}
+
+void install_camera(const Installer& install) {
+  install(PROP_CAMERA_FILE,
+          g_param_spec_string("camera-file",
+                              "Camera file",
+                              "Calibration of the camera, from OpenCV or ROS; goes before fx and "
+                              "hfov; empty = none",
+                              "",
+                              kPlaying));
+  install(PROP_GRAVITY,
+          gst_param_spec_array("gravity",
+                               "Gravity",
+                               "Down in the camera's frame, as <x, y, z>: tells how a level target "
+                               "is tilted; <0, 0, 0> = not known",
+                               g_param_spec_double("number",
+                                                   "Number",
+                                                   "x, y or z, of any unit",
+                                                   -G_MAXDOUBLE,
+                                                   G_MAXDOUBLE,
+                                                   0.0,
+                                                   kPlaying),
+                               kPlaying));
+}
+
+}  // namespace
+
+void TrackProperties::install(GObjectClass* object_class, guint first_id) {
+  const TrackProperties initial;
+  const Installer install(object_class, first_id);
+  install_methods(install, initial);
+  install_load(install, initial);
+  install_reports(install, initial);
+  install_region(install, initial);
+  install_camera(install);
+  install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
+  guint which = PROP_FIRST_NUMBER;
+  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
+    install(which++, param_spec_of(info));
+  }
+
+  const auto mark = [](GType type) {
+    gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));
+  };
+  mark(gst_ellipse_detector_get_type());
+  mark(gst_ellipse_tracking_get_type());
+  mark(gst_ellipse_refinement_get_type());
+  mark(gst_ellipse_messages_get_type());
+  mark(gst_ellipse_roi_source_get_type());
+  mark(GST_TYPE_ELLIPSE_OVERLAY_FLAGS);
+}
+
+PropertyChange::PropertyChange(guint which, const GValue* value) : which_(which), value_(value) {
+  if (which != PROP_CAMERA_FILE || g_value_get_string(value) == nullptr) return;
+  camera_file_ = g_value_get_string(value);
+  if (!camera_file_.empty()) camera_ = ellipse::read_camera(camera_file_);
+}
+
+void PropertyChange::apply_to(TrackProperties& properties) const {
+  ellipse::TrackerSettings& tracker = properties.tracker;
+  const GValue* value = value_;
+  if (const ellipse::SettingInfo* info = number_info(which_)) {
+    info->set(tracker, info->is_integer ? g_value_get_uint(value) : g_value_get_double(value));
+  }
+  if (which_ == PROP_DETECTOR) {
+    tracker.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
+  }
+  if (which_ == PROP_TRACKING) {
+    tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
+  }
+  if (which_ == PROP_REFINE) {
+    tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
+  }
+  if (which_ == PROP_INTERVAL) properties.interval = g_value_get_uint(value);
+  if (which_ == PROP_MESSAGES) properties.messages = g_value_get_enum(value);
+  if (which_ == PROP_ATTACH_ROI_META) {
+    properties.attach_roi_meta = g_value_get_boolean(value) != FALSE;
+  }
+  if (which_ == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
+  if (which_ == PROP_ROI_SOURCE) properties.roi_source = g_value_get_enum(value);
+  if (which_ == PROP_ROI) properties.roi = rect_from(value);
+  if (which_ == PROP_ROI_TYPE) {
+    const gchar* type = g_value_get_string(value);
+    properties.roi_type = type != nullptr ? type : "";
+  }
+  if (which_ == PROP_MAX_PROCESSING_TIME) {
+    properties.max_processing_time = g_value_get_uint64(value);
+  }
+  if (which_ == PROP_CAMERA_FILE) {
+    tracker.camera = camera_;
+    properties.camera_file = camera_file_;
+  }
+  if (which_ == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
+  if (which_ >= PROP_OVERLAY && which_ <= PROP_LINE_WIDTH) {
+    set_overlay_property(properties.overlay, which_ - PROP_OVERLAY, value);
+  }
+}
+
+void TrackProperties::get(guint which, GValue* value) const {
+  if (const ellipse::SettingInfo* info = number_info(which)) {
+    const double number = info->get(tracker);
+    if (info->is_integer) {
+      g_value_set_uint(value, static_cast<guint>(number));
+    } else {
+      g_value_set_double(value, number);
+    }
+  }
+  if (which == PROP_DETECTOR) g_value_set_enum(value, static_cast<gint>(tracker.detector));
+  if (which == PROP_TRACKING) g_value_set_enum(value, static_cast<gint>(tracker.tracking));
+  if (which == PROP_REFINE) g_value_set_enum(value, static_cast<gint>(tracker.refine));
+  if (which == PROP_INTERVAL) g_value_set_uint(value, interval);
+  if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
+  if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
+  if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
+  if (which == PROP_ROI_SOURCE) g_value_set_enum(value, roi_source);
+  if (which == PROP_ROI) write_rect(roi, value);
+  if (which == PROP_ROI_TYPE) g_value_set_string(value, roi_type.c_str());
+  if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
+  if (which == PROP_CAMERA_FILE) g_value_set_string(value, camera_file.c_str());
+  if (which == PROP_GRAVITY) write_vector(tracker.gravity, value);
+  if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
+    get_overlay_property(overlay, which - PROP_OVERLAY, value);
+  }
+}

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/arcs/arc_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/detection/target_selection.hpp"
+#include "core/scene/random.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+Thresholds detecting() {
+  Thresholds thresholds;
+  const ArcDetector detector;
+  thresholds.contour_overlap = detector.detecting_overlaps().contour;
+  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
+  return thresholds;
+}
+
+double best_iou(const Picture& picture, const Ellipse& truth, const Thresholds& thresholds) {
+  ArcDetector detector;
+  double best = 0.0;
+  for (const Detection& d : detector.detect(picture.view(), thresholds)) {
+    best = std::max(best, iou_inside(d.ellipse, truth, picture.width, picture.height));
+  }
+  return best;
+}
+
+Scene disc() {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  return scene;
+}
+
+bool finds_nothing(const Picture& picture) {
+  ArcDetector detector;
+  return detector.detect(picture.view(), detecting()).empty();
+}
+
+TEST(ArcDetector, FindsRingsOfEitherPolarity) {
+  const Ellipse truth{160.2, 119.7, 70.0, 45.0, 0.6};
+  Scene scene = plain_ring();
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+  std::swap(scene.pad.paint_level, scene.ground.level);
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+}
+
+TEST(ArcDetector, FindsWhatIsPartlyHidden) {
+  const Ellipse truth{160.2, 119.7, 70.0, 55.0, 0.6};
+  Scene scene = plain_ring();
+  scene.pad.gaps_rad = {0.3, 2.5};
+  scene.pad.gap_width_rad = 0.5;
+  scene.bars = {support::bar_px({60.0, 0.0}, {220.0, 239.0}, 14.0, 90.0)};
+  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.95);
+}
+
+TEST(ArcDetector, FindsWhatTheFrameCuts) {
+  const Ellipse truth{20.0, 119.7, 80.0, 60.0, 0.2};
+  EXPECT_GT(best_iou(rendered(plain_ring(), truth), truth, detecting()), 0.95);
+}
+
+TEST(ArcDetector, FindsCrumpledRings) {
+  const Ellipse truth{160.0, 120.0, 90.0, 70.0, 0.2};
+  for (const double crumple : {0.01, 0.02, 0.03}) {
+    Scene scene = plain_ring();
+    scene.pad.crumple = crumple;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.93) << crumple;
+  }
+}
+
+// Dark discs in rows, each at another place between the pixels.
+Picture board_of_discs(int columns, int rows, double radius) {
+  const int pitch = static_cast<int>(3.0 * radius);
+  Picture picture(columns * pitch, rows * pitch);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const int column = x / pitch;
+      const int row = y / pitch;
+      const double cx = (column + 0.5) * pitch + 0.1 * (column % 7);
+      const double cy = (row + 0.5) * pitch + 0.1 * (row % 5);
+      const double outside = std::hypot(x - cx, y - cy) - radius;
+      picture.at(x, y) = static_cast<std::uint8_t>(130.0 + 80.0 * std::erf(outside));
+    }
+  }
+  return picture;
+}
+
+TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
+  const Picture picture = board_of_discs(25, 16, 10.0);
+  Thresholds thresholds = detecting();
+  thresholds.wants_all = true;
+  ArcDetector detector;
+  const auto found = detector.detect(picture.view(), thresholds);
+  EXPECT_EQ(found.size(), 400U);
+  for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
+}
+
+TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
+  const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
+  const Picture picture = rendered(disc(), truth, 120, 100);
+  EXPECT_EQ(best_iou(picture, truth, detecting()), 0.0);
+  Thresholds thresholds = detecting();
+  thresholds.min_contour_size = 20;
+  EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
+}
+
+TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
+  Random random(11);
+  Thresholds thresholds = detecting();
+  thresholds.min_contour_size = 20;
+  for (const Pattern pattern : {Pattern::kDisc, Pattern::kRing}) {
+    int found = 0;
+    for (std::uint64_t i = 0; i < 50; ++i) {
+      Scene scene = plain_ring();
+      scene.pad.pattern = pattern;
+      scene.pad.paint_level = 110.0;
+      scene.ground.level = 170.0;
+      scene.sensor.read_noise = 3.0;
+      scene.seed = i;
+      const Ellipse truth = support::random_ellipse(random, 60, 50, 6.0);
+      found += best_iou(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8 ? 1 : 0;
+    }
+    EXPECT_GE(found, 42) << static_cast<int>(pattern);
+  }
+}
+
+TEST(ArcDetector, RejectsByEachThreshold) {
+  const Ellipse truth{160.0, 120.0, 60.0, 30.0, 0.2};
+  const Picture picture = rendered(disc(), truth);
+  ASSERT_GT(best_iou(picture, truth, detecting()), 0.95);
+  const auto with = [&](auto change) {
+    Thresholds thresholds = detecting();
+    change(thresholds);
+    return best_iou(picture, truth, thresholds);
+  };
+  EXPECT_EQ(with([](Thresholds& t) { t.min_axis_px = 62.0; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.max_axis_px = 118.0; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.max_axis_ratio = 1.9; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.min_contour_size = 400; }), 0.0);
+  EXPECT_EQ(with([](Thresholds& t) { t.edge_high = 60.0; }), 0.0);
+}
+
+TEST(ArcDetector, IsExact) {
+  // Discs of 10 to 120 px under noise: the centre and both axes, without bias.
+  Random random(4);
+  std::vector<double> centre;
+  std::vector<double> axes;
+  ArcDetector detector;
+  for (int i = 0; i < 60; ++i) {
+    const double radius = 10.0 * std::pow(12.0, random.unit());
+    const Ellipse truth = support::random_ellipse(random, 200, 180, radius);
+    Scene scene = disc();
+    scene.sensor.read_noise = 3.0;
+    scene.seed = static_cast<std::uint64_t>(i);
+    const Picture picture = rendered(scene, truth, 400, 360);
+    const auto target = select_target(detector.detect(picture.view(), detecting()));
+    ASSERT_TRUE(target) << truth.semi_major;
+    centre.push_back((target->ellipse.center() - truth.center()).norm());
+    axes.push_back(target->ellipse.semi_major - truth.semi_major);
+    axes.push_back(target->ellipse.semi_minor - truth.semi_minor);
+  }
+  std::sort(centre.begin(), centre.end());
+  std::sort(axes.begin(), axes.end());
+  EXPECT_LE(centre[30], 0.02);
+  EXPECT_NEAR(axes[60], 0.0, 0.01);
+  EXPECT_GT(axes.front(), -0.1);
+  EXPECT_LT(axes.back(), 0.1);
+}
+
+TEST(ArcDetector, AdaptsToTheLight) {
+  const Ellipse truth{160.0, 120.0, 60.0, 40.0, 0.2};
+  for (const double gain : {1.0, 0.4, 0.14}) {
+    Scene scene = plain_ring();
+    scene.sensor.gain = gain;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.9) << gain;
+  }
+}
+
+TEST(ArcDetector, FindsNothingInAFlatPicture) {
+  for (const int level : {0, 128, 255}) {
+    EXPECT_TRUE(finds_nothing(Picture(200, 150, static_cast<std::uint8_t>(level)))) << level;
+  }
+}
+
+TEST(ArcDetector, FindsNothingInNoise) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Picture picture(320, 240);
+    Random random(seed);
+    for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
+    EXPECT_TRUE(finds_nothing(picture)) << seed;
+  }
+}
+
+TEST(ArcDetector, FindsNothingOnACheckerboard) {
+  for (const int square : {1, 2, 7, 20, 33}) {
+    Picture picture(320, 240);
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        picture.at(x, y) = ((x / square + y / square) & 1) != 0 ? 255 : 0;
+      }
+    }
+    EXPECT_TRUE(finds_nothing(picture)) << square;
+  }
+}
+
+TEST(ArcDetector, SurvivesAnySizeAndStride) {
+  ArcDetector detector;
+  Random random(8);
+  for (const int width : {1, 2, 3, 5, 8, 33, 257}) {
+    for (const int height : {1, 2, 3, 5, 8, 33, 257}) {
+      const int stride = width + 7;
+      std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * height));
+      for (std::uint8_t& level : pixels) level = random.below(8) == 0 ? 255 : 0;
+      EXPECT_LE(detector.detect({pixels.data(), width, height, stride}, detecting()).size(), 400U);
+    }
+  }
+  EXPECT_TRUE(detector.detect({}, detecting()).empty());
+}
+
+TEST(ArcDetector, GivesTheSameForTheSame) {
+  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 70.0, 45.0, 0.6});
+  ArcDetector used;
+  (void)used.detect(Picture(500, 300, 90).view(), detecting());
+  const auto again = used.detect(picture.view(), detecting());
+  ArcDetector fresh;
+  const auto first = fresh.detect(picture.view(), detecting());
+  ASSERT_EQ(first.size(), again.size());
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].ellipse, again[i].ellipse);
+}
+
+TEST(ArcDetector, GivesTheSameWithAllInstructions) {
+  if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
+  for (const double radius : {9.0, 30.0, 90.0}) {
+    const Ellipse truth{160.0, 120.0, radius * 1.2, radius / 1.2, 0.6};
+    const Picture picture = rendered(plain_ring(), truth);
+    ArcDetector baseline(Simd::kBaseline);
+    ArcDetector best(best_simd());
+    const auto a = baseline.detect(picture.view(), detecting());
+    const auto b = best.detect(picture.view(), detecting());
+    ASSERT_EQ(a.size(), b.size());
+    ASSERT_FALSE(a.empty()) << radius;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_LT(max_difference_px(a[i].ellipse, b[i].ellipse), 0.001) << radius;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ellipse

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+//
+// The stages of the arc detector, one by one.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/detection/arcs/arcs.hpp"
+#include "core/edges/chains.hpp"
+#include "core/edges/edge_refinement.hpp"
+#include "core/edges/gradient_map.hpp"
+#include "core/edges/perimeter.hpp"
+#include "core/geometry/ellipse_fit.hpp"
+#include "core/scene/random.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+constexpr double kFloor = 1.25;
+
+Picture random_picture(int width, int height, std::uint64_t seed) {
+  Picture picture(width, height);
+  Random random(seed);
+  for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
+  return picture;
+}
+
+Scene disc(double paint = 55.0) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  scene.pad.paint_level = paint;
+  scene.ground.level = 140.0;
+  scene.sensor.read_noise = 1.0;
+  return scene;
+}
+
+TEST(GradientMap, IsTheConvolution) {
+  const Picture picture = random_picture(61, 23, 3);
+  constexpr int kSmooth[5] = {1, 4, 6, 4, 1};
+  constexpr int kDifference[5] = {-1, -2, 0, 2, 1};
+  GradientMap map;
+  map.compute(picture.view(), 0.0, kFloor);
+  for (int y = 3; y < 20; ++y) {
+    for (int x = 3; x < 59; ++x) {
+      int gx = 0;
+      int gy = 0;
+      for (int j = 0; j < 5; ++j) {
+        for (int i = 0; i < 5; ++i) {
+          const int level = picture.view().row(y + j - 2)[x + i - 2];
+          gx += kSmooth[j] * kDifference[i] * level;
+          gy += kDifference[j] * kSmooth[i] * level;
+        }
+      }
+      const Gradient& g = map.gradients()[y * map.stride() + x];
+      ASSERT_EQ(g.x, gx);
+      ASSERT_EQ(g.y, gy);
+      for (const bool is_row : {false, true}) {
+        std::array<Gradient, 2> line;
+        gradients_along(picture.view(), is_row ? x - 1 : x, is_row ? y : y - 1, is_row, line);
+        ASSERT_EQ(line[1].x, gx);
+        ASSERT_EQ(line[1].y, gy);
+      }
+    }
+  }
+}
+
+TEST(GradientMap, IsTheSameWithAllInstructions) {
+  if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
+  for (const int width : {1, 5, 31, 32, 33, 97, 321}) {
+    const Picture picture = rendered(disc(), {width / 2.0, 20.0, 15.0, 10.0, 0.4}, width, 41);
+    GradientMap baseline(Simd::kBaseline);
+    GradientMap best(best_simd());
+    baseline.compute(picture.view(), 0.0, kFloor);
+    best.compute(picture.view(), 0.0, kFloor);
+    ASSERT_EQ(baseline.threshold(), best.threshold());
+    for (int i = 0; i < baseline.stride() * 41; ++i) {
+      ASSERT_EQ(baseline.maxima()[i], best.maxima()[i]) << width;
+      ASSERT_EQ(baseline.gradients()[i].x, best.gradients()[i].x) << width;
+      ASSERT_EQ(baseline.gradients()[i].y, best.gradients()[i].y) << width;
+    }
+  }
+}
+
+TEST(GradientMap, MeasuresTheNoise) {
+  // The norm of a 5 x 5 kernel is sqrt(70 x 10) = 26.5.
+  for (const double noise : {2.0, 5.0, 14.0}) {
+    Scene scene = plain_ring();
+    scene.sensor.read_noise = noise;
+    scene.ground.level = 128.0;
+    const Picture picture = rendered(scene, {-90.0, 0.0, 5.0, 5.0, 0.0}, 320, 240);
+    GradientMap map;
+    map.compute(picture.view(), 0.0, kFloor);
+    EXPECT_NEAR(map.noise() / (26.5 * noise), 1.0, 0.15) << noise;
+    EXPECT_NEAR(map.threshold(), std::max(4.0 * map.noise(), kFloor * kGradientGain), 1e-9);
+  }
+}
+
+TEST(GradientMap, TakesAThresholdThatIsGiven) {
+  const Picture picture = random_picture(40, 40, 1);
+  GradientMap map;
+  map.compute(picture.view(), 3.0, kFloor);
+  EXPECT_EQ(map.threshold(), 3.0 * kGradientGain);
+}
+
+TEST(GradientMap, HasNoMaximumNearTheBorderNorInTinyPictures) {
+  for (const int width : {1, 2, 6, 7, 40}) {
+    for (const int height : {1, 2, 6, 7, 40}) {
+      const Picture picture = random_picture(width, height, 5);
+      GradientMap map;
+      map.compute(picture.view(), 0.1, kFloor);
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < map.stride(); ++x) {
+          const bool is_inside = x >= 3 && y >= 3 && x < width - 3 && y < height - 3;
+          if (!is_inside) {
+            ASSERT_EQ(map.maxima()[y * map.stride() + x], 0);
+          }
+        }
+      }
+    }
+  }
+}
+
+struct Traced {
+  explicit Traced(const Picture& picture) {
+    map.compute(picture.view(), 0.0, kFloor);
+    chains.trace(map);
+    arcs = splitter.split(map, chains);
+  }
+  GradientMap map;
+  ChainTracer chains;
+  ArcSplitter splitter;
+  std::span<Arc> arcs;
+};
+
+TEST(ChainTracer, MakesOneClosedChainOfADisc) {
+  const Traced traced(rendered(disc(), {100.0, 80.0, 50.0, 35.0, 0.3}, 200, 160));
+  ASSERT_EQ(traced.chains.size(), 1U);
+  const Chain chain = traced.chains.chain(0);
+  EXPECT_TRUE(chain.is_closed);
+  EXPECT_GT(chain.pixels.size(), 200U);
+  for (const std::int32_t pixel : chain.pixels) {
+    EXPECT_NE(traced.map.maxima()[pixel] & maximum::kChained, 0);
+  }
+}
+
+TEST(ChainTracer, BridgesAGapOfOnePixel) {
+  Picture picture(120, 60, 140);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 60; x < 120; ++x) picture.at(x, y) = 40;
+  }
+  GradientMap map;
+  map.compute(picture.view(), 0.0, kFloor);
+  for (int x = 0; x < map.stride(); ++x) map.maxima()[30 * map.stride() + x] = 0;
+  ChainTracer chains;
+  chains.trace(map);
+  ASSERT_EQ(chains.size(), 1U);
+  EXPECT_FALSE(chains.chain(0).is_closed);
+}
+
+TEST(ArcSplitter, KnowsTheDarkSide) {
+  const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
+  for (const double paint : {40.0, 230.0}) {
+    const Traced traced(rendered(disc(paint), e, 200, 160));
+    ASSERT_EQ(traced.arcs.size(), 1U);
+    const Arc& arc = traced.arcs[0];
+    EXPECT_EQ(arc.polarity, paint < 140.0 ? Polarity::kDarkInside : Polarity::kBrightInside);
+    const auto fit = fit_ellipse(arc.moments);
+    ASSERT_TRUE(fit);
+    EXPECT_LT(max_difference_px(*fit, e), 0.2);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_GT(arc.inwards[k].dot(e.center() - arc.points[k]), 0.0);
+    }
+  }
+}
+
+TEST(ArcSplitter, CutsAtCorners) {
+  Picture picture(120, 100, 150);
+  for (int y = 30; y < 70; ++y) {
+    for (int x = 30; x < 90; ++x) picture.at(x, y) = 40;
+  }
+  EXPECT_TRUE(Traced(picture).arcs.empty());  // straight lines turn too little
+}
+
+TEST(ArcSplitter, CutsWhereTheCurvatureChangesItsSign) {
+  // The upper side of a dark ground is a wave.
+  Picture picture(260, 120, 150);
+  for (int x = 0; x < 260; ++x) {
+    const double edge = 60.0 + 25.0 * std::sin(2.0 * std::numbers::pi * x / 130.0);
+    for (int y = 0; y < 120; ++y) {
+      const double share = std::clamp(y - edge + 0.5, 0.0, 1.0);
+      picture.at(x, y) = static_cast<std::uint8_t>(150.0 - 100.0 * share);
+    }
+  }
+  const Traced traced(picture);
+  int dark_inside = 0;
+  for (const Arc& arc : traced.arcs) dark_inside += arc.polarity == Polarity::kDarkInside ? 1 : 0;
+  EXPECT_EQ(dark_inside, 2);
+  EXPECT_EQ(traced.arcs.size() - 2U, 2U);
+}
+
+TEST(MomentFit, AddsMomentsAndTellsTheResidual) {
+  const Ellipse e{120.0, 90.0, 60.0, 30.0, 0.4};
+  Random random(9);
+  Moments first(Eigen::Vector2d(100.0, 100.0));
+  Moments second(Eigen::Vector2d(100.0, 100.0));
+  Moments all(Eigen::Vector2d(100.0, 100.0));
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::Vector2d on = e.point_at(i * 0.0157);
+    const double off = 0.5 * (random.unit() + random.unit() + random.unit() - 1.5) * 2.0;
+    const Eigen::Vector2d p = on + off * (on - e.center()).normalized();
+    (i < 150 ? first : second).add(p);
+    all.add(p);
+  }
+  first.add(second);
+  const auto fit = fit_with_residual(first);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(max_difference_px(fit->ellipse, fit_with_residual(all)->ellipse), 1e-6);
+  EXPECT_NEAR(fit->rms_px, 0.5, 0.06);  // a standard deviation of .5 along the radius
+}
+
+TEST(PerimeterProbe, CountsWhatIsThereAndOnTheRightSide) {
+  const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
+  const Traced traced(rendered(disc(), e, 200, 160));
+  PerimeterProbe probe;
+  const PerimeterEvidence found = probe.probe(traced.map, e, Polarity::kDarkInside, 128, 2);
+  EXPECT_GT(found.support, 0.99);
+  EXPECT_GT(found.turn_support, 0.99);
+  EXPECT_EQ(found.inside_fraction, 1.0);
+  EXPECT_GT(found.levels[0], 0.95);
+  EXPECT_EQ(probe.probe(traced.map, e, Polarity::kBrightInside, 128, 2).support, 0.0);
+  const Ellipse other = translated(e, 0.0, 9.0);
+  EXPECT_LT(probe.probe(traced.map, other, Polarity::kDarkInside, 128, 2).support, 0.3);
+}
+
+TEST(PerimeterProbe, CountsInsideThePictureOnly) {
+  const Ellipse e{0.0, 80.0, 50.0, 40.0, 0.0};
+  const Traced traced(rendered(disc(), e, 200, 160));
+  PerimeterProbe probe;
+  const PerimeterEvidence found = probe.probe(traced.map, e, Polarity::kDarkInside, 128, 2);
+  EXPECT_NEAR(found.inside_fraction, 0.46, 0.05);
+  EXPECT_GT(found.support, 0.95);
+}
+
+TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
+  const Ellipse truth{100.3, 80.6, 50.0, 30.0, 0.3};
+  const Picture picture = rendered(disc(), truth, 200, 160);
+  Ellipse start = translated(truth, 0.8, -0.7);
+  start.semi_major += 0.8;
+  const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, 200.0);
+  ASSERT_TRUE(refined);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
+  EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, 200.0));
+}
+
+}  // namespace
+}  // namespace ellipse

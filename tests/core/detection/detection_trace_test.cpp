@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: MIT
+#include "core/detection/detection_trace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/detection/detectors.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/detection/trace_image.hpp"
+#include "core/image/scale.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+const Ellipse kRing{160.2, 119.7, 60.0, 45.0, 0.4};
+
+Thresholds detecting(const Detector& detector) {
+  Thresholds thresholds;
+  thresholds.contour_overlap = detector.detecting_overlaps().contour;
+  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
+  return thresholds;
+}
+
+Picture of_scene(const char* name, double time_s) {
+  Picture picture(640, 360);
+  (void)SceneRenderer(scene_by_name(name)).render(time_s, 0, picture.writable());
+  return picture;
+}
+
+using Change = std::function<void(Thresholds&)>;
+
+struct Look {
+  DetectionTrace trace;
+  Thresholds thresholds;
+  std::vector<Detection> detections;
+  std::optional<Detection> target;
+};
+
+Look look_at(DetectorKind kind,
+             const Picture& picture,
+             const Change& change = {},
+             const std::optional<Ellipse>& last_target = {}) {
+  Look look;
+  const auto detector = make_detector(kind);
+  detector->set_trace(&look.trace);
+  look.thresholds = detecting(*detector);
+  if (change) change(look.thresholds);
+  const auto found = detector->detect(picture.view(), look.thresholds);
+  look.detections.assign(found.begin(), found.end());
+  look.target = select_target(look.detections, last_target, &look.trace);
+  return look;
+}
+
+const TracedCandidate* first_with(const DetectionTrace& trace, Reason reason) {
+  const auto it = std::find_if(trace.candidates().begin(),
+                               trace.candidates().end(),
+                               [&](const auto& c) { return c.verdict.reason == reason; });
+  return it != trace.candidates().end() ? &*it : nullptr;
+}
+
+bool has(const Look& look, Reason reason) {
+  return first_with(look.trace, reason) != nullptr;
+}
+
+class DetectionTraceOf : public testing::TestWithParam<DetectorKind> {
+ protected:
+  // The first verdict for this reason; accepted where there is none.
+  static Verdict verdict_for(Reason reason,
+                             const Picture& picture,
+                             const Change& change = {},
+                             const std::optional<Ellipse>& last_target = {}) {
+    const Look look = look_at(GetParam(), picture, change, last_target);
+    const TracedCandidate* candidate = first_with(look.trace, reason);
+    return candidate != nullptr ? candidate->verdict : Verdict{};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Detectors,
+                         DetectionTraceOf,
+                         testing::Values(DetectorKind::kContours, DetectorKind::kArcs),
+                         [](const auto& info) {
+                           return std::string(detector_nicks()[std::size_t(info.param)]);
+                         });
+
+TEST_P(DetectionTraceOf, ChangesNoBitOfWhatIsFound) {
+  for (const NamedScene& scene : scene_catalog()) {
+    const Picture picture = of_scene(scene.name, 4.0);
+    const auto plain = make_detector(GetParam());
+    const auto expected = plain->detect(picture.view(), detecting(*plain));
+    const Look look = look_at(GetParam(), picture);
+    ASSERT_EQ(look.detections.size(), expected.size()) << scene.name;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(look.detections[i].ellipse, expected[i].ellipse) << scene.name;
+      EXPECT_EQ(look.detections[i].contour_overlap, expected[i].contour_overlap);
+      EXPECT_EQ(look.detections[i].ellipse_overlap, expected[i].ellipse_overlap);
+      EXPECT_EQ(look.detections[i].score, expected[i].score);
+    }
+    const auto target = select_target(expected);
+    ASSERT_EQ(look.target.has_value(), target.has_value()) << scene.name;
+    if (!target) continue;
+    EXPECT_EQ(look.target->ellipse, target->ellipse) << scene.name;
+  }
+}
+
+TEST_P(DetectionTraceOf, HasEachDetectionAndOneTarget) {
+  const Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
+  ASSERT_TRUE(look.target);
+  int targets = 0;
+  for (const TracedCandidate& candidate : look.trace.candidates()) {
+    targets += candidate.is_target ? 1 : 0;
+    if (!candidate.is_target) continue;
+    EXPECT_EQ(*candidate.ellipse, look.target->ellipse);
+    EXPECT_EQ(candidate.score, look.target->score);
+    EXPECT_TRUE(candidate.verdict.is_accepted());
+  }
+  EXPECT_EQ(targets, 1);
+  for (const Detection& detection : look.detections) {
+    const auto& candidate = look.trace.candidates()[std::size_t(detection.candidate)];
+    EXPECT_EQ(*candidate.ellipse, detection.ellipse);
+    EXPECT_FALSE(candidate.pieces.empty());
+  }
+}
+
+TEST_P(DetectionTraceOf, SaysTooSmallInPixelsOfTheFrame) {
+  const Verdict verdict = verdict_for(
+      Reason::kTooSmall, rendered(plain_ring(), kRing), [](auto& t) { t.min_axis_px = 110.0; });
+  EXPECT_EQ(verdict.limit, 110.0);
+  EXPECT_NEAR(verdict.measured, 2.0 * kRing.semi_minor, 25.0);  // of the outer or inner edge
+}
+
+TEST_P(DetectionTraceOf, SaysTooLarge) {
+  const Verdict verdict = verdict_for(
+      Reason::kTooLarge, rendered(plain_ring(), kRing), [](auto& t) { t.max_axis_px = 80.0; });
+  EXPECT_EQ(verdict.limit, 80.0);
+  EXPECT_NEAR(verdict.measured, 2.0 * kRing.semi_major, 35.0);
+}
+
+TEST_P(DetectionTraceOf, SaysTooFlat) {
+  const Verdict verdict = verdict_for(
+      Reason::kTooFlat, rendered(plain_ring(), kRing), [](auto& t) { t.max_axis_ratio = 1.2; });
+  EXPECT_EQ(verdict.limit, 1.2);
+  EXPECT_NEAR(verdict.measured, kRing.aspect_ratio(), 0.05);
+}
+
+TEST_P(DetectionTraceOf, SaysContourTooShort) {
+  const Verdict verdict = verdict_for(Reason::kContourTooShort,
+                                      rendered(plain_ring(), kRing),
+                                      [](auto& t) { t.min_contour_size = 1000; });
+  EXPECT_EQ(verdict.limit, 1000.0);
+  EXPECT_GT(verdict.measured, 5.0);
+}
+
+TEST_P(DetectionTraceOf, SaysContourOverlap) {
+  const Verdict verdict = verdict_for(
+      Reason::kContourOverlap, of_scene("glare", 0.5), [](auto& t) { t.contour_overlap = 1.0; });
+  EXPECT_EQ(verdict.limit, 1.0);
+  EXPECT_GT(verdict.measured, 0.0);
+}
+
+TEST_P(DetectionTraceOf, SaysEllipseOverlap) {
+  Scene scene = plain_ring();
+  scene.pad.gaps_rad = {1.0, 3.1, 5.2};
+  scene.pad.gap_width_rad = 1.2;
+  const Verdict verdict = verdict_for(Reason::kEllipseOverlap, rendered(scene, kRing), [](auto& t) {
+    t.contour_overlap = 0.4;
+    t.ellipse_overlap = 1.0;
+    t.min_contour_size = 20;
+  });
+  EXPECT_EQ(verdict.limit, 1.0);
+  EXPECT_LT(verdict.measured, verdict.limit);
+  EXPECT_GT(verdict.measured, 0.1);
+}
+
+TEST_P(DetectionTraceOf, SaysThatAnotherIsTheSame) {
+  const bool is_contours = GetParam() == DetectorKind::kContours;
+  const Picture picture = is_contours ? rendered(plain_ring(), kRing) : of_scene("glare", 6.0);
+  EXPECT_EQ(verdict_for(Reason::kKnown, picture, [](auto& t) { t.min_contour_size = 20; }).reason,
+            Reason::kKnown);
+}
+
+TEST_P(DetectionTraceOf, SaysThatPointsMakeNoEllipse) {
+  const bool is_contours = GetParam() == DetectorKind::kContours;
+  const Picture picture = of_scene(is_contours ? "glare" : "orbit", is_contours ? 0.5 : 5.0);
+  EXPECT_EQ(
+      verdict_for(Reason::kNoEllipse, picture, [](auto& t) { t.min_contour_size = 20; }).reason,
+      Reason::kNoEllipse);
+}
+
+TEST_P(DetectionTraceOf, SaysInnerEdge) {
+  const Verdict verdict = verdict_for(Reason::kInnerEdge, rendered(plain_ring(), kRing));
+  EXPECT_NEAR(verdict.limit, 2.0 * kRing.semi_major, 1.0);
+  EXPECT_LT(verdict.measured, verdict.limit - 5.0);
+}
+
+TEST_P(DetectionTraceOf, SaysWhereTheTargetWas) {
+  Ellipse last = kRing;
+  last.cx -= 100.0;
+  const Verdict place = verdict_for(Reason::kOtherPlace, rendered(plain_ring(), kRing), {}, last);
+  EXPECT_NEAR(place.measured, 100.0, 0.5);
+  EXPECT_EQ(place.limit, last.semi_major);
+  last = scaled(kRing, 3.0);
+  last.cx = kRing.cx;
+  last.cy = kRing.cy;
+  const Verdict size = verdict_for(Reason::kOtherSize, rendered(plain_ring(), kRing), {}, last);
+  EXPECT_LT(size.measured, size.limit);
+  EXPECT_NEAR(size.limit, last.semi_major, 1e-9);
+}
+
+TEST_P(DetectionTraceOf, SaysThatAnotherSetHasMore) {
+  Picture picture = rendered(plain_ring(), kRing, 640, 240);
+  const Ellipse small{480.0, 120.0, 30.0, 26.0, 0.1};
+  const Picture second = rendered(plain_ring(), small, 640, 240);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    picture.pixels[i] = std::min(picture.pixels[i], second.pixels[i]);
+  }
+  const Verdict verdict = verdict_for(Reason::kWeakerSet, picture);
+  EXPECT_GT(verdict.measured, 0.0);
+  EXPECT_LT(verdict.measured, verdict.limit);
+}
+
+TEST_P(DetectionTraceOf, SaysThatWhatIsAloneDoesNotCount) {
+  const bool is_contours = GetParam() == DetectorKind::kContours;
+  const Picture picture = of_scene("approach", is_contours ? 5.5 : 2.5);
+  const int least = is_contours ? 50 : 20;
+  EXPECT_EQ(
+      verdict_for(Reason::kSingle, picture, [&](auto& t) { t.min_contour_size = least; }).reason,
+      Reason::kSingle);
+}
+
+TEST_P(DetectionTraceOf, SaysWeakInSet) {
+  const double time_s = GetParam() == DetectorKind::kContours ? 4.0 : 5.5;
+  const Verdict verdict = verdict_for(Reason::kWeakInSet, of_scene("bullseye", time_s));
+  EXPECT_GT(verdict.measured, 0.0);
+  EXPECT_LT(verdict.measured, verdict.limit);
+}
+
+TEST_P(DetectionTraceOf, FiguresAgreeWithEllipses) {
+  for (const char* name : {"approach", "glare", "oblique"}) {
+    const Look look = look_at(GetParam(), of_scene(name, 4.0));
+    for (const TracedCandidate& candidate : look.trace.candidates()) {
+      if (!candidate.ellipse) continue;
+      const Ellipse& e = *candidate.ellipse;
+      const Verdict& verdict = candidate.verdict;
+      if (verdict.reason == Reason::kTooFlat && GetParam() == DetectorKind::kContours) {
+        EXPECT_EQ(verdict.measured, e.aspect_ratio());
+        EXPECT_EQ(verdict.limit, look.thresholds.max_axis_ratio);
+      }
+      if (verdict.reason == Reason::kTooSmall) {
+        EXPECT_LT(verdict.measured, look.thresholds.min_axis_px);
+        EXPECT_EQ(verdict.limit, look.thresholds.min_axis_px);
+      }
+    }
+  }
+}
+
+TEST_P(DetectionTraceOf, HasItsStages) {
+  const Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
+  for (const TracedPass& pass : look.trace.passes()) {
+    EXPECT_EQ(pass.region, (Rect{0, 0, 320, 240}));
+    ASSERT_EQ(pass.edges.size(), std::size_t(pass.width) * std::size_t(pass.height));
+    EXPECT_EQ(pass.edges.size(), pass.luma.size());
+    const auto edges = std::count(pass.edges.begin(), pass.edges.end(), 255);
+    // Two edges of the ring, one pixel wide.
+    const double length = 2.0 * perimeter_px(kRing) / pass.scale;
+    EXPECT_GT(edges, 0.5 * length);
+    EXPECT_LT(edges, 1.5 * length);
+    EXPECT_GE(pass.chains.size(), 2U);
+    EXPECT_GT(pass.edge_high, 0.0);
+    for (const TracedPoint& point : pass.points) {
+      EXPECT_TRUE(point.x >= 0 && point.x < pass.width && point.y >= 0 && point.y < pass.height);
+    }
+  }
+}
+
+TEST_P(DetectionTraceOf, AnEmptyPictureHasNothing) {
+  Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
+  const auto detector = make_detector(GetParam());
+  detector->set_trace(&look.trace);
+  EXPECT_TRUE(detector->detect(ImageView{}, look.thresholds).empty());
+  EXPECT_TRUE(look.trace.candidates().empty());
+}
+
+TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
+  const struct {
+    Reason reason;
+    const char* scene;
+    double time_s;
+    int min_contour_size;
+  } kCases[] = {
+      {Reason::kPoorFit, "glare", 4.0, 50},
+      {Reason::kRefused, "glare", 7.0, 50},
+      {Reason::kTooFewEdges, "oblique", 2.5, 50},
+      {Reason::kUnlikely, "oblique", 2.0, 50},
+      {Reason::kWrongDirection, "approach", 4.0, 20},
+      {Reason::kScattered, "approach", 2.5, 20},
+      {Reason::kOpenEnds, "negative", 4.0, 50},
+      {Reason::kNoPartner, "glare", 3.0, 20},
+      {Reason::kLoneCut, "oblique", 2.5, 20},
+      {Reason::kLoneCutFlat, "oblique", 2.0, 20},
+      {Reason::kLoneOpen, "glare", 6.0, 20},
+  };
+  for (const auto& one : kCases) {
+    const Look look = look_at(DetectorKind::kArcs, of_scene(one.scene, one.time_s), [&](auto& t) {
+      t.min_contour_size = one.min_contour_size;
+    });
+    EXPECT_TRUE(has(look, one.reason)) << reason_info(one.reason).nick;
+  }
+}
+
+// Also where a first look asks for a part of the setting, or a lone ellipse for more than it.
+TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
+  int refused = 0;
+  for (const char* name : {"approach", "glare", "oblique"}) {
+    const Look look = look_at(GetParam(), of_scene(name, 6.0), [](auto& t) {
+      t.ellipse_overlap = 0.66;
+      t.min_contour_size = 20;
+    });
+    for (const TracedCandidate& candidate : look.trace.candidates()) {
+      const Verdict& verdict = candidate.verdict;
+      if (reason_info(verdict.reason).setting != std::string_view("ellipse-overlap")) continue;
+      EXPECT_EQ(verdict.limit, 0.66) << to_text(verdict);
+      EXPECT_LT(verdict.measured, 0.66) << to_text(verdict);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST(DetectionTrace, OfALoneEllipseMeasuresTheSettingThatWouldTakeIt) {
+  const auto look_with = [](double overlap) {
+    return look_at(DetectorKind::kArcs, of_scene("glare", 6.0), [&](auto& t) {
+      t.min_contour_size = 20;
+      t.ellipse_overlap = overlap;
+    });
+  };
+  const Look look = look_with(0.55);
+  const TracedCandidate* lone = first_with(look.trace, Reason::kLoneOpen);
+  ASSERT_NE(lone, nullptr);
+  const double enough = lone->verdict.measured;
+  ASSERT_GT(enough, 0.0);
+  const auto finds_it = [&](const Look& other) {
+    return std::any_of(other.detections.begin(), other.detections.end(), [&](const auto& found) {
+      return (found.ellipse.center() - lone->ellipse->center()).norm() < 1.0 &&
+             std::abs(found.ellipse.semi_major - lone->ellipse->semi_major) < 1.0;
+    });
+  };
+  EXPECT_FALSE(finds_it(look_with(enough + 0.01)));
+  EXPECT_TRUE(finds_it(look_with(enough - 0.01)));
+}
+
+TEST(DetectionTrace, OfArcsSaysThatTheFullSizeWasLookedAtInstead) {
+  const Look look = look_at(
+      DetectorKind::kArcs, of_scene("occluded", 0.5), [](auto& t) { t.contour_overlap = 1.0; });
+  ASSERT_EQ(look.trace.passes().size(), 2U);
+  const TracedCandidate* candidate = first_with(look.trace, Reason::kLookedAgain);
+  ASSERT_NE(candidate, nullptr);
+  EXPECT_EQ(candidate->pass, 0U);
+  EXPECT_EQ(look.trace.passes()[0].scale, 2);
+}
+
+TEST(DetectionTrace, OfATrackerIsInPixelsOfTheFrame) {
+  const Picture picture = rendered(plain_ring(), kRing);
+  TrackerSettings settings;
+  settings.tracking = TrackingMode::kNone;
+  Tracker tracker(settings);
+  DetectionTrace trace;
+  tracker.set_trace(&trace);
+  const auto target = tracker.process(picture.view(), 0, {{60, 40, 200, 160}, 2});
+  ASSERT_TRUE(target);
+  const auto it = std::find_if(trace.candidates().begin(),
+                               trace.candidates().end(),
+                               [](const auto& c) { return c.is_target; });
+  ASSERT_NE(it, trace.candidates().end());
+  EXPECT_EQ(*it->ellipse, target->ellipse);
+  EXPECT_EQ(trace.passes().back().region, (Rect{60, 40, 200, 160}));
+  EXPECT_EQ(trace.passes().front().scale, 2);
+  tracker.set_trace(nullptr);
+  (void)tracker.process(Picture(320, 240).view(), 1);
+  EXPECT_FALSE(trace.candidates().empty());
+}
+
+TEST(Verdict, ReadsAsASentence) {
+  EXPECT_EQ(to_text({Reason::kTooFlat, 6.1, 5.0}), "too flat: axis ratio 6.1, at most 5");
+  EXPECT_EQ(to_text({Reason::kTooSmall, 3.25, 5.0}), "too small: minor axis 3.25 px, at least 5");
+  EXPECT_EQ(to_text({Reason::kKnown}), "the same as another that was found");
+  EXPECT_EQ(to_text({}), "accepted");
+}
+
+// The colour of the pixel at the right end of the major axis of kRing.
+std::array<int, 3> at_edge(const RgbPicture& picture) {
+  const Eigen::Vector2d point = kRing.point_at(0.0) * picture.width / 320.0;
+  const auto at = 3 * (std::size_t(std::lround(point.y())) * std::size_t(picture.width) +
+                       std::size_t(std::lround(point.x())));
+  return {picture.pixels[at], picture.pixels[at + 1], picture.pixels[at + 2]};
+}
+
+TEST(StagePicture, DrawsEachStage) {
+  const Look look = look_at(DetectorKind::kContours, rendered(plain_ring(), kRing));
+  for (std::size_t i = 0; i < stage_nicks().size(); ++i) {
+    const RgbPicture picture = draw_stage(look.trace, 0, static_cast<Stage>(i));
+    ASSERT_EQ(picture.pixels.size(), 3U * 320U * 240U);
+    EXPECT_GT(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 80)
+        << stage_nicks()[i];
+  }
+  const auto [red, green, blue] = at_edge(draw_stage(look.trace, 0, Stage::kCandidates));
+  EXPECT_GT(green, 200);  // the target
+  EXPECT_LT(red, 120);
+  EXPECT_LT(blue, 180);
+  EXPECT_TRUE(draw_stage(look.trace, 1, Stage::kEdges).pixels.empty());
+}
+
+TEST(StagePicture, DrawsContoursThatAreTooShortInGrey) {
+  const Look look = look_at(DetectorKind::kContours, rendered(plain_ring(), kRing), [](auto& t) {
+    t.min_contour_size = 1000;
+  });
+  const RgbPicture picture = draw_stage(look.trace, 0, Stage::kChains);
+  EXPECT_EQ(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 98);
+}
+
+}  // namespace
+}  // namespace ellipse

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// A circle that the lens bends out of an ellipse is found, followed and told in the ideal plane.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/detection/arcs/arc_detector.hpp"
+#include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/edges/edge_refinement.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+
+struct Shot {
+  Picture picture{kWidth, kHeight};
+  Truth truth;
+};
+
+class DistortedPicture : public testing::TestWithParam<const char*> {
+ protected:
+  // Of the flight's lowest place, where the pad is large.
+  Shot shot(double time_s) {
+    Shot shot;
+    shot.truth = SceneRenderer(scene_).render(time_s, 7, shot.picture.writable());
+    return shot;
+  }
+
+  static Scene through_lens(const char* name) {
+    Scene scene = scene_by_name(name, 31);
+    put_on_lens(scene, GetParam());
+    return scene;
+  }
+
+  Scene scene_ = through_lens("hover");
+  const Lens lens_{camera_of(scene_, kWidth, kHeight)};
+};
+INSTANTIATE_TEST_SUITE_P(Lens, DistortedPicture, testing::Values("barrel", "fisheye"));
+
+TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
+  ArcDetector detector;
+  detector.set_lens(lens_);
+  for (const double time_s : {0.0, 1.0, 2.5, 4.0}) {
+    const Shot seen = shot(time_s);
+    const auto target = select_target(detector.detect(seen.picture.view(), {}));
+    ASSERT_TRUE(target && seen.truth.outer_edge) << time_s;
+    EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.15) << time_s;
+  }
+}
+
+// What the lens is for: without it the ellipse in the picture is not that of the ideal plane.
+TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
+  ArcDetector detector;
+  const Shot seen = shot(1.0);
+  const auto target = select_target(detector.detect(seen.picture.view(), {}));
+  const bool is_same = target && max_difference_px(target->ellipse, *seen.truth.outer_edge) < 0.45;
+  EXPECT_FALSE(is_same);
+}
+
+TEST_P(DistortedPicture, ContoursAreTakenToTheIdealPlane) {
+  ContourDetector detector;
+  detector.set_lens(lens_);
+  scene_.flight.lowest *= 4.0;  // so small that the lens leaves it nearly an ellipse
+  const Shot seen = shot(1.0);
+  const auto target = select_target(detector.detect(seen.picture.view(), {}));
+  ASSERT_TRUE(target && seen.truth.outer_edge);
+  EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.5);
+}
+
+TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
+  const Shot seen = shot(1.0);
+  ASSERT_TRUE(seen.truth.outer_edge);
+  Ellipse guess = translated(*seen.truth.outer_edge, 0.4, -0.3);
+  guess.semi_major += 0.3;
+  const auto refined = refined_on_picture(
+      seen.picture.view(), guess, Polarity::kBrightInside, 200.0, kMaxRefinementSamples, lens_);
+  const auto other = refined_on_picture(
+      seen.picture.view(), guess, Polarity::kDarkInside, 200.0, kMaxRefinementSamples, lens_);
+  ASSERT_TRUE(refined || other);
+  const Ellipse& e = refined ? refined->ellipse : other->ellipse;
+  EXPECT_LT(max_difference_px(e, *seen.truth.outer_edge), 0.1);
+}
+
+TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
+  scene_ = through_lens("touchdown");
+  TrackerSettings settings;
+  settings.camera = camera_of(scene_, kWidth, kHeight);
+  Tracker tracker(settings);
+  SceneRenderer renderer(scene_);
+  Picture picture(kWidth, kHeight);
+  double least_visible = 1.0;
+  int right = 0;
+  int shown = 0;
+  for (int i = 0; i < 130; ++i) {
+    const Truth truth =
+        renderer.render(i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    const auto target = tracker.process(picture.view(), i * 33'333'333LL);
+    if (!truth.outer_edge || truth.visible_fraction < 0.3) continue;
+    ++shown;
+    least_visible = std::min(least_visible, truth.visible_fraction);
+    const double tolerance = 0.02 * truth.outer_edge->semi_major;
+    right += target && max_difference_px(target->ellipse, *truth.outer_edge) < tolerance ? 1 : 0;
+    if (!target) continue;
+    EXPECT_NEAR(target->visible_fraction, truth.visible_fraction, 0.03) << i;
+  }
+  EXPECT_LT(least_visible, 0.5);
+  EXPECT_GT(shown, 60);
+  EXPECT_GE(right, 0.99 * shown);
+}
+
+TEST_P(DistortedPicture, IsFollowedByTheirDetectionsToo) {
+  TrackerSettings settings;
+  settings.camera = lens_.camera();
+  settings.tracking = TrackingMode::kRedetect;
+  Tracker tracker(settings);
+  for (int i = 0; i < 10; ++i) {
+    const Shot seen = shot(1.0 + i / 30.0);
+    const auto target = tracker.process(seen.picture.view(), i * 33'333'333LL);
+    ASSERT_TRUE(target) << i;
+    EXPECT_EQ(target->state == TargetState::kTracked, i > 0);
+    EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 1.0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace ellipse

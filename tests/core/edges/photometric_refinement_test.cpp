@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/photometric_refinement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/tracking/pad/outer_edge.hpp"
+#include "core/tracking/pad/pad_model.hpp"
+#include "tests/support/picture.hpp"
+
+using namespace ellipse;
+using support::bar_px;
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+namespace {
+
+constexpr double kContrast = 145.0;  // of plain_ring()
+
+Scene disc(double blur_px, double noise) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  scene.sensor.blur_px = blur_px;
+  scene.sensor.read_noise = noise;
+  return scene;
+}
+
+Ellipse nudged(Ellipse e, Random& random, double max_px) {
+  e.cx += random.between(-max_px, max_px);
+  e.cy += random.between(-max_px, max_px);
+  e.semi_major += random.between(0.0, max_px);
+  e.semi_minor += random.between(-max_px, 0.0);
+  return e;
+}
+
+// The Cramer-Rao bound of a coordinate of the centre [px], for any estimate that knows neither the
+// ellipse nor the two levels nor the blur: from the Fisher information of all pixels along the edge
+// [Kay1993] 3.7, integrated around the perimeter and across it.
+double bound_px(const Ellipse& e, double blur_px, double noise) {
+  using Vector8d = Eigen::Matrix<double, 8, 1>;
+  Eigen::Matrix<double, 8, 8> information = Eigen::Matrix<double, 8, 8>::Zero();
+  const int steps = 360;
+  const double across_px = 0.1;
+  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
+  const Eigen::Vector2d other(-axis.y(), axis.x());
+  for (int i = 0; i < steps; ++i) {
+    const double t = 2.0 * std::numbers::pi * (i + 0.5) / steps;
+    const double u = std::cos(t);
+    const double v = std::sin(t);
+    const Eigen::Vector2d across = e.semi_minor * u * axis + e.semi_major * v * other;
+    const double length_px = across.norm() * 2.0 * std::numbers::pi / steps;
+    const Eigen::Vector2d normal = across.normalized();
+    const double px = 1.0 / std::hypot(u / e.semi_major, v / e.semi_minor);
+    for (double d = -4.0 * blur_px; d <= 4.0 * blur_px; d += across_px) {
+      const double z = d / blur_px;
+      const double slope = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi) / blur_px;
+      const double step = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+      const double k = kContrast * slope;
+      Vector8d row;
+      row << k * normal.x(), k * normal.y(), k * px, k * px * (u * u - v * v), k * px * 2.0 * u * v,
+          1.0, step, k * z;
+      const double variance = noise * noise + 1.0 / 12.0;  // rounding to grey levels
+      information += row * row.transpose() * (length_px * across_px / variance);
+    }
+  }
+  const Eigen::Matrix<double, 8, 8> covariance = information.inverse();
+  return std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
+}
+
+struct Errors {
+  double rms_px = 0.0;     // of a coordinate of the centre
+  double radius_px = 0.0;  // mean
+  double bound_px = 0.0;
+};
+
+Errors errors_of(double radius, double blur_px, double noise) {
+  const Scene scene = disc(blur_px, noise);
+  Random random(static_cast<std::uint64_t>(100.0 * radius + noise));
+  const int pictures = 48;
+  Errors errors;
+  for (int i = 0; i < pictures; ++i) {
+    const Ellipse truth = support::random_ellipse(random, 130, 130, radius);
+    const Picture picture = rendered(scene, truth, 260, 260, static_cast<std::uint64_t>(i));
+    const auto refined = refined_photometrically(
+        picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
+    EXPECT_TRUE(refined) << radius << " " << noise << " " << i;
+    if (!refined) continue;
+    const Ellipse& found = refined->ellipse;
+    errors.rms_px += 0.5 * (found.center() - truth.center()).squaredNorm() / pictures;
+    errors.radius_px += (std::sqrt(found.semi_major * found.semi_minor) - radius) / pictures;
+    errors.bound_px += bound_px(truth, blur_px, noise) / pictures;
+  }
+  errors.rms_px = std::sqrt(errors.rms_px);
+  return errors;
+}
+
+}  // namespace
+
+TEST(PhotometricRefinement, ComesNearToTheCramerRaoBound) {
+  for (const double radius : {12.0, 20.0, 40.0, 70.0}) {
+    for (const double noise : {4.0, 8.0}) {
+      const Errors errors = errors_of(radius, 0.7, noise);
+      EXPECT_LE(errors.rms_px, 1.6 * errors.bound_px) << radius << " noise " << noise;
+      EXPECT_GE(errors.rms_px, 0.7 * errors.bound_px) << "the bound is wrong";
+      EXPECT_LE(std::abs(errors.radius_px), 0.02) << radius << " noise " << noise;
+    }
+  }
+}
+
+TEST(PhotometricRefinement, TellsHowBlurredTheEdgeIs) {
+  for (const double blur_px : {0.5, 1.0, 1.5}) {
+    const Errors errors = errors_of(50.0, blur_px, 4.0);
+    EXPECT_LE(errors.rms_px, 2.5 * errors.bound_px) << blur_px;
+  }
+}
+
+TEST(PhotometricRefinement, ReachesOverHalfAPixel) {
+  const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
+  const Picture picture = rendered(disc(0.7, 0.0), truth, 260, 260);
+  Ellipse start = truth;
+  start.cx += 0.5;
+  start.cy -= 0.4;
+  const auto refined =
+      refined_photometrically(picture.view(), start, Polarity::kDarkInside, 9.0, 20.0);
+  ASSERT_TRUE(refined);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
+}
+
+TEST(PhotometricRefinement, IsNotMovedByWhatIsInFrontOrByAShadow) {
+  const Ellipse truth{130.3, 129.6, 70.0, 50.0, 0.4};
+  Scene scene = disc(0.7, 2.0);
+  scene.bars = {bar_px({60.0, 0.0}, {110.0, 259.0}, 14.0, 30.0, 260, 260),
+                bar_px({140.0, 200.0}, {259.0, 120.0}, 9.0, 240.0, 260, 260)};
+  scene.light.shadows = {{0.5, 0.4, 0.35, 0.45, 0.02}};
+  const Picture picture = rendered(scene, truth, 260, 260);
+  Random random(7);
+  const auto refined = refined_photometrically(
+      picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
+  ASSERT_TRUE(refined);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.05);
+}
+
+TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
+  const Ellipse truth{20.3, 129.6, 60.0, 50.0, 0.4};
+  const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
+  const auto refined =
+      refined_photometrically(picture.view(), truth, Polarity::kDarkInside, 9.0, 20.0);
+  ASSERT_TRUE(refined);
+  EXPECT_LT((refined->ellipse.center() - truth.center()).norm(), 0.1);
+}
+
+TEST(PhotometricRefinement, GivesNothingWhereThereIsNoSuchEdge) {
+  const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
+  const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
+  const auto refined = [&](const ImageView& luma, Polarity polarity, double inside, double least) {
+    return refined_photometrically(luma, truth, polarity, inside, least).has_value();
+  };
+  EXPECT_TRUE(refined(picture.view(), Polarity::kDarkInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(picture.view(), Polarity::kBrightInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, 9.0, 200.0));
+  EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, 2.0, 20.0)) << "no room";
+  EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, std::nan(""), 20.0));
+  EXPECT_FALSE(refined(Picture(260, 260, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(Picture(1, 1, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(ImageView{}, Polarity::kDarkInside, 9.0, 20.0));
+}
+
+TEST(PhotometricRefinement, TakesEllipsesOfAnySize) {
+  const Picture picture = rendered(disc(0.7, 2.0), {130.3, 129.6, 60.0, 40.0, 0.4}, 260, 260);
+  for (const Ellipse& e : {Ellipse{130.0, 130.0, 0.01, 0.001, 0.0},
+                           Ellipse{130.0, 130.0, 5000.0, 0.01, 1.0},
+                           Ellipse{130.0, 130.0, 1e6, 1e6, 0.0},
+                           Ellipse{-1e12, 1e12, 100.0, 50.0, 0.0},
+                           Ellipse{0.0, 0.0, 1e13, 1e12, 0.3}}) {
+    EXPECT_FALSE(refined_photometrically(picture.view(), e, Polarity::kDarkInside, 9.0, 20.0))
+        << e.semi_major;
+  }
+}
+
+// -- refined_outer_edge
+
+TEST(OuterEdge, IsExactForThickAndThinRings) {
+  for (const double ring_width : {0.205, 0.1, 0.055}) {
+    Scene scene = plain_ring();
+    scene.pad.ring_width = ring_width;
+    const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
+    const Picture picture = rendered(scene, truth, 260, 260);
+    const Eigen::Matrix3d view = image_from_pad(truth);
+    const auto model = learn_circles(picture.view(), view);
+    ASSERT_TRUE(model) << ring_width;
+    Eigen::Matrix3d nudge = Eigen::Matrix3d::Identity();
+    nudge(0, 2) = 0.2;
+    const Eigen::Matrix3d start = nudge * view;
+    const auto error = [&](Refinement refinement) {
+      const auto exact = refined_outer_edge(picture.view(), start, *model, 1.0, refinement);
+      return exact ? max_difference_px(exact->ellipse, truth) : 9.0;
+    };
+    EXPECT_LT(error(Refinement::kEdges), 0.08) << ring_width;
+    EXPECT_LT(error(Refinement::kPhotometric), 0.08) << ring_width;
+    EXPECT_FALSE(refined_outer_edge(picture.view(), start, *model, 1.0, Refinement::kNone));
+  }
+}
+
+TEST(OuterEdge, IsNotTakenFromAnotherEdgeFarAway) {
+  const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
+  const Picture picture = rendered(plain_ring(), truth, 260, 260);
+  const auto model = learn_circles(picture.view(), image_from_pad(truth));
+  ASSERT_TRUE(model);
+  const Eigen::Matrix3d far_off = image_from_pad(translated(truth, 30.0, 0.0));
+  EXPECT_FALSE(refined_outer_edge(picture.view(), far_off, *model, 1.0, Refinement::kPhotometric));
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/thin_ring.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/detection/arcs/arc_detector.hpp"
+#include "core/detection/target_selection.hpp"
+#include "core/scene/random.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+Ellipse grown(Ellipse e, double px) {
+  e.semi_major += px;
+  e.semi_minor += px;
+  return e;
+}
+
+Ellipse shrunk(Ellipse e, double factor) {
+  e.semi_major *= factor;
+  e.semi_minor *= factor;
+  return e;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+TEST(RingEdges, LeavesEdgesThatAreFarApart) {
+  const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
+  const Ellipse inner = grown(outer, -7.0);
+  const RingEdges edges = without_repulsion({outer, inner});
+  EXPECT_EQ(edges.outer, outer);
+  EXPECT_EQ(edges.inner, inner);
+}
+
+TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
+  const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.3};
+  for (const double ratio : {0.78, 0.75, 0.72}) {
+    const Ellipse inner = shrunk(outer, ratio);
+    const RingEdges edges = without_repulsion({outer, inner});
+    const double width = edges.outer.semi_major - edges.inner.semi_major;
+    EXPECT_LT(width, outer.semi_major - inner.semi_major) << ratio;
+    EXPECT_GT(width, 0.0) << ratio;
+    // Its middle stays.
+    EXPECT_NEAR(edges.outer.semi_major + edges.inner.semi_major, 14.0 * (1.0 + ratio), 1e-3);
+    EXPECT_EQ(edges.outer.center(), outer.center());
+  }
+}
+
+TEST(RingEdges, KeepsTheRingThatCannotBeTold) {
+  // Gradient maxima nearer than those of a line: noise. The ring has no width then.
+  const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.0};
+  const RingEdges edges = without_repulsion({outer, grown(outer, -1.5)});
+  EXPECT_NEAR(edges.outer.semi_major, 13.25, 0.01);
+  EXPECT_NEAR(edges.inner.semi_major, 13.25, 0.01);
+}
+
+TEST(RingEdges, MakeSmallRingsExact) {
+  Random random(5);
+  ArcDetector detector;
+  Thresholds thresholds;
+  thresholds.contour_overlap = detector.detecting_overlaps().contour;
+  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
+  for (const double radius : {10.0, 12.0, 16.0, 20.0}) {
+    std::vector<double> major;
+    std::vector<double> minor;
+    for (std::uint64_t i = 0; i < 31; ++i) {
+      const Ellipse truth = support::random_ellipse(random, 80, 70, radius);
+      Scene scene = support::plain_ring();
+      scene.sensor.read_noise = 3.0;
+      scene.seed = i;
+      const support::Picture picture = support::rendered(scene, truth, 160, 140, i);
+      const auto target = select_target(detector.detect(picture.view(), thresholds));
+      ASSERT_TRUE(target) << radius;
+      major.push_back(target->ellipse.semi_major - truth.semi_major);
+      minor.push_back(target->ellipse.semi_minor - truth.semi_minor);
+    }
+    EXPECT_NEAR(median(major), 0.0, 0.06) << radius;
+    EXPECT_NEAR(median(minor), 0.0, 0.06) << radius;
+  }
+}
+
+TEST(RingEdges, ArePartnersWhereTheyHaveOneCentreAndShape) {
+  const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
+  EXPECT_TRUE(are_partners(outer, shrunk(outer, 0.8)));
+  EXPECT_FALSE(are_partners(outer, shrunk(outer, 0.99)));
+  EXPECT_FALSE(are_partners(outer, shrunk(outer, 0.2)));
+  EXPECT_FALSE(are_partners(outer, translated(shrunk(outer, 0.8), 8.0, 0.0)));
+}
+
+}  // namespace
+}  // namespace ellipse

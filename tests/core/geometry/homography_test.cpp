@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "core/geometry/homography.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Matrix3d tilted_view() {
+  Matrix3d view = image_from_pad({310.0, 170.0, 80.0, 55.0, 0.4});
+  view(2, 0) = 0.08;
+  view(2, 1) = -0.05;
+  return view;
+}
+
+Vector2d seen(const Matrix3d& view, const Vector2d& place) {
+  return (view * place.homogeneous()).hnormalized();
+}
+
+TEST(Homography, ShowsTheOuterCircleAsItsEllipse) {
+  const Ellipse e{310.0, 170.0, 80.0, 55.0, 0.4};
+  const auto circle = project_circle(image_from_pad(e), 1.0);
+  ASSERT_TRUE(circle);
+  EXPECT_LT(max_difference_px(*circle, e), 1e-9);
+}
+
+TEST(Homography, IsLaidUponAnOuterEdge) {
+  const Matrix3d view = tilted_view();
+  const Ellipse seen_edge = project_circle(view, 1.0).value();
+  for (const Ellipse& e : {seen_edge,
+                           translated(seen_edge, 3.0, -2.0),
+                           Ellipse{312.0, 171.0, 90.0, 50.0, 0.7},
+                           Ellipse{300.0, 165.0, 70.0, 70.0, 0.0}}) {
+    const auto laid = with_outer_edge(view, e);
+    ASSERT_TRUE(laid);
+    EXPECT_LT(max_difference_px(project_circle(*laid, 1.0).value(), e), 1e-8);
+  }
+  EXPECT_LT((with_outer_edge(view, seen_edge).value() - view).norm(), 1e-8 * view.norm());
+  const Ellipse moved_edge = translated(seen_edge, 3.0, -2.0);
+  const Vector2d mark(0.4, 0.1);  // goes along
+  const Vector2d by = seen(with_outer_edge(view, moved_edge).value(), mark) - seen(view, mark);
+  EXPECT_LT((by - Vector2d(3.0, -2.0)).norm(), 0.2);
+  EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), seen_edge));
+}
+
+TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {
+  const Matrix3d view = tilted_view();
+  constexpr double kStep = 1e-6;
+  for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
+    const Vector2d normal(std::cos(angle), std::sin(angle));
+    const Vector2d place = 0.8 * normal + Vector2d(0.1, -0.2);
+    const auto edge = view_of(view, place, normal);
+    ASSERT_TRUE(edge);
+    EXPECT_LT((edge->point - seen(view, place)).norm(), 1e-9);
+    for (int i = 0; i < 8; ++i) {
+      const Matrix3d changed = moved(view, kStep * HomographyChange::Unit(i));
+      const double moved_px = edge->normal.dot(seen(changed, place) - edge->point);
+      EXPECT_NEAR(moved_px / kStep, edge->row(i), 1e-3) << i;
+    }
+    const double along = edge->normal.dot(seen(view, place + kStep * normal) - edge->point);
+    EXPECT_NEAR(along / kStep, edge->px_per_unit, 1e-3);
+  }
+}
+
+TEST(Homography, TurnAndTiltLeaveTheOuterCircle) {
+  const Matrix3d view = tilted_view();
+  const auto circle = project_circle(view, 1.0);
+  for (const int i : {5, 6, 7}) {
+    const auto turned = project_circle(moved(view, 1e-4 * HomographyChange::Unit(i)), 1.0);
+    ASSERT_TRUE(circle && turned);
+    EXPECT_LT(max_difference_px(*circle, *turned), 1e-4) << i;
+  }
+}
+
+TEST(Homography, GivesBackAChange) {
+  HomographyChange change;
+  change << 0.01, -0.02, 0.005, 0.003, -0.004, 0.02, 0.001, -0.002;
+  const Matrix3d view = tilted_view();
+  const Matrix3d ratio = view.inverse() * moved(view, change);
+  // To first order, but for the scale of the matrix.
+  const Matrix3d generator = ratio / std::cbrt(ratio.determinant());
+  EXPECT_LT((change_of(generator) - change).norm(), 1e-3);
+}
+
+TEST(Homography, FollowsTheCamera) {
+  // A camera above the pad moves by small amounts; the view changes as it is told.
+  constexpr double kFocal = 500.0;
+  const Vector2d middle(319.5, 179.5);
+  Matrix3d k;
+  k << kFocal, 0.0, middle.x(), 0.0, kFocal, middle.y(), 0.0, 0.0, 1.0;
+  Matrix3d pose;
+  pose.leftCols<2>() =
+      Eigen::AngleAxisd(0.3, Vector3d(1.0, 0.5, 0.2).normalized()).toRotationMatrix().leftCols<2>();
+  pose.col(2) = Vector3d(0.4, -0.3, 6.0);
+  const Matrix3d view = k * pose;
+  const auto changes = change_by_camera(view / view(2, 2), k);
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < 6; ++i) {
+    Matrix3d after = pose;
+    if (i < 3) {
+      after = Eigen::AngleAxisd(kStep, Vector3d::Unit(i)).toRotationMatrix() * pose;
+    } else {
+      after.col(2) += kStep * Vector3d::Unit(i - 3);
+    }
+    const Matrix3d expected = k * after;
+    const Matrix3d told = moved(view, kStep * HomographyChange(changes.col(i)));
+    for (const Vector2d& place : {Vector2d(0.9, 0.1), Vector2d(-0.5, 0.7), Vector2d(0.0, 0.0)}) {
+      const Vector2d motion = seen(expected, place) - seen(view, place);
+      EXPECT_LT((seen(told, place) - seen(expected, place)).norm(), 1e-3 * motion.norm() + 1e-9);
+    }
+  }
+}
+
+TEST(Homography, SeesNothingBehindTheCamera) {
+  Matrix3d view = tilted_view();
+  view(2, 0) = 2.0;
+  EXPECT_FALSE(view_of(view, {-1.0, 0.0}, {-1.0, 0.0}));
+  EXPECT_FALSE(project_circle(view, 1.0));
+}
+
+}  // namespace
+}  // namespace ellipse

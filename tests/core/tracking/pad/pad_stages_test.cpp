@@ -1,0 +1,700 @@
+// SPDX-License-Identifier: MIT
+//
+// The stages of the edge tracker, one by one.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/tracking/pad/coarse_search.hpp"
+#include "core/tracking/pad/edge_search.hpp"
+#include "core/tracking/pad/homography_solver.hpp"
+#include "core/tracking/pad/line_learner.hpp"
+#include "core/tracking/pad/pad_model.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+const Ellipse kPad{160.3, 120.6, 70.0, 55.0, 0.4};
+constexpr double kInner = 0.795;  // of a ring as wide as Pad's own
+
+Scene scene_of(Pattern pattern, bool is_bright = false) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = pattern;
+  if (is_bright) {
+    scene.pad.paint_level = 215.0;
+    scene.ground.level = 90.0;
+  }
+  return scene;
+}
+
+Picture flat_picture() {
+  Scene scene = scene_of(Pattern::kNone);
+  return rendered(scene, kPad);
+}
+
+PadModel ring_model() {
+  return {{{1.0, true, 145.0}, {kInner, false, 145.0}}, {}};
+}
+
+PadModel disc_model() {
+  return {{{1.0, true, 145.0}}, {}};
+}
+
+Ellipse resized(Ellipse e, double factor) {
+  e.semi_major *= factor;
+  e.semi_minor *= factor;
+  return e;
+}
+
+// -- learn_circles
+
+struct Circles {
+  const char* name;
+  Pattern pattern;
+  std::vector<double> radii;
+};
+
+class LearnCircles : public testing::TestWithParam<Circles> {};
+
+TEST_P(LearnCircles, FindsAllOfThemInBothPolarities) {
+  for (const bool is_bright : {false, true}) {
+    const Picture picture = rendered(scene_of(GetParam().pattern, is_bright), kPad);
+    const auto model = learn_circles(picture.view(), image_from_pad(kPad));
+    ASSERT_TRUE(model) << is_bright;
+    ASSERT_EQ(model->circles.size(), GetParam().radii.size()) << is_bright;
+    EXPECT_TRUE(model->lines.empty());
+    EXPECT_EQ(model->circles[0].radius, 1.0);
+    const double contrast = is_bright ? 125.0 : 145.0;
+    for (std::size_t i = 0; i < model->circles.size(); ++i) {
+      const PadCircle& circle = model->circles[i];
+      EXPECT_NEAR(circle.radius, GetParam().radii[i], 0.01) << is_bright << i;
+      EXPECT_EQ(circle.is_bright_outside, (i % 2 == 0) != is_bright) << i;
+      // The lens leaves less of it.
+      EXPECT_NEAR(circle.contrast, 0.75 * contrast, 0.2 * contrast) << is_bright << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Patterns,
+    LearnCircles,
+    testing::Values(Circles{"ring", Pattern::kRing, {1.0, kInner}},
+                    Circles{"disc", Pattern::kDisc, {1.0}},
+                    Circles{"bullseye",
+                            Pattern::kBullseye,
+                            {1.0, kInner, 0.75 * kInner, 0.5 * kInner, 0.25 * kInner}},
+                    Circles{"x", Pattern::kRingX, {1.0, kInner}},
+                    Circles{"h", Pattern::kRingH, {1.0, kInner}}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(LearnCirclesFrom, AnEdgeThatIsOffByAFewPercent) {
+  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  for (const double factor : {0.96, 1.04}) {
+    const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
+    ASSERT_TRUE(model) << factor;
+    ASSERT_EQ(model->circles.size(), 2U) << factor;
+    EXPECT_NEAR(model->circles[1].radius, kInner, 0.02) << factor;
+  }
+}
+
+TEST(LearnCirclesFrom, AThinRingsOuterEdge) {
+  for (const double ring_width : {0.1, 0.055}) {
+    for (const bool is_bright : {false, true}) {
+      Scene scene = scene_of(Pattern::kRing, is_bright);
+      scene.pad.ring_width = ring_width;
+      const Picture picture = rendered(scene, kPad);
+      for (const double factor : {0.985, 1.0, 1.015}) {
+        const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
+        ASSERT_TRUE(model) << ring_width << is_bright << factor;
+        EXPECT_EQ(model->circles[0].is_bright_outside, !is_bright) << ring_width << factor;
+        ASSERT_EQ(model->circles.size(), 2U) << ring_width << is_bright << factor;
+        EXPECT_NEAR(model->circles[1].radius, 1.0 - ring_width, 0.015) << is_bright << factor;
+      }
+    }
+  }
+}
+
+TEST(LearnCirclesFrom, AGivenRingRatioWins) {
+  // Too coarse to tell that it is a ring.
+  Scene scene = scene_of(Pattern::kRing, false);
+  scene.pad.ring_width = 0.06;
+  const Ellipse small{160.0, 120.0, 14.0, 12.0, 0.3};
+  const Picture picture = rendered(scene, small);
+  const Matrix3d view = image_from_pad(small);
+  const auto given = learn_circles(picture.view(), view, 0.94);
+  ASSERT_TRUE(given);
+  ASSERT_GE(given->circles.size(), 2U);
+  EXPECT_EQ(given->circles[1].radius, 0.94);
+  EXPECT_TRUE(given->circles[1].is_given);
+  EXPECT_NE(given->circles[1].is_bright_outside, given->circles[0].is_bright_outside);
+  // Where it can be told, it is not doubled.
+  const Picture large = rendered(scene_of(Pattern::kRing), kPad);
+  const auto model = learn_circles(large.view(), image_from_pad(kPad), kInner + 0.004);
+  ASSERT_TRUE(model);
+  ASSERT_EQ(model->circles.size(), 2U);
+  EXPECT_EQ(model->circles[1].radius, kInner + 0.004);
+}
+
+TEST(LearnCirclesFrom, ThePartThatIsInThePicture) {
+  const Ellipse half_out = translated(kPad, -150.0, 0.0);
+  const Picture picture = rendered(scene_of(Pattern::kRing), half_out);
+  const auto model = learn_circles(picture.view(), image_from_pad(half_out));
+  ASSERT_TRUE(model);
+  ASSERT_EQ(model->circles.size(), 2U);
+  EXPECT_NEAR(model->circles[1].radius, kInner, 0.01);
+}
+
+TEST(LearnCirclesFrom, NothingWhereItIsFlatOrOutside) {
+  const Matrix3d view = image_from_pad(kPad);
+  EXPECT_FALSE(learn_circles(flat_picture().view(), view));
+  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(translated(kPad, 400.0, 0.0))));
+  EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(resized(kPad, 0.5))));
+  EXPECT_FALSE(learn_circles(ImageView{}, view));
+  EXPECT_FALSE(learn_circles(Picture(1, 1, 90).view(), view));
+}
+
+TEST(LearnCirclesFrom, NothingFromAnEllipseBelowAPixel) {
+  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  EXPECT_FALSE(learn_circles(picture.view(), image_from_pad({160.0, 120.0, 0.3, 0.2, 0.0})));
+}
+
+// -- LineLearner
+
+// Whether a place is on the strokes inside the ring, by the numbers of Pad.
+bool is_on_mark(Pattern pattern, const Vector2d& place) {
+  const Pad pad;
+  const double half_width = 0.5 * pad.mark_width;
+  const auto is_in = [&](double along, double across, double half_length) {
+    return std::abs(along) <= half_length && std::abs(across) <= half_width;
+  };
+  const double x = place.x();
+  const double y = place.y();
+  if (pattern == Pattern::kRingX) {
+    const double falling = std::numbers::sqrt2 / 2.0 * (x + y);
+    const double rising = std::numbers::sqrt2 / 2.0 * (x - y);
+    return is_in(falling, rising, pad.mark_length) || is_in(rising, falling, pad.mark_length);
+  }
+  constexpr double kBarAt = 0.36;
+  const double upright = 0.8 * pad.mark_length;
+  return is_in(y, x - kBarAt, upright) || is_in(y, x + kBarAt, upright) || is_in(x, y, kBarAt);
+}
+
+void learn_at_once(LineLearner& learner,
+                   const ImageView& luma,
+                   const Ellipse& pad,
+                   PadModel& model) {
+  learner.reserve(model);
+  learner.start();
+  while (!learner.is_ready()) learner.take(luma, image_from_pad(pad));
+  learner.learn(model);
+}
+
+struct Learned {
+  explicit Learned(const Scene& scene, const Ellipse& pad = kPad) {
+    picture = rendered(scene, pad);
+    model = learn_circles(picture.view(), image_from_pad(pad)).value();
+    learn_at_once(learner, picture.view(), pad, model);
+  }
+  Picture picture{0, 0};
+  PadModel model;
+  LineLearner learner;
+};
+
+double total_length(const PadModel& model) {
+  double sum = 0.0;
+  for (const PadLine& line : model.lines) sum += (line.to - line.from).norm();
+  return sum;
+}
+
+class LearnLines : public testing::TestWithParam<Pattern> {};
+
+TEST_P(LearnLines, FindsTheStrokesAndNothingElse) {
+  constexpr double kBeside = 0.025;
+  for (const bool is_bright : {false, true}) {
+    const Learned learned(scene_of(GetParam(), is_bright));
+    EXPECT_GE(learned.model.lines.size(), 8U);
+    for (const PadLine& line : learned.model.lines) {
+      EXPECT_NEAR(line.to_bright.norm(), 1.0, 1e-9);
+      // All strokes run in directions that are eighths of a turn apart.
+      const double turn = std::atan2(line.to_bright.y(), line.to_bright.x());
+      const double off = std::remainder(turn, 0.25 * std::numbers::pi);
+      EXPECT_LT(std::abs(off) * (line.to - line.from).norm(), 0.004) << line.from.transpose();
+      EXPECT_NEAR(line.contrast, is_bright ? 94.0 : 109.0, 30.0);
+      for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        const Vector2d place = line.from + at * (line.to - line.from);
+        const bool is_painted = is_on_mark(GetParam(), place + kBeside * line.to_bright);
+        EXPECT_EQ(is_painted, is_bright) << place.transpose();
+        EXPECT_NE(is_on_mark(GetParam(), place - kBeside * line.to_bright), is_painted)
+            << place.transpose();
+      }
+    }
+    // Most of the outline of the mark: about 5 radii of either.
+    EXPECT_GT(total_length(learned.model), 3.3);
+    EXPECT_LT(total_length(learned.model), 6.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Marks,
+                         LearnLines,
+                         testing::Values(Pattern::kRingX, Pattern::kRingH),
+                         [](const auto& info) {
+                           return info.param == Pattern::kRingX ? "x" : "h";
+                         });
+
+TEST(LineLearner, FindsNoLineWhereThereAreCirclesAlone) {
+  for (const Pattern pattern : {Pattern::kRing, Pattern::kDisc, Pattern::kBullseye}) {
+    EXPECT_TRUE(Learned(scene_of(pattern)).model.lines.empty()) << static_cast<int>(pattern);
+    const Ellipse half_out = translated(kPad, -150.0, 30.0);
+    EXPECT_TRUE(Learned(scene_of(pattern), half_out).model.lines.empty())
+        << static_cast<int>(pattern);
+  }
+}
+
+TEST(LineLearner, ReplacesTheLinesOfBefore) {
+  Learned learned(scene_of(Pattern::kRingX));
+  ASSERT_FALSE(learned.model.lines.empty());
+  const Picture ring = rendered(scene_of(Pattern::kRing), kPad);
+  learn_at_once(learned.learner, ring.view(), kPad, learned.model);
+  EXPECT_TRUE(learned.model.lines.empty());
+}
+
+// Each part is of another frame, in which the pad is elsewhere.
+TEST(LineLearner, PutsThePadTogetherFromFramesInWhichItMoves) {
+  const Learned at_once(scene_of(Pattern::kRingX));
+  Learned in_motion(scene_of(Pattern::kRingX));
+  in_motion.learner.start();
+  int frames = 0;
+  while (!in_motion.learner.is_ready()) {
+    const Ellipse pad = translated(kPad, 3.0 * frames, -2.0 * frames);
+    const Picture picture = rendered(scene_of(Pattern::kRingX), pad);
+    in_motion.learner.take(picture.view(), image_from_pad(pad));
+    ++frames;
+  }
+  EXPECT_GT(frames, 4);
+  in_motion.learner.learn(in_motion.model);
+  EXPECT_EQ(in_motion.model.lines.size(), at_once.model.lines.size());
+  EXPECT_NEAR(total_length(in_motion.model), total_length(at_once.model), 0.1);
+}
+
+TEST(LineLearner, KeepsTheLongestOfMany) {
+  Scene scene = scene_of(Pattern::kRing);
+  for (int i = -6; i <= 6; ++i) {
+    const double x = 160.0 + 7.0 * i;
+    const double half = 15.0 + 2.0 * std::abs(i);
+    scene.bars.push_back(support::bar_px({x, 120.0 - half}, {x, 120.0 + half}, 3.0, 40.0));
+  }
+  const Learned learned(scene, {160.0, 120.0, 90.0, 90.0, 0.0});
+  ASSERT_EQ(learned.model.lines.size(), LineLearner::kMaxLines);
+  double shortest = 2.0;
+  for (const PadLine& line : learned.model.lines) {
+    shortest = std::min(shortest, (line.to - line.from).norm());
+  }
+  // The ones in the middle are left out.
+  EXPECT_GT(shortest, 30.0 / 90.0 - 0.04);
+}
+
+TEST(LineLearner, FindsNothingInEmptyAndTinyPictures) {
+  LineLearner learner;
+  for (const int size : {0, 1, 2, 7}) {
+    PadModel model = ring_model();
+    learn_at_once(learner, Picture(size, size, 200).view(), kPad, model);
+    EXPECT_TRUE(model.lines.empty()) << size;
+  }
+}
+
+// -- EdgeSearch
+
+TEST(EdgeSearch, PlacesInsideThePictureOnly) {
+  const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
+  EdgeSearch search;
+  for (const double dx : {-160.0, -90.0, 120.0, 200.0}) {
+    const Ellipse e = translated(kPad, dx, 40.0);
+    search.place(model, image_from_pad(e), Picture(320, 240).view(), 96);
+    EXPECT_FALSE(search.samples().empty()) << dx;
+    for (const EdgeSample& sample : search.samples()) {
+      EXPECT_GE(sample.view.point.minCoeff(), 2.99);
+      EXPECT_LE(sample.view.point.x(), 316.01);
+      EXPECT_LE(sample.view.point.y(), 236.01);
+    }
+    EXPECT_NEAR(search.visible_fraction(), visible_fraction(e, 320, 240), 0.06) << dx;
+  }
+}
+
+TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
+  const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
+  EdgeSearch search;
+  search.place(model, image_from_pad(kPad), Picture(320, 240).view(), 90);
+  EXPECT_NEAR(static_cast<double>(search.samples().size()), 90.0, 14.0);
+  std::vector<double> outer_angles;
+  int inner = 0;
+  int on_lines = 0;
+  const Matrix3d pad_from_image = image_from_pad(kPad).inverse();
+  for (const EdgeSample& sample : search.samples()) {
+    const Vector2d place = (pad_from_image * sample.view.point.homogeneous()).hnormalized();
+    if (sample.feature == 0) outer_angles.push_back(std::atan2(place.y(), place.x()));
+    inner += sample.feature == 1 ? 1 : 0;
+    on_lines += sample.feature >= 2 ? 1 : 0;
+  }
+  const auto outer = static_cast<double>(outer_angles.size());
+  EXPECT_NEAR(inner / outer, kInner, 0.1);
+  EXPECT_NEAR(on_lines / outer, total_length(model) / (2.0 * std::numbers::pi), 0.25);
+  std::sort(outer_angles.begin(), outer_angles.end());
+  outer_angles.push_back(outer_angles.front() + 2.0 * std::numbers::pi);
+  for (std::size_t i = 1; i < outer_angles.size(); ++i) {
+    const double gap = (outer_angles[i] - outer_angles[i - 1]) * outer / (2.0 * std::numbers::pi);
+    EXPECT_GT(gap, 0.4) << i;
+    EXPECT_LT(gap, 1.8) << i;
+  }
+}
+
+TEST(EdgeSearch, HoldsAsManyPlacesAsItTells) {
+  EdgeSearch search;
+  const Ellipse large{1000.0, 1000.0, 900.0, 850.0, 0.2};
+  PadModel model = ring_model();
+  for (const double radius : {0.6, 0.4, 0.2}) model.circles.push_back({radius, true, 100.0});
+  search.place(model, image_from_pad(large), Picture(2000, 2000).view(), 100'000);
+  EXPECT_EQ(search.samples().size(), static_cast<std::size_t>(EdgeSearch::kMaxSamples));
+}
+
+TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
+  for (const bool is_bright : {false, true}) {
+    const Picture picture = rendered(scene_of(Pattern::kRing, is_bright), kPad);
+    const auto model = learn_circles(picture.view(), image_from_pad(kPad)).value();
+    for (const Vector2d& shift : {Vector2d(2.0, 0.0), Vector2d(-2.0, 0.0), Vector2d(1.4, -1.4)}) {
+      const Ellipse expected = translated(kPad, shift.x(), shift.y());
+      EdgeSearch search;
+      search.place(model, image_from_pad(expected), picture.view(), 64);
+      search.look(picture.view(), 1.0, 5.0);
+      for (const EdgeSample& sample : search.samples()) {
+        ASSERT_TRUE(sample.is_seen);
+        ASSERT_EQ(sample.count, 1);
+        const double off = -shift.dot(sample.view.normal);
+        // Circles are learned to half a percent: 0.2 px of the inner one.
+        EXPECT_NEAR(sample.candidates[0].distance_px, off, 0.3) << sample.feature;
+        EXPECT_NEAR(sample.candidates[0].contrast / sample.contrast, 1.0, 0.3);
+      }
+    }
+  }
+}
+
+TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
+  const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  PadModel model = disc_model();
+  EdgeSearch search;
+  const auto met = [&] {
+    search.place(model, image_from_pad(kPad), picture.view(), 64);
+    search.look(picture.view(), 1.0, 6.0);
+    return std::count_if(search.samples().begin(),
+                         search.samples().end(),
+                         [](const EdgeSample& sample) { return sample.count > 0; });
+  };
+  const auto all = met();
+  EXPECT_GT(all, 50);
+  EXPECT_EQ(all, static_cast<std::ptrdiff_t>(search.samples().size()));
+  model.circles[0].is_bright_outside = false;
+  EXPECT_EQ(met(), 0);
+}
+
+TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
+  Scene faint = scene_of(Pattern::kDisc);
+  faint.pad.paint_level = faint.ground.level - 20.0;
+  const Picture picture = rendered(faint, kPad);
+  EdgeSearch search;
+  search.place(disc_model(), image_from_pad(kPad), picture.view(), 64);
+  search.look(picture.view(), 1.0, 6.0);
+  for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 0);
+  search.look(picture.view(), 0.2, 6.0);
+  for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 1);
+}
+
+TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
+  const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  const Ellipse expected = translated(kPad, 7.0, 0.0);
+  EdgeSearch search;
+  search.place(disc_model(), image_from_pad(expected), picture.view(), 64);
+  const auto met_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
+    search.look(picture.view(), 1.0, 3.0, &covariance, max_px);
+    int met = 0;
+    for (const EdgeSample& sample : search.samples()) {
+      met += std::abs(sample.view.normal.x()) > 0.8 && sample.count > 0 ? 1 : 0;
+    }
+    return met;
+  };
+  HomographyCovariance covariance = HomographyCovariance::Zero();
+  EXPECT_EQ(met_at_sides(covariance, 12.0), 0);
+  covariance(0, 0) = covariance(1, 1) = std::pow(0.05, 2);  // 3 px
+  EXPECT_GT(met_at_sides(covariance, 12.0), 10);
+  EXPECT_EQ(met_at_sides(covariance, 4.0), 0);
+  // No covariance can be like this, but for rounding.
+  covariance = -HomographyCovariance::Identity();
+  EXPECT_EQ(met_at_sides(covariance, 12.0), 0);
+}
+
+TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
+  Picture picture(120, 60, 20);
+  const int steps[] = {30, 40, 50, 60, 70, 80};
+  const int rises[] = {10, 60, 20, 40, 30, 15};
+  for (int y = 0; y < 60; ++y) {
+    int level = 20;
+    for (int x = 0, next = 0; x < 120; ++x) {
+      if (next < 6 && x == steps[next]) level += rises[next++];
+      picture.at(x, y) = static_cast<std::uint8_t>(level);
+    }
+  }
+  PadModel model = disc_model();
+  model.circles.clear();
+  model.lines.push_back({{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, 10.0});
+  EdgeSearch search;
+  search.place(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view(), 5);
+  search.look(picture.view(), 1.0, 40.0);
+  ASSERT_FALSE(search.samples().empty());
+  for (const EdgeSample& sample : search.samples()) {
+    ASSERT_EQ(sample.count, 3);
+    EXPECT_NEAR(sample.candidates[0].distance_px, 39.5 - 55.0, 1.0);
+    EXPECT_NEAR(sample.candidates[1].distance_px, 59.5 - 55.0, 1.0);
+    EXPECT_NEAR(sample.candidates[2].distance_px, 69.5 - 55.0, 1.0);
+  }
+}
+
+TEST(EdgeSearch, StaysInsideLargePictures) {
+  // The steps along a normal are added up in floats, which are coarse down there.
+  Picture picture(31, 12'000, 200);
+  for (int y = 11'960; y < 12'000; ++y) {
+    for (int x = 0; x < 31; ++x) picture.at(x, y) = 40;
+  }
+  PadModel model = disc_model();
+  model.circles.clear();
+  model.lines.push_back({{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, 100.0});
+  int met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double y = 11'970.0 + 0.1 * i;
+    EdgeSearch search;
+    search.place(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view(), 9);
+    search.look(picture.view(), 1.0, 20.0 + 0.2 * i);
+    for (const EdgeSample& sample : search.samples()) {
+      if (sample.count == 0) continue;
+      ++met;
+      EXPECT_NEAR(sample.candidates[0].distance_px, sample.view.point.y() - 11'959.5, 3.0);
+    }
+  }
+  EXPECT_GT(met, 100);
+}
+
+TEST(EdgeSearch, FindsNoPlaceInEmptyAndTinyPictures) {
+  EdgeSearch search;
+  for (const int size : {0, 1, 2, 6}) {
+    const Picture picture(size, size, 90);
+    search.place(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view(), 48);
+    search.look(picture.view(), 1.0, 4.0);
+    EXPECT_TRUE(search.samples().empty()) << size;
+    EXPECT_EQ(search.visible_fraction(), 0.0) << size;
+  }
+}
+
+// -- solve_homography
+
+HomographyPrior weak_prior() {
+  HomographyPrior prior;
+  prior.information.diagonal() << 1e2, 1e2, 1e2, 1e2, 1e2, 1e4, 1e4, 1e4;
+  return prior;
+}
+
+// A ring, looked for where a change would have it.
+struct Looked {
+  explicit Looked(const HomographyChange& off, double reach_px = 10.0)
+      : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
+    search.place(ring_model(), start, picture.view(), 96);
+    search.look(picture.view(), 1.0, reach_px);
+  }
+  [[nodiscard]] double error_px(const HomographyChange& change) const {
+    return max_difference_px(project_circle(moved(start, change), 1.0).value(), kPad);
+  }
+  Picture picture;
+  Matrix3d start;
+  EdgeSearch search;
+};
+
+TEST(SolvePose, FindsShiftGrowthAndStretch) {
+  for (const int i : {0, 1, 2, 3, 4}) {
+    for (const double size : {-0.06, 0.06}) {
+      const Looked looked(size * HomographyChange::Unit(i));
+      const auto estimate = solve_homography(
+          looked.search.samples(), weak_prior(), HomographyChange::Zero(), 12.0, 0.6, 5);
+      ASSERT_TRUE(estimate);
+      EXPECT_GT(looked.error_px(HomographyChange::Zero()), 1.0) << i;
+      // The rows are of first order: a few hundredths of the change are left.
+      EXPECT_LT(looked.error_px(estimate->change), 0.35) << i;
+      EXPECT_NEAR(estimate->change(i), -size, 0.1 * std::abs(size)) << i;
+    }
+  }
+}
+
+TEST(SolvePose, TellsHowWellItKnows) {
+  const Looked looked(HomographyChange::Zero());
+  const auto at = [&](double sigma_px) {
+    return solve_homography(
+               looked.search.samples(), weak_prior(), HomographyChange::Zero(), 6.0, sigma_px, 2)
+        ->information;
+  };
+  const HomographyCovariance fine = at(0.5) - weak_prior().information;
+  const HomographyCovariance coarse = at(1.0) - weak_prior().information;
+  EXPECT_NEAR(fine(2, 2) / coarse(2, 2), 4.0, 1e-4);
+  // Rings do not tell how they are turned.
+  EXPECT_LT(fine(5, 5), 1e-3 * fine(2, 2));
+}
+
+TEST(SolvePose, RespectsAStrongPrior) {
+  const Looked looked(0.05 * HomographyChange::Unit(0) - 0.04 * HomographyChange::Unit(1));
+  HomographyPrior prior = weak_prior();
+  prior.information(0, 0) = 1e12;
+  prior.mean(0) = 0.01;
+  const auto estimate =
+      solve_homography(looked.search.samples(), prior, HomographyChange::Zero(), 12.0, 0.6, 4);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->change(0), 0.01, 1e-4);
+  EXPECT_NEAR(estimate->change(1), 0.04, 0.005);
+}
+
+TEST(SolvePose, LeavesOutWhatIsOutOfReach) {
+  const Looked looked(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
+  const auto estimate = solve_homography(
+      looked.search.samples(), weak_prior(), HomographyChange::Zero(), 2.0, 0.6, 3);
+  ASSERT_TRUE(estimate);
+  EXPECT_LT(estimate->change.norm(), 1e-6);
+}
+
+TEST(SolvePose, FailsWhereNothingIsKnown) {
+  EXPECT_FALSE(solve_homography({}, {}, HomographyChange::Zero(), 5.0, 0.6, 2));
+  const Looked looked(HomographyChange::Zero());
+  HomographyPrior broken = weak_prior();
+  broken.mean(3) = std::nan("");
+  EXPECT_FALSE(
+      solve_homography(looked.search.samples(), broken, HomographyChange::Zero(), 5.0, 0.6, 2));
+}
+
+TEST(NearestCandidate, IsNextToThePrediction) {
+  EdgeSample sample;
+  EXPECT_EQ(nearest_candidate(sample, 0.0), nullptr);
+  sample.candidates = {{{4.0F, 50.0F}, {-2.0F, 40.0F}, {0.5F, 30.0F}}};
+  sample.count = 2;
+  EXPECT_EQ(nearest_candidate(sample, 0.0), &sample.candidates[1]);
+  EXPECT_EQ(nearest_candidate(sample, 1.5), &sample.candidates[0]);
+  sample.count = 3;
+  EXPECT_EQ(nearest_candidate(sample, 0.0), &sample.candidates[2]);
+}
+
+TEST(Support, FallsWithTheErrorOfTheView) {
+  const Looked looked(HomographyChange::Zero());
+  const auto samples = looked.search.samples();
+  double coverage = 2.0;
+  double weight = static_cast<double>(samples.size()) + 1.0;
+  for (const double off : {0.0, 0.03, 0.06, 0.2}) {
+    const HomographyChange change = off * HomographyChange::Unit(0);
+    const HomographySupport support = support_of(samples, change, 1.5, 2);
+    EXPECT_EQ(support.seen, static_cast<int>(samples.size()));
+    EXPECT_LT(support.coverage, coverage) << off;
+    EXPECT_LT(explained(samples, change, 5.0), weight) << off;
+    coverage = support.coverage;
+    weight = explained(samples, change, 5.0);
+    if (off > 0.0) continue;
+    EXPECT_EQ(support.coverage, 1.0);
+    EXPECT_EQ(support.weakest, 1.0);
+    EXPECT_NEAR(support.gain, 0.75, 0.15);
+    EXPECT_GT(weight, 0.9 * static_cast<double>(samples.size()));
+  }
+  EXPECT_LT(coverage, 0.3);
+}
+
+TEST(Support, TellsTheCircleThatIsMissing) {
+  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  PadModel model = ring_model();
+  model.circles.push_back({0.4, true, 145.0});
+  EdgeSearch search;
+  search.place(model, image_from_pad(kPad), picture.view(), 96);
+  search.look(picture.view(), 1.0, 4.0);
+  const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
+  EXPECT_EQ(support.weakest, 0.0);
+  EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
+}
+
+TEST(Support, TellsTheLight) {
+  Scene scene = scene_of(Pattern::kRing);
+  const PadModel model = learn_circles(rendered(scene, kPad).view(), image_from_pad(kPad)).value();
+  for (const double gain : {1.0, 0.5, 0.25}) {
+    scene.sensor.gain = gain;
+    const Picture picture = rendered(scene, kPad);
+    EdgeSearch search;
+    search.place(model, image_from_pad(kPad), picture.view(), 64);
+    search.look(picture.view(), gain, 4.0);
+    const HomographySupport support =
+        support_of(search.samples(), HomographyChange::Zero(), 1.5, 2);
+    // Circles are learned from levels farther apart than those that a sample compares.
+    EXPECT_NEAR(support.gain / gain, 1.0, 0.2) << gain;
+  }
+  EXPECT_EQ(support_of({}, HomographyChange::Zero(), 1.5, 1).coverage, 0.0);
+}
+
+// -- coarse_search
+
+TEST(CoarseSearch, FindsAPadThatIsARadiusAwayAndOfAnotherSize) {
+  const Ellipse e{320.0, 180.0, 60.0, 45.0, 0.3};
+  for (const Pattern pattern : {Pattern::kRing, Pattern::kDisc}) {
+    Scene scene = scene_of(pattern);
+    scene.sensor.read_noise = 5.0;
+    Vector2d sum = Vector2d::Zero();
+    for (const double angle : {0.2, 1.7, 2.9, 4.3, 5.6}) {
+      for (const double size : {0.9, 1.0, 1.1}) {
+        const double away = 60.0;
+        const Ellipse truth =
+            resized(translated(e, away * std::cos(angle), 0.75 * away * std::sin(angle)), size);
+        const Picture picture = rendered(scene, truth, 640, 360);
+        const auto view = coarse_search(picture.view(),
+                                        pattern == Pattern::kRing ? ring_model() : disc_model(),
+                                        image_from_pad(e));
+        ASSERT_TRUE(view) << angle << ' ' << size;
+        const auto found = project_circle(*view, 1.0);
+        ASSERT_TRUE(found);
+        EXPECT_LT((found->center() - truth.center()).norm(), 0.1 * truth.semi_major)
+            << angle << ' ' << size;
+        sum += found->center() - truth.center();
+        EXPECT_NEAR(found->semi_major / truth.semi_major, 1.0, 0.12) << angle << ' ' << size;
+      }
+    }
+    // Half a cell to no side in particular.
+    EXPECT_LT((sum / 15.0).norm(), 0.03 * e.semi_major);
+  }
+}
+
+TEST(CoarseSearch, FindsAPadThatIsHalfOutside) {
+  const Ellipse truth{20.0, 120.0, 60.0, 45.0, 0.3};
+  const Picture picture = rendered(scene_of(Pattern::kRing), truth);
+  const auto view =
+      coarse_search(picture.view(), ring_model(), image_from_pad(translated(truth, 25.0, 15.0)));
+  ASSERT_TRUE(view);
+  EXPECT_LT((view->col(2).head<2>() / (*view)(2, 2) - truth.center()).norm(), 9.0);
+}
+
+TEST(CoarseSearch, FindsNothingWhereThereIsNothing) {
+  const Matrix3d view = image_from_pad(kPad);
+  EXPECT_FALSE(coarse_search(flat_picture().view(), ring_model(), view));
+  EXPECT_FALSE(coarse_search(ImageView{}, ring_model(), view));
+  EXPECT_FALSE(coarse_search(Picture(1, 1, 90).view(), ring_model(), view));
+  const Picture bright = rendered(scene_of(Pattern::kDisc, true), kPad);
+  EXPECT_FALSE(coarse_search(bright.view(), disc_model(), view));
+}
+
+}  // namespace
+}  // namespace ellipse

@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/pad_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/scene/catalog.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using Eigen::Vector2d;
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+const Ellipse kPad{300.3, 180.6, 60.0, 48.0, 0.4};
+
+LumaWindow whole(const Picture& picture) {
+  return {picture.view(), {0.0, 0.0}, Vector2d(picture.width, picture.height)};
+}
+
+LumaWindow part(const Picture& picture, const Rect& region) {
+  return {picture.view().region(region),
+          Vector2d(region.x, region.y),
+          Vector2d(picture.width, picture.height)};
+}
+
+Scene pad_scene(Pattern pattern = Pattern::kRing) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = pattern;
+  return scene;
+}
+
+Picture frame_of(const Ellipse& pad, const Scene& scene = pad_scene(), std::uint64_t number = 0) {
+  return rendered(scene, pad, kWidth, kHeight, number);
+}
+
+Picture empty_frame() {
+  return frame_of(kPad, pad_scene(Pattern::kNone), 1);
+}
+
+struct Look {
+  const char* name;
+  Pattern pattern;
+  double paint;
+  double ground;
+};
+
+class LockEdges : public testing::TestWithParam<Look> {};
+
+TEST_P(LockEdges, OnTheTruthAndStaysThere) {
+  Scene scene = pad_scene(GetParam().pattern);
+  scene.pad.paint_level = GetParam().paint;
+  scene.ground.level = GetParam().ground;
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  EXPECT_TRUE(tracker.is_locked());
+  for (std::uint64_t i = 1; i < 6; ++i) {
+    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
+    ASSERT_TRUE(track);
+    EXPECT_TRUE(track->is_seen);
+    EXPECT_GT(track->coverage, 0.9);
+    EXPECT_EQ(track->visible, 1.0);
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.15);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pads,
+                         LockEdges,
+                         testing::Values(Look{"ring", Pattern::kRing, 55.0, 200.0},
+                                         Look{"bright_ring", Pattern::kRing, 215.0, 90.0},
+                                         Look{"disc", Pattern::kDisc, 55.0, 200.0},
+                                         Look{"bright_disc", Pattern::kDisc, 215.0, 90.0},
+                                         Look{"bullseye", Pattern::kBullseye, 215.0, 90.0},
+                                         Look{"x", Pattern::kRingX, 55.0, 200.0},
+                                         Look{"h", Pattern::kRingH, 55.0, 200.0},
+                                         Look{"faint", Pattern::kRing, 90.0, 115.0}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(PadTracker, LocksFromAnEllipseThatIsOffByAPixel) {
+  Ellipse rough = translated(kPad, 1.0, -0.8);
+  rough.semi_major *= 1.02;
+  PadTracker tracker;
+  const Picture picture = frame_of(kPad);
+  ASSERT_TRUE(tracker.lock(whole(picture), rough));
+  const auto track = tracker.track(whole(picture), 1.0);
+  ASSERT_TRUE(track);
+  EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.2);
+}
+
+TEST(PadTracker, RefusesWhatHasNoEdges) {
+  PadTracker tracker;
+  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
+  EXPECT_FALSE(tracker.is_locked());
+  EXPECT_FALSE(tracker.track(whole(frame_of(kPad)), 1.0));
+  // Beside the pad, half as large, and outside of the picture.
+  const Picture picture = frame_of(kPad);
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 140.0, 0.0)));
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 40.0, 0.0)));
+  EXPECT_FALSE(tracker.lock(whole(picture), {kPad.cx, kPad.cy, 30.0, 24.0, 0.4}));
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 1000.0, 0.0)));
+}
+
+TEST(PadTracker, ForgetsThePadThatItIsToRelease) {
+  PadTracker tracker;
+  const Picture picture = frame_of(kPad);
+  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+  tracker.release();
+  EXPECT_FALSE(tracker.is_locked());
+  EXPECT_FALSE(tracker.track(whole(picture), 1.0));
+}
+
+TEST(PadTracker, ARefusedLockReleasesTheLastOne) {
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
+  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
+  EXPECT_FALSE(tracker.is_locked());
+}
+
+TEST(PadTracker, LocksOnAnotherPadAfterOne) {
+  PadTracker tracker;
+  const Scene x = pad_scene(Pattern::kRingX);
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, x)), kPad));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(tracker.track(whole(frame_of(kPad, x, i)), 1.0));
+  const Ellipse other{400.0, 150.0, 50.0, 50.0, 0.0};
+  const Scene disc = pad_scene(Pattern::kDisc);
+  ASSERT_TRUE(tracker.lock(whole(frame_of(other, disc)), other));
+  const auto track = tracker.track(whole(frame_of(other, disc, 9)), 1.0);
+  ASSERT_TRUE(track && track->is_seen);
+  // What was learned of the first one is not missed.
+  EXPECT_GT(track->coverage, 0.95);
+  EXPECT_LT(max_difference_px(track->ellipse, other), 0.15);
+}
+
+// To and fro, once in 30 frames, at up to this speed.
+Ellipse dashing(int i, double px_per_frame, double radius_px) {
+  const double swing = 30.0 * px_per_frame / (2.0 * std::numbers::pi);
+  const double at = std::cos(2.0 * std::numbers::pi * i / 30.0);
+  return {320.0 + swing * at, 180.0 + 10.0 * at, radius_px, 0.9 * radius_px, 0.3};
+}
+
+TEST(PadTracker, FollowsToAndFroAtARadiusAFrame) {
+  for (const Pattern pattern : {Pattern::kRing, Pattern::kRingX}) {
+    Scene scene = pad_scene(pattern);
+    scene.ground.contrast = 1.0;
+    scene.sensor.read_noise = 4.0;
+    SceneRenderer renderer(scene);
+    Picture picture(kWidth, kHeight);
+    PadTracker tracker;
+    for (int i = 0; i <= 45; ++i) {
+      const Ellipse truth = dashing(i, 40.0, 40.0);
+      renderer.render(image_from_pad(truth), static_cast<std::uint64_t>(i), picture.writable());
+      if (i == 0) {
+        ASSERT_TRUE(tracker.lock(whole(picture), truth));
+        continue;
+      }
+      const Rect region = tracker.region_after(1.0, kWidth, kHeight);
+      const auto track = tracker.track(part(picture, region), 1.0);
+      ASSERT_TRUE(track) << i;
+      EXPECT_TRUE(track->is_seen) << i;
+      EXPECT_LT(max_difference_px(track->ellipse, truth), 0.7) << i;
+    }
+  }
+}
+
+TEST(PadTracker, FollowsGrowthAndTilt) {
+  const Scene scene = pad_scene(Pattern::kRingH);
+  PadTracker tracker;
+  const auto truth_at = [](int i) {
+    const double radius = 40.0 * std::pow(1.04, i);
+    return Ellipse{320.0 + i, 180.0, radius, radius * (1.0 - 0.01 * i), 0.2 + 0.01 * i};
+  };
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0), scene)), truth_at(0)));
+  for (int i = 1; i < 35; ++i) {  // four times as large
+    const auto track =
+        tracker.track(whole(frame_of(truth_at(i), scene, static_cast<std::uint64_t>(i))), 1.0);
+    ASSERT_TRUE(track && track->is_seen) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 0.5) << i;
+  }
+}
+
+TEST(PadTracker, FollowsAsTheLightFails) {
+  Scene scene = pad_scene();
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  for (std::uint64_t i = 1; i <= 35; ++i) {
+    scene.sensor.gain *= 0.94;  // to 0.11
+    const Ellipse truth = translated(kPad, 3.0 * static_cast<double>(i), 0.0);
+    const auto track = tracker.track(whole(frame_of(truth, scene, i)), 1.0);
+    ASSERT_TRUE(track && track->is_seen) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, truth), 0.4) << i;
+  }
+}
+
+TEST(PadTracker, FollowsBehindABar) {
+  Scene scene = pad_scene();
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  for (std::uint64_t i = 1; i <= 40; ++i) {
+    const double x = 200.0 + 5.0 * static_cast<double>(i);
+    scene.bars = {support::bar_px({x, 0.0}, {x, 360.0}, 18.0, 60.0, kWidth, kHeight)};
+    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
+    ASSERT_TRUE(track && track->is_seen) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.6) << i;
+  }
+}
+
+TEST(PadTracker, ForgetsLinesThatAreNotThePads) {
+  Scene scene = pad_scene();
+  PadTracker tracker;
+  const auto bar_at = [](double x) {
+    return support::bar_px({x, 0.0}, {x, 360.0}, 12.0, 60.0, kWidth, kHeight);
+  };
+  scene.bars = {bar_at(300.0)};
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  constexpr std::uint64_t kGone = 12;  // by then the lines have been learned
+  double coverage = 0.0;
+  for (std::uint64_t i = 1; i <= kGone + 20; ++i) {
+    if (i == kGone) scene.bars.clear();
+    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
+    ASSERT_TRUE(track && track->is_seen) << i;
+    if (i == kGone) {
+      EXPECT_LT(track->coverage, 0.95);
+    }
+    coverage = track->coverage;
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
+  }
+  EXPECT_GT(coverage, 0.97);
+}
+
+TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
+  PadTracker tracker;
+  const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
+  for (int i = 1; i <= 15; ++i) {
+    ASSERT_TRUE(tracker.track(
+        whole(frame_of(truth_at(i), pad_scene(), static_cast<std::uint64_t>(i))), 1.0));
+  }
+  const Picture ground = empty_frame();
+  const auto first = tracker.track(whole(ground), 1.0);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->is_seen);
+  EXPECT_EQ(first->coverage, 0.0);
+  EXPECT_LT(max_difference_px(first->ellipse, truth_at(16)), 1.5);
+  int predicted = 1;
+  while (const auto track = tracker.track(whole(ground), 1.0)) {
+    EXPECT_FALSE(track->is_seen);
+    ASSERT_LT(++predicted, 60);
+  }
+  EXPECT_GE(predicted, 5);
+  EXPECT_LE(predicted, 30);
+  EXPECT_FALSE(tracker.is_locked());
+}
+
+TEST(PadTracker, FindsAPadAgainThatWasHiddenForAWhile) {
+  PadTracker tracker;
+  const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
+  for (int i = 1; i <= 30; ++i) {
+    const bool is_hidden = i > 15 && i <= 21;
+    const Picture picture = is_hidden ? empty_frame() : frame_of(truth_at(i));
+    const auto track = tracker.track(whole(picture), 1.0);
+    ASSERT_TRUE(track) << i;
+    EXPECT_EQ(track->is_seen, !is_hidden) << i;
+    if (is_hidden) continue;
+    EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 0.4) << i;
+  }
+}
+
+TEST(PadTracker, TakesAGapForALongerStep) {
+  const auto truth_at = [](int i) { return translated(kPad, -150.0 + 7.0 * i, 0.0); };
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
+  for (int i = 1; i <= 20; ++i) {
+    ASSERT_TRUE(tracker.track(whole(frame_of(truth_at(i))), 1.0));
+  }
+  PadTracker blind = tracker;
+  const auto predicted = blind.track(whole(empty_frame()), 5.0);
+  ASSERT_TRUE(predicted);
+  EXPECT_FALSE(predicted->is_seen);
+  EXPECT_LT(max_difference_px(predicted->ellipse, truth_at(25)), 4.0);
+  const Rect region = tracker.region_after(5.0, kWidth, kHeight);
+  const auto track = tracker.track(part(frame_of(truth_at(25)), region), 5.0);
+  ASSERT_TRUE(track && track->is_seen);
+  EXPECT_LT(max_difference_px(track->ellipse, truth_at(25)), 0.3);
+  // And goes on as before.
+  EXPECT_LT(
+      max_difference_px(blind.track(whole(frame_of(truth_at(26))), 1.0)->ellipse, truth_at(26)),
+      0.4);
+}
+
+TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
+  SceneRenderer renderer(scene_by_name("touchdown", 201));
+  Picture picture(kWidth, kHeight);
+  PadTracker tracker;
+  int little = 0;
+  int seen = 0;
+  for (int i = 0; i < 75; ++i) {
+    const double time_s = 3.0 + i / 30.0;
+    const Truth truth = renderer.render(time_s, static_cast<std::uint64_t>(i), picture.writable());
+    ASSERT_TRUE(truth.outer_edge);
+    if (i == 0) {
+      ASSERT_TRUE(tracker.lock(whole(picture), *truth.outer_edge));
+      continue;
+    }
+    const auto track = tracker.track(whole(picture), 1.0);
+    if (truth.visible_fraction >= 0.15) {
+      EXPECT_TRUE(track && track->is_seen) << i;
+      continue;
+    }
+    ++little;
+    if (!track || !track->is_seen) continue;
+    ++seen;
+    const double off_px = (track->ellipse.center() - truth.outer_edge->center()).norm();
+    // With nothing of the ring in view the camera may look beside the centre.
+    const double most = truth.visible_fraction > 0.0 ? 0.05 : 0.1;
+    EXPECT_LT(off_px / truth.outer_edge->semi_major, most) << i;
+  }
+  RecordProperty("little", little);
+  RecordProperty("seen", seen);
+  EXPECT_GT(little, 20);
+  EXPECT_EQ(seen, little);
+}
+
+TEST(PadTracker, TellsTheSameOfTheSameFrames) {
+  PadTracker trackers[2];
+  SceneRenderer renderer(scene_by_name("approach", 201));
+  Picture picture(kWidth, kHeight);
+  for (int i = 0; i < 25; ++i) {
+    const Truth truth =
+        renderer.render(4.0 + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    if (i == 0) {
+      for (PadTracker& tracker : trackers) {
+        ASSERT_TRUE(tracker.lock(whole(picture), *truth.outer_edge));
+      }
+      continue;
+    }
+    const auto first = trackers[0].track(whole(picture), 1.0);
+    const auto second = trackers[1].track(whole(picture), 1.0);
+    ASSERT_TRUE(first && second) << i;
+    EXPECT_EQ(first->ellipse, second->ellipse) << i;
+    EXPECT_EQ(first->coverage, second->coverage) << i;
+  }
+}
+
+TEST(PadTracker, TellsTheSameAfterAnotherPad) {
+  PadTracker fresh;
+  PadTracker used;
+  const Scene x = pad_scene(Pattern::kRingX);
+  const Ellipse other = translated(kPad, -100.0, 20.0);
+  ASSERT_TRUE(used.lock(whole(frame_of(other, x)), other));
+  for (int i = 1; i < 5; ++i) ASSERT_TRUE(used.track(whole(frame_of(other, x)), 1.0));
+  for (PadTracker* tracker : {&fresh, &used}) {
+    ASSERT_TRUE(tracker->lock(whole(frame_of(kPad)), kPad));
+  }
+  for (int i = 1; i < 8; ++i) {
+    const Picture picture = frame_of(translated(kPad, 2.0 * i, 0.0));
+    const auto first = fresh.track(whole(picture), 1.0);
+    const auto second = used.track(whole(picture), 1.0);
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->ellipse, second->ellipse) << i;
+  }
+}
+
+TEST(PadTracker, NeedsNoMoreThanItsRegion) {
+  PadTracker of_frames;
+  PadTracker of_parts;
+  SceneRenderer renderer(scene_by_name("oblique", 201));
+  Picture picture(kWidth, kHeight);
+  int parts = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Truth truth =
+        renderer.render(5.0 + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    if (i == 0) {
+      ASSERT_TRUE(of_frames.lock(whole(picture), *truth.outer_edge));
+      ASSERT_TRUE(of_parts.lock(whole(picture), *truth.outer_edge));
+      continue;
+    }
+    const Rect region = of_parts.region_after(1.0, kWidth, kHeight);
+    parts += region.width < kWidth || region.height < kHeight ? 1 : 0;
+    const auto first = of_frames.track(whole(picture), 1.0);
+    const auto second = of_parts.track(part(picture, region), 1.0);
+    ASSERT_TRUE(first && second) << i;
+    EXPECT_TRUE(first->is_seen && second->is_seen) << i;
+    EXPECT_LT(max_difference_px(first->ellipse, second->ellipse), 0.01) << i;
+    EXPECT_NEAR(first->coverage, second->coverage, 0.02) << i;
+    EXPECT_DOUBLE_EQ(first->visible, second->visible) << i;
+  }
+  EXPECT_GT(parts, 20);
+}
+
+TEST(PadTracker, RegionFollowsTheMotionInsideTheFrame) {
+  const auto truth_at = [](int i) { return translated(kPad, 10.0 * i, 0.0); };
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
+  for (int i = 1; i <= 12; ++i) {
+    ASSERT_TRUE(tracker.track(whole(frame_of(truth_at(i))), 1.0));
+  }
+  const Rect frame{0, 0, kWidth, kHeight};
+  for (const double frames : {1.0, 4.0, 10.0, 1000.0}) {
+    const Rect region = tracker.region_after(frames, kWidth, kHeight);
+    EXPECT_EQ(intersect(region, frame), region) << frames;
+    if (frames > 10.0) continue;
+    const Ellipse expected = truth_at(12 + static_cast<int>(frames));
+    const Vector2d half = half_extent(expected);
+    EXPECT_LT(region.x, expected.cx - half.x()) << frames;
+    EXPECT_GE(region.x + region.width, std::min(640.0, expected.cx + half.x())) << frames;
+    EXPECT_GT(region.x, expected.cx - half.x() - 120.0) << frames;
+  }
+}
+
+TEST(PadTracker, SurvivesEmptyAndTinyWindows) {
+  PadTracker tracker;
+  const Picture picture = frame_of(kPad);
+  for (const int size : {0, 1, 2, 3, 7, 12}) {
+    const Rect region{300, 180, size, size};
+    EXPECT_FALSE(tracker.lock(part(picture, region), kPad)) << size;
+    EXPECT_FALSE(tracker.lock(part(picture, region), {300.5, 180.5, 0.4, 0.3, 0.0})) << size;
+    ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+    const auto track = tracker.track(part(picture, region), 1.0);
+    ASSERT_TRUE(track) << size;
+    EXPECT_FALSE(track->is_seen) << size;
+    // And finds it again.
+    const auto again = tracker.track(whole(picture), 1.0);
+    ASSERT_TRUE(again && again->is_seen) << size;
+    EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3) << size;
+  }
+}
+
+TEST(PadTracker, SurvivesFramesWithoutPixels) {
+  PadTracker tracker;
+  EXPECT_FALSE(tracker.lock({}, kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
+  for (int i = 0; i < 3; ++i) {
+    const auto track = tracker.track({}, 1.0);
+    EXPECT_FALSE(track && track->is_seen);
+  }
+  const auto again = tracker.track(whole(frame_of(kPad)), 1.0);
+  ASSERT_TRUE(again && again->is_seen);
+  EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3);
+}
+
+}  // namespace
+}  // namespace ellipse

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+//
+// Every scene of the catalog through every lens: what is followed, in the ideal plane.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+constexpr std::uint64_t kSeed = 202;
+constexpr int kFrames = 24;
+constexpr double kFromS = 2.0;
+constexpr double kRightIou = 0.8;
+constexpr double kMinVisible = 0.3;
+constexpr double kMinRight = 0.995;
+constexpr double kMaxCentrePx = 0.05;  // median
+
+// In the ideal plane a part of what is seen lies outside of the picture's rectangle.
+double iou(const Ellipse& a, const Ellipse& b) {
+  constexpr int kAround = 3000;
+  return iou_inside(translated(a, kAround, kAround),
+                    translated(b, kAround, kAround),
+                    kWidth + 2 * kAround,
+                    kHeight + 2 * kAround);
+}
+
+struct Tally {
+  int shown = 0;
+  int right = 0;
+  std::vector<double> centres_px;
+};
+
+void follow(const Scene& scene, Tally& tally) {
+  TrackerSettings settings;
+  settings.camera = camera_of(scene, kWidth, kHeight);
+  Tracker tracker(settings);
+  SceneRenderer renderer(scene);
+  support::Picture picture(kWidth, kHeight);
+  for (int i = 0; i < kFrames; ++i) {
+    const double time_s = kFromS + i / 30.0;
+    const Truth truth = renderer.render(time_s, static_cast<std::uint64_t>(i), picture.writable());
+    const auto target = tracker.process(picture.view(), i * 33'333'333LL);
+    if (!truth.outer_edge || truth.visible_fraction < kMinVisible) continue;
+    ++tally.shown;
+    if (!target || iou(target->ellipse, *truth.outer_edge) < kRightIou) continue;
+    ++tally.right;
+    tally.centres_px.push_back((target->ellipse.center() - truth.outer_edge->center()).norm());
+  }
+}
+
+TEST(DistortedScenes, AreFollowedInTheIdealPlane) {
+  Tally all;
+  for (const NamedLens& lens : lens_catalog()) {
+    for (const NamedScene& named : scene_catalog()) {
+      Scene scene = scene_by_name(named.name, kSeed);
+      put_on_lens(scene, lens.name);
+      Tally tally;
+      follow(scene, tally);
+      RecordProperty(
+          std::string(named.name).append("-").append(lens.name),
+          std::to_string(tally.right).append(" of ").append(std::to_string(tally.shown)));
+      all.shown += tally.shown;
+      all.right += tally.right;
+      all.centres_px.insert(all.centres_px.end(), tally.centres_px.begin(), tally.centres_px.end());
+    }
+  }
+  ASSERT_GT(all.shown, 600);
+  EXPECT_GE(all.right, kMinRight * all.shown);
+  const auto middle = all.centres_px.begin() + std::ssize(all.centres_px) / 2;
+  std::nth_element(all.centres_px.begin(), middle, all.centres_px.end());
+  EXPECT_LE(*middle, kMaxCentrePx);
+}
+
+}  // namespace
+}  // namespace ellipse
