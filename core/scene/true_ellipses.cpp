@@ -50,7 +50,7 @@ std::vector<Seen> look_at_all(const Scene& scene, const Camera& camera, double t
   std::vector<Sheet> sheets{edges_of(scene.pad)};
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
   for (const Sheet& sheet : sheets) {
-    Seen& seen = all.emplace_back(SheetPicture(sheet, scene.sensor.blur_px));
+    Seen& seen = all.emplace_back(Seen{SheetPicture(sheet, scene.sensor.blur_px), {}});
     for (const double at_s : field_times(scene, time_s)) {
       if (const auto view = view_of(sheet, scene, camera, at_s)) seen.views.push_back(*view);
     }
