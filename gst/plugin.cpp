@@ -2,8 +2,8 @@
 #include <gst/gst.h>
 
 #include "gst/gstellipsejson.h"
-#include "gst/gstellipsetestsrc.h"
 #include "gst/overlay/gstellipseoverlay.h"
+#include "gst/testsrc/gstellipsetestsrc.h"
 #include "gst/track/gstellipsetrack.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {

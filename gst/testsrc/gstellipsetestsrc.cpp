@@ -19,50 +19,31 @@
  * Since: 0.1
  */
 
-#include "gst/gstellipsetestsrc.h"
+#include "gst/testsrc/gstellipsetestsrc.h"
 
 #include <gst/video/video.h>
 
 #include <cstring>
 #include <exception>
 #include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
-#include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
 #include "core/scene/true_ellipses.hpp"
-#include "core/scene/wild.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/overlay/meta_outline.hpp"
+#include "gst/testsrc/scene_properties.hpp"
 #include "gst/track/video_view.hpp"
 
-enum {
-  PROP_0,
-  PROP_SCENE,
-  PROP_PATTERN,
-  PROP_GROUND,
-  PROP_LENS,
-  PROP_NOISE,
-  PROP_SEED,
-  PROP_IS_LIVE
-};
+enum { PROP_0, PROP_FIRST_OF_SCENE, PROP_IS_LIVE = PROP_FIRST_OF_SCENE + SceneProperties::kCount };
 
-static constexpr gint kAsTheScene = -1;  // of the enum properties, and of "noise"
-static constexpr gint kNoLens = 0;       // beyond it those of the catalog
 static constexpr guint8 kNeutralChroma = 128;
 
 struct _GstEllipseTestSrc {
   GstPushSrc parent;
 
   // Under the object lock.
-  gint scene;
-  gint pattern;
-  gint ground;
-  gint lens;
-  gdouble noise;
-  guint seed;
+  SceneProperties properties;
   gboolean is_changed;  // since the renderer was made
 
   ellipse::SceneRenderer* renderer;
@@ -85,59 +66,6 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     GST_PAD_ALWAYS,
     GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ GRAY8, I420, YV12, NV12, NV21, Y42B, Y444 }")));
 
-// The value of "scene" beyond the catalog.
-static gint wild_scene_number(void) {
-  return static_cast<gint>(ellipse::scene_catalog().size());
-}
-
-static GType gst_ellipse_scene_get_type(void) {
-  static const GType kType = [] {
-    static std::vector<GEnumValue> values;
-    gint number = 0;
-    for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
-      values.push_back({number++, scene.description, scene.name});
-    }
-    values.push_back({number, "A random one: all of it follows from the seed", "wild"});
-    values.push_back({0, nullptr, nullptr});
-    return g_enum_register_static("GstEllipseScene", values.data());
-  }();
-  return kType;
-}
-
-static GType register_nicks(const char* name,
-                            std::span<const char* const> nicks,
-                            std::vector<GEnumValue>& values) {
-  values.push_back({kAsTheScene, "As the scene has it", "scene"});
-  gint number = 0;
-  for (const char* nick : nicks) values.push_back({number++, nick, nick});
-  values.push_back({0, nullptr, nullptr});
-  return g_enum_register_static(name, values.data());
-}
-
-static GType gst_ellipse_pattern_get_type(void) {
-  static std::vector<GEnumValue> values;
-  static const GType kType = register_nicks("GstEllipsePattern", ellipse::pattern_nicks(), values);
-  return kType;
-}
-
-static GType gst_ellipse_ground_get_type(void) {
-  static std::vector<GEnumValue> values;
-  static const GType kType = register_nicks("GstEllipseGround", ellipse::ground_nicks(), values);
-  return kType;
-}
-
-static GType gst_ellipse_lens_get_type(void) {
-  static const GType kType = [] {
-    static std::vector<GEnumValue> values = {{kNoLens, "None: a pinhole", "none"}};
-    for (const ellipse::NamedLens& lens : ellipse::lens_catalog()) {
-      values.push_back({static_cast<gint>(values.size()), lens.description, lens.name});
-    }
-    values.push_back({0, nullptr, nullptr});
-    return g_enum_register_static("GstEllipseLens", values.data());
-  }();
-  return kType;
-}
-
 static void gst_ellipse_test_src_set_property(GObject* object,
                                               guint id,
                                               const GValue* value,
@@ -145,33 +73,14 @@ static void gst_ellipse_test_src_set_property(GObject* object,
   auto* self = GST_ELLIPSE_TEST_SRC(object);
   if (id == PROP_IS_LIVE) {
     gst_base_src_set_live(GST_BASE_SRC(self), g_value_get_boolean(value));
-    return;
+  } else if (id >= PROP_FIRST_OF_SCENE && id < PROP_IS_LIVE) {
+    GST_OBJECT_LOCK(self);
+    self->properties.set(id - PROP_FIRST_OF_SCENE, value);
+    self->is_changed = TRUE;
+    GST_OBJECT_UNLOCK(self);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
   }
-  GST_OBJECT_LOCK(self);
-  switch (id) {
-    case PROP_SCENE:
-      self->scene = g_value_get_enum(value);
-      break;
-    case PROP_PATTERN:
-      self->pattern = g_value_get_enum(value);
-      break;
-    case PROP_GROUND:
-      self->ground = g_value_get_enum(value);
-      break;
-    case PROP_LENS:
-      self->lens = g_value_get_enum(value);
-      break;
-    case PROP_NOISE:
-      self->noise = g_value_get_double(value);
-      break;
-    case PROP_SEED:
-      self->seed = g_value_get_uint(value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-  }
-  self->is_changed = TRUE;
-  GST_OBJECT_UNLOCK(self);
 }
 
 static void gst_ellipse_test_src_get_property(GObject* object,
@@ -181,56 +90,24 @@ static void gst_ellipse_test_src_get_property(GObject* object,
   auto* self = GST_ELLIPSE_TEST_SRC(object);
   if (id == PROP_IS_LIVE) {
     g_value_set_boolean(value, gst_base_src_is_live(GST_BASE_SRC(self)));
-    return;
+  } else if (id >= PROP_FIRST_OF_SCENE && id < PROP_IS_LIVE) {
+    GST_OBJECT_LOCK(self);
+    self->properties.get(id - PROP_FIRST_OF_SCENE, value);
+    GST_OBJECT_UNLOCK(self);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
   }
-  GST_OBJECT_LOCK(self);
-  switch (id) {
-    case PROP_SCENE:
-      g_value_set_enum(value, self->scene);
-      break;
-    case PROP_PATTERN:
-      g_value_set_enum(value, self->pattern);
-      break;
-    case PROP_GROUND:
-      g_value_set_enum(value, self->ground);
-      break;
-    case PROP_LENS:
-      g_value_set_enum(value, self->lens);
-      break;
-    case PROP_NOISE:
-      g_value_set_double(value, self->noise);
-      break;
-    case PROP_SEED:
-      g_value_set_uint(value, self->seed);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-  }
-  GST_OBJECT_UNLOCK(self);
 }
 
-// Size and frame rate that a peer leaves open: a random scene has its own.
-struct PreferredFormat {
-  gint width = 640;
-  gint height = 360;
-  gint rate_n = 30;
-  gint rate_d = 1;
-};
-
-static PreferredFormat preferred_format(GstEllipseTestSrc* self) {
+static SceneProperties properties_of(GstEllipseTestSrc* self) {
   GST_OBJECT_LOCK(self);
-  const gint scene = self->scene;
-  const guint seed = self->seed;
+  const SceneProperties properties = self->properties;
   GST_OBJECT_UNLOCK(self);
-  if (scene != wild_scene_number()) return {};
-  const ellipse::Wild wild = ellipse::make_wild(seed);
-  PreferredFormat format{wild.width, wild.height};
-  gst_util_double_to_fraction(wild.frames_per_second, &format.rate_n, &format.rate_d);
-  return format;
+  return properties;
 }
 
 static GstCaps* gst_ellipse_test_src_fixate(GstBaseSrc* base, GstCaps* caps) {
-  const PreferredFormat format = preferred_format(GST_ELLIPSE_TEST_SRC(base));
+  const SceneFormat format = properties_of(GST_ELLIPSE_TEST_SRC(base)).preferred_format();
   caps = gst_caps_make_writable(gst_caps_truncate(caps));
   GstStructure* structure = gst_caps_get_structure(caps, 0);
   gst_structure_fixate_field_nearest_int(structure, "width", format.width);
@@ -327,28 +204,11 @@ static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellip
 // The scene as the properties have it; nullopt where they have not changed.
 static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
   GST_OBJECT_LOCK(self);
-  const gint number = self->scene;
-  const gint pattern = self->pattern;
-  const gint ground = self->ground;
-  const gint lens = self->lens;
-  const gdouble noise = self->noise;
-  const guint seed = self->seed;
+  const SceneProperties properties = self->properties;
   const bool is_changed = self->is_changed != FALSE;
   self->is_changed = FALSE;
   GST_OBJECT_UNLOCK(self);
-  if (!is_changed) return std::nullopt;
-
-  ellipse::Scene scene =
-      number == wild_scene_number()
-          ? ellipse::wild_scene(seed)
-          : ellipse::scene_catalog()[static_cast<std::size_t>(number)].make(seed);
-  if (pattern != kAsTheScene) scene.pad.pattern = static_cast<ellipse::Pattern>(pattern);
-  if (ground != kAsTheScene) scene.ground.kind = static_cast<ellipse::GroundKind>(ground);
-  if (lens != kNoLens) {
-    ellipse::lens_catalog()[static_cast<std::size_t>(lens - kNoLens - 1)].put_on(scene);
-  }
-  if (noise >= 0.0) scene.sensor.read_noise = noise;
-  return scene;
+  return is_changed ? std::optional(properties.make()) : std::nullopt;
 }
 
 static ellipse::Truth render(GstEllipseTestSrc* self, GstVideoFrame& frame, GstClockTime pts) {
@@ -394,75 +254,10 @@ static void gst_ellipse_test_src_finalize(GObject* object) {
 }
 
 static void gst_ellipse_test_src_init(GstEllipseTestSrc* self) {
-  self->pattern = kAsTheScene;
-  self->ground = kAsTheScene;
-  self->lens = kNoLens;
-  self->noise = kAsTheScene;
-  self->seed = 1;
+  self->properties = {};
   self->is_changed = TRUE;
   gst_video_info_init(&self->info);
   gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
-}
-
-static void install_properties(GObjectClass* object_class) {
-  const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                              GST_PARAM_MUTABLE_PLAYING);
-  const auto install = [&](guint id, GParamSpec* spec) {
-    g_object_class_install_property(object_class, id, spec);
-  };
-  install(PROP_SCENE,
-          g_param_spec_enum("scene",
-                            "Scene",
-                            "What the camera sees and does",
-                            gst_ellipse_scene_get_type(),
-                            0,
-                            flags));
-  install(PROP_PATTERN,
-          g_param_spec_enum("pattern",
-                            "Pattern",
-                            "What is painted on the pad",
-                            gst_ellipse_pattern_get_type(),
-                            kAsTheScene,
-                            flags));
-  install(PROP_GROUND,
-          g_param_spec_enum("ground",
-                            "Ground",
-                            "What lies around the pad",
-                            gst_ellipse_ground_get_type(),
-                            kAsTheScene,
-                            flags));
-  install(PROP_LENS,
-          g_param_spec_enum("lens",
-                            "Lens",
-                            "How the lens bends the picture",
-                            gst_ellipse_lens_get_type(),
-                            kNoLens,
-                            flags));
-  install(PROP_NOISE,
-          g_param_spec_double("noise",
-                              "Noise",
-                              "Standard deviation of the sensor's noise, in grey levels; "
-                              "-1 = as the scene has it",
-                              -1.0,
-                              100.0,
-                              -1.0,
-                              flags));
-  install(PROP_SEED,
-          g_param_spec_uint(
-              "seed",
-              "Seed",
-              "Seed of all that is random: ground and noise, and of scene \"wild\" everything",
-              0,
-              G_MAXUINT32,
-              1,
-              flags));
-  install(PROP_IS_LIVE,
-          g_param_spec_boolean("is-live",
-                               "Is live",
-                               "Give each frame at its time, as a camera does",
-                               FALSE,
-                               static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                        GST_PARAM_MUTABLE_READY)));
 }
 
 static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
@@ -470,7 +265,16 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
   object_class->set_property = gst_ellipse_test_src_set_property;
   object_class->get_property = gst_ellipse_test_src_get_property;
   object_class->finalize = gst_ellipse_test_src_finalize;
-  install_properties(object_class);
+  SceneProperties::install(object_class, PROP_FIRST_OF_SCENE);
+  g_object_class_install_property(
+      object_class,
+      PROP_IS_LIVE,
+      g_param_spec_boolean("is-live",
+                           "Is live",
+                           "Give each frame at its time, as a camera does",
+                           FALSE,
+                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                    GST_PARAM_MUTABLE_READY)));
 
   auto* element_class = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element_class,
@@ -486,8 +290,4 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
   base_class->start = gst_ellipse_test_src_start;
   base_class->get_times = gst_ellipse_test_src_get_times;
   GST_PUSH_SRC_CLASS(klass)->fill = gst_ellipse_test_src_fill;
-  gst_type_mark_as_plugin_api(gst_ellipse_scene_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(gst_ellipse_pattern_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(gst_ellipse_ground_get_type(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(gst_ellipse_lens_get_type(), static_cast<GstPluginAPIFlags>(0));
 }
