@@ -59,4 +59,7 @@ c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3 opencv4) 
   fail "the installed headers do not compile by themselves"
 grep -q tracking/tracker.hpp "$work/all.cpp" || fail "the tracker's header is not installed"
 ! grep -q scene "$work/all.cpp" || fail "the renderer's headers are installed"
-! nm -DC "$(find "$work/root" -name libellipse.so)" | grep -q SceneRenderer || fail "libellipse has the renderer"
+library=$(find "$work/root" -name libellipse.so)
+nm -DC "$library" > "$work/symbols" || fail "libellipse is not installed"
+grep -q 'ellipse::Tracker::process' "$work/symbols" || fail "libellipse has no tracker"
+! grep -q SceneRenderer "$work/symbols" || fail "libellipse has the renderer"

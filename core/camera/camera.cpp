@@ -97,7 +97,7 @@ void distort_baseline(LensModel model, const Distortion& by, const CurveSamples&
                                : distort_all<LensModel::kBrownConrady>(by, places);
 }
 
-ELLIPSE_AVX2 void bend_avx2(LensModel model, const Distortion& by, const CurveSamples& places) {
+ELLIPSE_AVX2 void distort_avx2(LensModel model, const Distortion& by, const CurveSamples& places) {
   model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, places)
                                : distort_all<LensModel::kBrownConrady>(by, places);
 }
@@ -220,7 +220,7 @@ std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) cons
   return point;
 }
 
-void Lens::bend(const Vector2d& origin_px, double scale, const CurveSamples& places) const {
+void Lens::distort(const Vector2d& origin_px, double scale, const CurveSamples& places) const {
   Distortion by{};
   for (std::size_t i = 0; i < by.distortion.size(); ++i) {
     by.distortion[i] = static_cast<float>(camera_.distortion[i]);
@@ -236,7 +236,7 @@ void Lens::bend(const Vector2d& origin_px, double scale, const CurveSamples& pla
   by.to_y = axis(scale * inverse_focal_.y(), first.y());
   by.from_x = axis(focal_.x() / scale, back.x());
   by.from_y = axis(focal_.y() / scale, back.y());
-  (best_simd() == Simd::kAvx2 ? bend_avx2 : distort_baseline)(camera_.lens, by, places);
+  (best_simd() == Simd::kAvx2 ? distort_avx2 : distort_baseline)(camera_.lens, by, places);
 }
 
 std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) const {

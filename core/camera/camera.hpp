@@ -51,7 +51,7 @@ struct LensPoint {
   Eigen::Matrix2d slope;  ///< Of picture_px, by the point in the ideal plane.
 };
 
-/// Places on a curve, and its unit normals, in single precision. Borrowed.
+/// Samples of a curve, and its unit normals, in single precision. Borrowed.
 struct CurveSamples {
   std::size_t count = 0;
   float* x = nullptr;
@@ -78,7 +78,7 @@ class Lens {
   /// A curve of the ideal plane becomes what the lens makes of it, within 1e-6 of the picture's
   /// size; what the lens does not show goes to kNowhere.
   /// @param origin_px, scale  A place p of the curve is pixel origin + scale p, before and after.
-  void bend(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& places) const;
+  void distort(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& places) const;
 
   /// Within 1e-9 px of the inverse, by Newton's method; nullopt where there is none.
   [[nodiscard]] std::optional<Eigen::Vector2d> ideal_from_picture(

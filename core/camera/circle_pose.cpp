@@ -274,8 +274,8 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
   pose.angles_rad = {std::atan2(pose.bearing.x(), pose.bearing.z()),
                      std::atan2(pose.bearing.y(), pose.bearing.z())};
   const Vector2d centre = projected_centre(camera, chosen);
-  const auto bent = lens.picture_from_ideal(centre);
-  pose.centre_px = bent ? bent->picture_px : centre;
+  const auto shown = lens.picture_from_ideal(centre);
+  pose.centre_px = shown ? shown->picture_px : centre;
   pose.normal = chosen.normal;
   pose.other_normal = other.normal;
   pose.certainty = 1.0 / (1.0 + std::exp(-std::abs(odds_)));

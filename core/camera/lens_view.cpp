@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr std::size_t kFitPoints = 24;
-constexpr std::size_t kOutlinePoints = 96;  // by which a bent perimeter is measured
+constexpr std::size_t kOutlinePoints = 96;  // by which a distorted perimeter is measured
 
 bool is_shown(const Vector2d& point) {
   return point.allFinite();
@@ -79,8 +79,8 @@ std::optional<Vector2d> LensView::ideal_from_picture(const Vector2d& picture_px)
   return point ? std::optional(in_picture(*point)) : std::nullopt;
 }
 
-void LensView::bend(const Vector2d& origin_px, const CurveSamples& places) const {
-  if (is_distorted()) lens_->bend(in_frame(origin_px), scale_, places);
+void LensView::distort(const Vector2d& origin_px, const CurveSamples& places) const {
+  if (is_distorted()) lens_->distort(in_frame(origin_px), scale_, places);
 }
 
 Vector2d LensView::near_ideal(const Vector2d& picture_px) const {
@@ -117,7 +117,7 @@ void distorted_outline(const LensView& lens, const Ellipse& ideal, std::span<Vec
   });
 }
 
-std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal) {
+std::optional<Ellipse> distorted(const LensView& lens, const Ellipse& ideal) {
   if (!lens.is_distorted()) return ideal;
   return mapped(ideal, kFitPoints, [&](const Vector2d& point) {
     const auto place = lens.picture_from_ideal(point);
@@ -125,7 +125,7 @@ std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal) {
   });
 }
 
-std::optional<Ellipse> unbent(const LensView& lens, const Ellipse& in_picture) {
+std::optional<Ellipse> undistorted(const LensView& lens, const Ellipse& in_picture) {
   if (!lens.is_distorted()) return in_picture;
   return mapped(in_picture, kFitPoints / 4, [&](const Vector2d& point) {
     return lens.ideal_from_picture(point);

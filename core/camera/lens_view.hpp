@@ -33,7 +33,7 @@ class LensView {
       const Eigen::Vector2d& picture_px) const;
 
   /// As of Lens; places are counted from a pixel. Does nothing without a lens.
-  void bend(const Eigen::Vector2d& origin_px, const CurveSamples& places) const;
+  void distort(const Eigen::Vector2d& origin_px, const CurveSamples& places) const;
 
   /// As ideal_from_picture(), from a table: within .01 px of the picture; NaN where there is none.
   [[nodiscard]] Eigen::Vector2d near_ideal(const Eigen::Vector2d& picture_px) const;
@@ -51,24 +51,24 @@ class LensView {
   double scale_ = 1.0;                   // pixels of the frame per pixel
 };
 
-/// Share of the perimeter inside a picture: of its length there, where the lens bends it.
+/// Share of the perimeter inside a picture: of its length there, where the lens distorts it.
 [[nodiscard]] double visible_fraction(const LensView& lens,
                                       const Ellipse& ideal,
                                       int width,
                                       int height);
 
-/// An ellipse of the ideal plane as the lens bends it: points around it from the end of its major
-/// axis on, at even anomalies [px of the picture]. Those that the lens does not show are NaN.
+/// An ellipse of the ideal plane as the lens distorts it: points around it from the end of its
+/// major axis on, at even anomalies [px of the picture]. Those that the lens does not show are NaN.
 void distorted_outline(const LensView& lens,
                        const Ellipse& ideal,
                        std::span<Eigen::Vector2d> points_px);
 
 /// The ellipse that looks most like what the lens makes of this one, by direct least squares.
 /// nullopt where the lens does not show all of it. Allocates nothing.
-[[nodiscard]] std::optional<Ellipse> bent(const LensView& lens, const Ellipse& ideal);
+[[nodiscard]] std::optional<Ellipse> distorted(const LensView& lens, const Ellipse& ideal);
 
-/// The inverse: the ellipse of the ideal plane that the lens bends into what looks like this one.
-/// nullopt where less than a quarter of it is such as the lens makes. Allocates nothing.
-[[nodiscard]] std::optional<Ellipse> unbent(const LensView& lens, const Ellipse& in_picture);
+/// The inverse: the ellipse of the ideal plane that the lens distorts into what looks like this
+/// one. nullopt where less than a quarter of it is such as the lens makes. Allocates nothing.
+[[nodiscard]] std::optional<Ellipse> undistorted(const LensView& lens, const Ellipse& in_picture);
 
 }  // namespace ellipse

@@ -83,7 +83,7 @@ void DetectionTrace::place_in_frame(const Rect& region, int scale, const LensVie
   }
   for (TracedCandidate& candidate : candidates_) {
     if (candidate.ellipse) {
-      candidate.ellipse = bent(lens, to_frame(*candidate.ellipse, region, scale));
+      candidate.ellipse = distorted(lens, to_frame(*candidate.ellipse, region, scale));
     }
     candidate.verdict = magnified(candidate.verdict, scale);
   }

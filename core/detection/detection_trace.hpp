@@ -36,8 +36,8 @@ struct TracedPass {
   std::vector<std::uint8_t> luma;   ///< What was looked at, row by row.
   std::vector<std::uint8_t> edges;  ///< The same size: 255 on a thinned edge, else 0.
   std::vector<TracedPoint> points;
-  std::vector<TracedPiece>
-      chains;  ///< `contours`: the contours. `arcs`: the chains of gradient maxima.
+  /// `contours`: the contours. `arcs`: the chains of gradient maxima.
+  std::vector<TracedPiece> chains;
   /// `contours`: the parts of contours between their corners, where these were tried. `arcs`: the
   /// best arcs, of which the guesses are made.
   std::vector<TracedPiece> arcs;
@@ -85,7 +85,7 @@ class DetectionTrace {
   /// Does nothing for candidate -1.
   void choose(int candidate);
   /// All that is said in pixels of the picture becomes pixels of the frame that it is a region of,
-  /// reduced by `scale`; ellipses, found in the ideal plane, are bent as the frame shows them.
+  /// reduced by `scale`; ellipses, found in the ideal plane, are distorted as the frame shows them.
   void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
 
  private:

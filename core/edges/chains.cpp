@@ -96,7 +96,7 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
 }
 
 // Calls use(index) for each free gradient maximum, until it says no. Most blocks have none any
-// more: a chain is walked from where it is met first.
+// more: a chain is walked from its first pixel in this order.
 template <class Use>
 void for_each_free(const GradientMap& map, const Use& use) {
   constexpr std::uint64_t kAllFree = 0x0101010101010101U * maximum::kFree;

@@ -16,7 +16,7 @@ constexpr int kReach = 2;   // pixels to both sides
 constexpr int kBorder = 3;  // of the 5 x 5 kernels and the parabola
 constexpr double kMinCosine = 0.87;
 constexpr std::size_t kMinPoints = 12;
-constexpr double kMinVariance = 1e-4;                      // of a gradient maximum's place [px^2]
+constexpr double kMinVariance = 1e-4;                      // of a maximum's position [px^2]
 constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // [px]
 
 bool is_inside(const ImageView& luma, const Eigen::Vector2d& place) {
@@ -30,8 +30,7 @@ struct Maximum {
   double height;  // of the gradient, along the normal
 };
 
-// Where the gradient has its gradient maximum across an ellipse's perimeter; nullopt where there is
-// none.
+// The gradient maximum across an ellipse's perimeter; nullopt where there is none.
 std::optional<Maximum> maximum_across(const ImageView& luma,
                                       const Eigen::Vector2d& foot,
                                       const Eigen::Vector2d& to_bright,
@@ -57,8 +56,8 @@ std::optional<Maximum> maximum_across(const ImageView& luma,
   return Maximum{{x + (is_flat ? along : 0.0), y + (is_flat ? 0.0 : along)}, *top};
 }
 
-// Places around an ellipse of the ideal plane, in the picture. Where they are is told from the
-// ellipse's centre, which is why single precision will do.
+// Samples around an ellipse of the ideal plane, in the picture. Coordinates are relative to the
+// ellipse's centre, so that single precision suffices.
 class SamplesAround {
  public:
   SamplesAround(const Ellipse& e, int count, const LensView& lens)
@@ -83,8 +82,9 @@ class SamplesAround {
       across_[k] = 1.0F;
       along_[k] = 1.0F;
     }
-    lens.bend(center_,
-              {size_, x_.data(), y_.data(), nx_.data(), ny_.data(), across_.data(), along_.data()});
+    lens.distort(
+        center_,
+        {size_, x_.data(), y_.data(), nx_.data(), ny_.data(), across_.data(), along_.data()});
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -98,7 +98,7 @@ class SamplesAround {
   [[nodiscard]] double length_px(std::size_t k) const {
     return static_cast<double>(along_[k]) * speed_[k] * step_;
   }
-  // Of the perimeter; what the lens itself bends is far less.
+  // Of the perimeter; what the lens itself distorts is far less.
   [[nodiscard]] double curvature(std::size_t k) const {
     const double speed = static_cast<double>(speed_[k]) * along_[k];
     return axes_product_ / (speed * speed * speed_[k]) * across_[k];

@@ -26,7 +26,7 @@ inline constexpr int kMaxRefinementSamples = 96;
 /// @param places  At most kMaxRefinementSamples. With fewer it is faster, and the noise tells more.
 /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
 /// @param lens    The ellipse is of the ideal plane, before and after; the perimeter is searched as
-///                the lens bends it.
+///                the lens distorts it.
 /// @return nullopt where too few gradient maxima are near. Allocates nothing; the time depends on
 /// no size.
 [[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,

@@ -21,8 +21,8 @@ struct Gradient {
 /// What the 5 x 5 kernels make of a slope of one grey level per pixel.
 inline constexpr double kGradientGain = 128.0;
 
-/// Pixels where the gradient has its gradient maximum: one byte a pixel, 0 where there is none. The
-/// low three bits tell the direction of the edge, which is the gradient turned by 90 degrees from x
+/// The gradient maxima: one byte a pixel, 0 where there is none. The low three bits hold the
+/// direction of the edge, which is the gradient turned by 90 degrees from x
 /// to y, in eighths of a turn from +x to +y.
 namespace maximum {
 inline constexpr std::uint8_t kOctant = 0x07;
@@ -46,8 +46,7 @@ class GradientMap {
  public:
   explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}
 
-  /// @param threshold  Least gradient of a gradient maximum [grey levels per pixel]; 0 = by the
-  /// noise.
+  /// @param threshold  Of a gradient maximum [grey levels per pixel]; 0 = by the noise.
   /// @param floor      Least threshold by the noise [grey levels per pixel].
   /// Allocates only when the picture grows. O(pixels).
   void compute(const ImageView& luma, double threshold, double floor);

@@ -36,10 +36,10 @@ const Circle& circle_of(int samples) {
   return kCircles[samples <= 32 ? 0 : samples <= 64 ? 1 : samples <= 128 ? 2 : 3];
 }
 
-// Places around a perimeter. Where they are is told from the pixel next to the ellipse's centre.
-class Places {
+// Samples around a perimeter. Coordinates are relative to the pixel next to the ellipse's centre.
+class OutlineSamples {
  public:
-  Places(const GradientMap& map, const Ellipse& e, int samples, int tolerance_px)
+  OutlineSamples(const GradientMap& map, const Ellipse& e, int samples, int tolerance_px)
       : circle_(circle_of(samples)),
         origin_x_(static_cast<int>(std::lround(e.cx))),
         origin_y_(static_cast<int>(std::lround(e.cy))),
@@ -62,7 +62,7 @@ class Places {
       nx[k] = normal_x / speed[k];
       ny[k] = normal_y / speed[k];
     }
-    if (map.lens().is_distorted()) bend(map.lens(), static_cast<std::size_t>(samples));
+    if (map.lens().is_distorted()) distort(map.lens(), static_cast<std::size_t>(samples));
     const int margin = GradientMap::kBorder + tolerance_px;
     left_ = margin - origin_x_;
     top_ = margin - origin_y_;
@@ -70,7 +70,7 @@ class Places {
     inside_height_ = static_cast<unsigned>(std::max(0, map.height() - 2 * margin));
   }
 
-  // The pixel nearest to a place, from the origin.
+  // The pixel nearest to a sample, from the origin.
   [[nodiscard]] Eigen::Vector2i nearest(std::size_t k) const {
     return {static_cast<int>(std::lrint(x[k])), static_cast<int>(std::lrint(y[k]))};
   }
@@ -105,10 +105,10 @@ class Places {
 
  private:
   // From the ideal plane to the picture.
-  void bend(const LensView& lens, std::size_t samples) {
+  void distort(const LensView& lens, std::size_t samples) {
     is_distorted_ = true;
     PerSample<float> along;
-    lens.bend(
+    lens.distort(
         Eigen::Vector2d(origin_x_, origin_y_),
         {samples, x.data(), y.data(), nx.data(), ny.data(), px_per_ideal_.data(), along.data()});
     for (std::size_t k = 0; k < samples; ++k) {
@@ -152,33 +152,37 @@ int nearest_edge(const std::uint8_t* maxima,
   return kNone;
 }
 
-// An edge that was met.
-struct Meeting {
+// The edge of a sample.
+struct MatchedEdge {
   float residual_px;
   float direction_error_rad;
   float strength;
   float sharpness;
 };
 
-// @param here    The gradient of the edge's pixel, `offset` steps beside the place.
+// @param here    The gradient of the edge's pixel, `offset` steps beside the sample.
 // @param sign    1 where the inside is dark, else -1.
 // @param axes    Product of the semi-axes [px^2 of the ideal plane].
-Meeting meeting(
-    const Places& places, std::size_t k, const Gradient* here, int offset, float sign, float axes) {
-  const bool is_flat = places.is_flat(k);
-  const float nx = places.nx[k];
-  const float ny = places.ny[k];
-  const float speed = places.speed[k];
-  const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : places.stride());
-  const Eigen::Vector2i pixel = places.nearest(k);
+MatchedEdge match_edge(const OutlineSamples& outline,
+                       std::size_t k,
+                       const Gradient* here,
+                       int offset,
+                       float sign,
+                       float axes) {
+  const bool is_flat = outline.is_flat(k);
+  const float nx = outline.nx[k];
+  const float ny = outline.ny[k];
+  const float speed = outline.speed[k];
+  const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : outline.stride());
+  const Eigen::Vector2i pixel = outline.nearest(k);
   const float along = static_cast<float>(offset) + vertex.offset_px;
-  const float dx = static_cast<float>(pixel.x()) + (is_flat ? along : 0.0F) - places.x[k];
-  const float dy = static_cast<float>(pixel.y()) + (is_flat ? 0.0F : along) - places.y[k];
+  const float dx = static_cast<float>(pixel.x()) + (is_flat ? along : 0.0F) - outline.x[k];
+  const float dy = static_cast<float>(pixel.y()) + (is_flat ? 0.0F : along) - outline.y[k];
   const float gx = here->x;
   const float gy = here->y;
   const float strength = std::sqrt(gx * gx + gy * gy);
   const float sine = sign * (gy * nx - gx * ny) / strength;
-  const float curvature = axes / (speed * speed) / places.ideal_speed(k) * places.px_per_ideal(k);
+  const float curvature = axes / (speed * speed) / outline.ideal_speed(k) * outline.px_per_ideal(k);
   // Beside its foot the perimeter falls back behind its tangent.
   const float aside = dy * nx - dx * ny;
   return {dx * nx + dy * ny + curvature * (0.5F * aside * aside + kShift),
@@ -191,7 +195,7 @@ Meeting meeting(
 struct Tally {
   float total = 0.0F;
   float inside = 0.0F;
-  float met = 0.0F;
+  float matched = 0.0F;
   float inside_turn = 0.0F;  // curvature x length, but for a factor
   float matched_turn = 0.0F;
   float gradients = 0.0F;
@@ -203,8 +207,8 @@ struct Tally {
     inside_turn += 1.0F / (speed * speed);
   }
 
-  void add_matched(const Meeting& edge, float speed) {
-    met += speed;
+  void add_matched(const MatchedEdge& edge, float speed) {
+    matched += speed;
     matched_turn += 1.0F / (speed * speed);
     gradients += edge.strength;
     sharpness += edge.sharpness;
@@ -221,7 +225,7 @@ struct Tally {
     if (!(inside > 0.0F)) return evidence;
     evidence.inside_px = inside * spacing;
     evidence.inside_fraction = inside / total;
-    evidence.support = met / inside;
+    evidence.support = matched / inside;
     evidence.turn_support = matched_turn / inside_turn;
     for (std::size_t l = 0; l < levels.size(); ++l) evidence.levels[l] = levels[l] / inside;
     if (hits == 0) return evidence;
@@ -240,35 +244,36 @@ double perimeter_support(const GradientMap& map,
                          int samples,
                          int tolerance_px,
                          double least) {
-  const Places places(map, e, samples, tolerance_px);
+  const OutlineSamples outline(map, e, samples, tolerance_px);
   const auto sign = static_cast<float>(polarity);  // dark inside: the gradient points outwards
   float inside = 0.0F;
-  float met = 0.0F;
-  // Every other place first; where half of what is wanted is not met there, the rest is spared.
+  float matched = 0.0F;
+  // Every other sample first: where these match less than half of what is wanted, the rest is
+  // skipped.
   for (const std::size_t first : {0U, 1U}) {
     for (std::size_t k = first; k < static_cast<std::size_t>(samples); k += 2) {
-      const Eigen::Vector2i pixel = places.nearest(k);
-      if (!places.is_inside(pixel)) continue;
-      inside += places.speed[k];
-      const std::int32_t at = places.index_of(pixel);
-      const std::ptrdiff_t step = places.is_flat(k) ? 1 : map.stride();
+      const Eigen::Vector2i pixel = outline.nearest(k);
+      if (!outline.is_inside(pixel)) continue;
+      inside += outline.speed[k];
+      const std::int32_t at = outline.index_of(pixel);
+      const std::ptrdiff_t step = outline.is_flat(k) ? 1 : map.stride();
       const int offset = nearest_edge(map.maxima() + at,
                                       map.gradients() + at,
                                       step,
-                                      sign * places.nx[k],
-                                      sign * places.ny[k],
+                                      sign * outline.nx[k],
+                                      sign * outline.ny[k],
                                       tolerance_px);
-      if (offset != kNone) met += places.speed[k];
+      if (offset != kNone) matched += outline.speed[k];
     }
-    if (met < 0.5F * static_cast<float>(least) * inside) break;
+    if (matched < 0.5F * static_cast<float>(least) * inside) break;
   }
-  return inside > 0.0F ? static_cast<double>(met / inside) : 0.0;
+  return inside > 0.0F ? static_cast<double>(matched / inside) : 0.0;
 }
 
 PerimeterEvidence PerimeterProbe::probe(
     const GradientMap& map, const Ellipse& e, Polarity polarity, int samples, int tolerance_px) {
   hits_.clear();
-  const Places places(map, e, samples, tolerance_px);
+  const OutlineSamples outline(map, e, samples, tolerance_px);
   const auto sign = static_cast<float>(polarity);
   const auto spacing = static_cast<float>(2.0 * std::numbers::pi / samples);
   const auto axes_product = static_cast<float>(e.semi_major * e.semi_minor);
@@ -276,25 +281,26 @@ PerimeterEvidence PerimeterProbe::probe(
   const auto cy = static_cast<float>(e.cy - std::round(e.cy));
   Tally tally;
   for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k) {
-    const float speed = places.speed[k];
+    const float speed = outline.speed[k];
     tally.total += speed;
-    const Eigen::Vector2i pixel = places.nearest(k);
-    if (!places.is_inside(pixel)) continue;
+    const Eigen::Vector2i pixel = outline.nearest(k);
+    if (!outline.is_inside(pixel)) continue;
     tally.add_inside(speed);
-    const float nx = places.nx[k];
-    const float ny = places.ny[k];
-    const std::ptrdiff_t step = places.is_flat(k) ? 1 : map.stride();
-    const Gradient* here = map.gradients() + places.index_of(pixel);
+    const float nx = outline.nx[k];
+    const float ny = outline.ny[k];
+    const std::ptrdiff_t step = outline.is_flat(k) ? 1 : map.stride();
+    const Gradient* here = map.gradients() + outline.index_of(pixel);
     const int offset = nearest_edge(
-        map.maxima() + places.index_of(pixel), here, step, sign * nx, sign * ny, tolerance_px);
+        map.maxima() + outline.index_of(pixel), here, step, sign * nx, sign * ny, tolerance_px);
     if (offset == kNone) continue;
-    const Meeting edge = meeting(places, k, here + offset * step, offset, sign, axes_product);
+    const MatchedEdge edge =
+        match_edge(outline, k, here + offset * step, offset, sign, axes_product);
     tally.add_matched(edge, speed);
     hits_.push_back({static_cast<int>(k),
-                     {places.x[k] - cx, places.y[k] - cy},
+                     {outline.x[k] - cx, outline.y[k] - cy},
                      {nx, ny},
-                     {places.anomaly(k),
-                      axes_product / places.ideal_speed(k) * places.px_per_ideal(k),
+                     {outline.anomaly(k),
+                      axes_product / outline.ideal_speed(k) * outline.px_per_ideal(k),
                       edge.residual_px},
                      edge.direction_error_rad,
                      speed * spacing});

@@ -12,8 +12,7 @@
 
 namespace ellipse {
 
-/// Where an edge was met, searching from the perimeter along its normal. All of the picture: where
-/// its lens bends it, so it does the perimeter.
+/// An edge matched along a normal of the perimeter, in distorted image coordinates.
 struct EdgeHit {
   int sample = 0;                    ///< Its number around the perimeter.
   Eigen::Vector2f foot;              ///< On the perimeter, from the ellipse's centre [px].
@@ -31,7 +30,7 @@ inline constexpr std::array<double, 4> kDirectionLevels = {0.12, 0.2, 0.3, 0.45}
 struct PerimeterEvidence {
   double inside_px = 0.0;          ///< Length of the perimeter inside the picture.
   double inside_fraction = 0.0;    ///< Of the perimeter.
-  double support = 0.0;            ///< Share of the inside length that meets edges.
+  double support = 0.0;            ///< Share of the inside length that matches edges.
   double turn_support = 0.0;       ///< The same, of the inside turn of the perimeter.
   std::array<double, 4> levels{};  ///< Share of the length within each of the tolerances.
   double signal_to_noise = 0.0;    ///< Mean gradient over the noise's.

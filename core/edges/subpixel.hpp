@@ -16,16 +16,15 @@ enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
 /// Where the gradient maximum lies within its pixel, and how sharp it is.
 struct SubpixelMaximum {
   float offset_px = 0.0F;  ///< Along the axis, from the pixel's centre.
-  float sharpness =
-      0.0F;  ///< Curvature of the gradient maximum's profile over its height [1/px^2].
+  float sharpness = 0.0F;  ///< Curvature of the gradient across it, over its height [1/px^2].
 };
 
 /// Of the blur of a lens that is in focus [px^2].
 inline constexpr double kLensVariance = 0.36;
 
-/// How far inside a curved edge the gradient maximum of its smoothed gradient lies [px], per
-/// curvature [1/px]: smoothing of variance v draws the gradient maximum of an edge of curvature k
-/// in by v k / 2, to first order (own derivation from the mean of a disc's edge over a Gaussian).
+/// How far inside a curved edge its gradient maximum lies [px], per curvature [1/px]: smoothing of
+/// variance v moves the maximum of an edge of curvature k inwards by v k / 2, to first order (own
+/// derivation from the mean of a disc's edge over a Gaussian).
 /// The 5 x 5 kernels have a variance of 1 along the edge.
 inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
 

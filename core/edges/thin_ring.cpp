@@ -46,7 +46,7 @@ double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
   return -slope;
 }
 
-// How far from the bar's middle its gradient maximum is met, as the vertex of a parabola through
+// Distance of the gradient maximum from the bar's middle, as the vertex of a parabola through
 // the pixel with the largest gradient and its neighbours, in the mean over where the pixels lie.
 double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
   double sum = 0.0;

@@ -10,7 +10,7 @@ struct RingEdges {
   Ellipse inner;
 };
 
-/// Where the edges of a thin ring are that were found as gradient maximum.
+/// Removes the blur bias that separates a thin ring's two gradient maxima.
 ///
 /// Smoothing draws the two edges of a bar apart, the more, the thinner it is: a bar without width
 /// has its gradient maxima two standard deviations of the blur from each other. What lies between

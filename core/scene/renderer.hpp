@@ -43,7 +43,7 @@ class SceneRenderer {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
-  /// The lens of the last frame, where it bends the picture; else nullptr. Until the next frame.
+  /// The lens of the last frame, where it distorts the picture; else nullptr. Until the next frame.
   [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
 
  private:

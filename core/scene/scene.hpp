@@ -52,7 +52,7 @@ struct Light {
                           ///< of the distance from the middle.
 };
 
-/// How a lens bends the picture.
+/// How a lens distorts the picture.
 struct Distortion {
   LensModel model = LensModel::kBrownConrady;
   std::array<double, 8> coefficients{};  ///< In the order of the model; the rest is 0.

@@ -87,9 +87,9 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   if (searchable_.empty()) return std::nullopt;
   std::optional<Target> target;
   if (pad_tracker_->is_locked()) target = follow_edges(frame, elapsed);
-  const bool is_seen = target && target->state == TargetState::kTracked;
+  const bool is_visible = target && target->state == TargetState::kTracked;
   const int next_look = settings_.wants_candidates ? 1 : next_look_;
-  if (!is_seen || ++frames_since_look_ >= next_look) target = look_at_all(frame, target);
+  if (!is_visible || ++frames_since_look_ >= next_look) target = look_at_all(frame, target);
   if (target) target->pts_ns = pts_ns;
   prepare_next_frame(target);
   if (target && lens_) locate(*target);
@@ -138,10 +138,10 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   if (!track) return std::nullopt;
   const double visible = visible_fraction(lens(), track->ellipse, frame.width, frame.height);
   const bool is_likely = visible >= kMinPredicted && track->coverage >= kMinCoverage;
-  if (!track->is_seen && !is_likely) return std::nullopt;
+  if (!track->is_visible && !is_likely) return std::nullopt;
   Target target;
   target.ellipse = track->ellipse;
-  target.state = track->is_seen ? TargetState::kTracked : TargetState::kPredicted;
+  target.state = track->is_visible ? TargetState::kTracked : TargetState::kPredicted;
   target.id = last_id_;
   target.contour_overlap = track->coverage;
   target.ellipse_overlap = track->outline;
@@ -274,7 +274,7 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
   is_tracking_ = had_target_ && settings_.tracking == TrackingMode::kRedetect;
   roi_ = {};
   if (!is_tracking_) return;
-  const auto seen = bent(lens(), target->ellipse);
+  const auto seen = distorted(lens(), target->ellipse);
   roi_ =
       seen ? calculate_roi(
                  *seen, settings_.roi_expansion, scale_, frame_bounds_.width, frame_bounds_.height)

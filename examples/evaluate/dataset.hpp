@@ -68,7 +68,8 @@ struct Sequence {
   std::string name;
   std::vector<Frame> frames;  ///< In the natural order of their file names.
   std::shared_ptr<PictureSource> pictures;
-  std::shared_ptr<const DistortedFrame> bent{};  ///< What a lens makes of the frames; else nullptr.
+  /// What a lens makes of the frames; else nullptr.
+  std::shared_ptr<const DistortedFrame> distortion{};
 };
 
 struct Dataset {

@@ -50,11 +50,11 @@ double DistortedFrame::iou(const ellipse::Ellipse& a, const ellipse::Ellipse& b)
 }
 
 ellipse::Ellipse DistortedFrame::to_ideal(const ellipse::Ellipse& in_picture) const {
-  return ellipse::unbent(lens_, in_picture).value_or(in_picture);
+  return ellipse::undistorted(lens_, in_picture).value_or(in_picture);
 }
 
 std::optional<ellipse::Ellipse> DistortedFrame::to_picture(const ellipse::Ellipse& ideal) const {
-  return ellipse::bent(lens_, ideal);
+  return ellipse::distorted(lens_, ideal);
 }
 
 }  // namespace evaluate

@@ -9,8 +9,8 @@
 
 namespace evaluate {
 
-/// A frame that a lens bends. Truth and judgement are of its ideal plane [px], in which the frame
-/// is no rectangle. A value that does not change: thread-safe.
+/// A frame that a lens distorts. Truth and judgement are of its ideal plane [px], in which the
+/// frame is no rectangle. A value that does not change: thread-safe.
 class DistortedFrame {
  public:
   /// Looks up each pixel's place in the ideal plane.

@@ -71,7 +71,8 @@ class Run {
       ++evaluation_.missing_frames;
       return;
     }
-    const SeenFrame seen{&sequence, &frame, {picture.cols, picture.rows, sequence.bent.get()}};
+    const SeenFrame seen{
+        &sequence, &frame, {picture.cols, picture.rows, sequence.distortion.get()}};
     // In another order each time, because each leaves the caches to the next.
     shuffle();
     double reference_ms = 0.0;
@@ -84,8 +85,8 @@ class Run {
       }
     }
     for (std::size_t i = 0; i < methods_.size(); ++i) {
-      if (seen.size.bent != nullptr && answers_[i].target && !methods_[i]->knows_lens()) {
-        answers_[i].target = seen.size.bent->to_ideal(*answers_[i].target);
+      if (seen.size.distortion != nullptr && answers_[i].target && !methods_[i]->knows_lens()) {
+        answers_[i].target = seen.size.distortion->to_ideal(*answers_[i].target);
       }
       evaluation_.methods[i].results.push_back(judged(answers_[i], seen, reference_ms, rule_));
       if (wants_all_) compare_all_of(i, seen);
@@ -106,8 +107,8 @@ class Run {
   void compare_all_of(std::size_t method, const SeenFrame& seen) {
     auto found = methods_[method]->all_found();
     if (!found) return;
-    if (seen.size.bent != nullptr && !methods_[method]->knows_lens()) {
-      for (ellipse::Ellipse& e : *found) e = seen.size.bent->to_ideal(e);
+    if (seen.size.distortion != nullptr && !methods_[method]->knows_lens()) {
+      for (ellipse::Ellipse& e : *found) e = seen.size.distortion->to_ideal(e);
     }
     evaluation_.methods[method].all.push_back(compare_all(*found, seen.frame->truth, seen.size));
   }
@@ -137,7 +138,7 @@ Evaluation evaluate(const std::vector<Sequence>& sequences,
   Evaluation& evaluation = run.evaluation();
   for (const Sequence& sequence : sequences) evaluation.planned_frames += sequence.frames.size();
   for (const Sequence& sequence : sequences) {
-    for (const auto& method : methods) method->start(sequence.bent.get());
+    for (const auto& method : methods) method->start(sequence.distortion.get());
     for (const Frame& frame : sequence.frames) {
       run.see(sequence, frame);
       evaluation.is_interrupted = !advance(frame);

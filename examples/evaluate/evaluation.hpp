@@ -62,7 +62,7 @@ struct Evaluation {
 /// One JSON line for each frame that can be judged, of one method:
 /// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,
 /// "ms":[..],"outcome":"TP"}, visible being the share of the true perimeter inside the frame,
-/// target of the ideal plane where a lens bends the picture.
+/// target of the ideal plane where a lens distorts the picture.
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method);
 
 }  // namespace evaluate

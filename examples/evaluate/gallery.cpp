@@ -35,11 +35,11 @@ void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) 
               kSubPixelBits);
 }
 
-// Of the ideal plane, as the lens bends it.
-void draw_bent(cv::Mat& picture,
-               const ellipse::Ellipse& e,
-               const ellipse::Lens& lens,
-               const cv::Scalar& color) {
+// Of the ideal plane, as the lens distorts it.
+void draw_distorted(cv::Mat& picture,
+                    const ellipse::Ellipse& e,
+                    const ellipse::Lens& lens,
+                    const cv::Scalar& color) {
   std::array<Eigen::Vector2d, 256> outline;
   ellipse::distorted_outline(lens, e, outline);
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -82,8 +82,8 @@ Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
   Exhibit exhibit;
   cv::cvtColor(seen.sequence->pictures->picture(*seen.frame), exhibit.picture, cv::COLOR_GRAY2BGR);
   const auto show = [&](const ellipse::Ellipse& e, const cv::Scalar& color) {
-    if (seen.size.bent != nullptr) {
-      draw_bent(exhibit.picture, e, seen.size.bent->lens(), color);
+    if (seen.size.distortion != nullptr) {
+      draw_distorted(exhibit.picture, e, seen.size.distortion->lens(), color);
     } else {
       draw(exhibit.picture, e, color);
     }

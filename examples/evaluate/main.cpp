@@ -48,7 +48,7 @@ void add_options(CLI::App& app, Options& options) {
       "Folders with gt.csv or ground_truth.txt, or folders of such; scenes:SEED, scenes:FROM-TO or "
       "a "
       "list of them = all scenes of the catalog; distorted:SEED and so on = the same "
-      "through lenses that bend the picture; wild:SEED and so on = random scenes; "
+      "through lenses that distort the picture; wild:SEED and so on = random scenes; "
       "wild-frames:SEED and so on = a frame of each; none = the rendered twin");
   app.add_option(
          "--seconds", options.pace.seconds, "How long each of scenes:SEED and distorted:SEED is")

@@ -57,8 +57,9 @@ bool is_in_view(const Truth& truth, const FrameSize& frame) {
 double iou_of(const ellipse::Ellipse& answer,
               const ellipse::Ellipse& truth,
               const FrameSize& frame) {
-  return frame.bent != nullptr ? frame.bent->iou(answer, truth)
-                               : ellipse::iou_inside(answer, truth, frame.width, frame.height);
+  return frame.distortion != nullptr
+             ? frame.distortion->iou(answer, truth)
+             : ellipse::iou_inside(answer, truth, frame.width, frame.height);
 }
 
 bool is_right(const ellipse::Ellipse& answer,

@@ -41,7 +41,7 @@ inline constexpr double kMinToStart = 0.5;
 struct FrameSize {
   int width = 0;
   int height = 0;
-  const DistortedFrame* bent = nullptr;  ///< Where a lens bends it. Borrowed.
+  const DistortedFrame* distortion = nullptr;  ///< Where a lens distorts it. Borrowed.
 };
 
 /// Share of the perimeter inside the frame, 0 to 1.

@@ -38,10 +38,10 @@ class TrackerMethod : public Method {
                 std::unique_ptr<ellipse::Detector> detector)
       : Method(name), settings_(settings), tracker_(settings, std::move(detector)) {}
 
-  void start(const DistortedFrame* bent) override {
+  void start(const DistortedFrame* distortion) override {
     if (knows_lens_) {
       ellipse::TrackerSettings settings = settings_;
-      if (bent != nullptr) settings.camera = bent->lens().camera();
+      if (distortion != nullptr) settings.camera = distortion->lens().camera();
       tracker_.configure(settings);
       settings.wants_candidates = true;
       if (all_finder_) all_finder_->configure(settings);
@@ -92,8 +92,8 @@ class BoxMethod : public Method {
  public:
   explicit BoxMethod(const char* peer) : Method(peer), peer_(make_box_peer(peer)) {}
 
-  void start(const DistortedFrame* bent) override {
-    bent_ = bent;
+  void start(const DistortedFrame* distortion) override {
+    distortion_ = distortion;
     peer_.stop();
   }
 
@@ -110,7 +110,7 @@ class BoxMethod : public Method {
                            visible_part(frame.truth, {picture.cols, picture.rows}) >= kMinToStart;
     if (!is_enough) return answer;
     const auto told =
-        bent_ != nullptr ? bent_->to_picture(*frame.truth.target) : frame.truth.target;
+        distortion_ != nullptr ? distortion_->to_picture(*frame.truth.target) : frame.truth.target;
     if (told && peer_.begin(picture, *told)) {
       answer.target = told;
       answer.is_given = true;
@@ -119,7 +119,7 @@ class BoxMethod : public Method {
   }
 
  private:
-  const DistortedFrame* bent_ = nullptr;
+  const DistortedFrame* distortion_ = nullptr;
   BoxPeer peer_;
 };
 

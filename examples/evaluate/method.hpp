@@ -31,8 +31,9 @@ class Method {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Called before the first frame of each sequence.
-  /// @param bent  What a lens makes of its frames, nullptr for a pinhole. Borrowed until the next.
-  virtual void start(const DistortedFrame* /*bent*/) {}
+  /// @param distortion  What a lens makes of its frames, nullptr for a pinhole. Borrowed until the
+  /// next.
+  virtual void start(const DistortedFrame* /*distortion*/) {}
   /// Whether its answers are of the ideal plane; else they are of the picture.
   [[nodiscard]] virtual bool knows_lens() const { return false; }
   [[nodiscard]] virtual Answer find(const Frame& frame,

@@ -54,9 +54,9 @@ Sequence make_rendered(const std::string& dataset,
                        const ellipse::Scene& scene,
                        const FrameTimes& times,
                        const Conditions& conditions,
-                       std::shared_ptr<const DistortedFrame> bent) {
+                       std::shared_ptr<const DistortedFrame> distortion) {
   Sequence sequence{
-      dataset, name, {}, std::make_shared<RenderedPictures>(scene, times), std::move(bent)};
+      dataset, name, {}, std::make_shared<RenderedPictures>(scene, times), std::move(distortion)};
   const ellipse::Camera camera = camera_of(scene, kSize.width, kSize.height);
   for (int i = 0; i < times.frames; ++i) {
     const auto number = static_cast<std::size_t>(i);

@@ -26,12 +26,12 @@ inline constexpr int kRenderedHeight = 360;
 
 /// A sequence of a scene, 640 x 360, named "name/frame0000.png" and so on. Its truth is there at
 /// once; a picture is rendered whenever it is asked for, the same one on every machine.
-/// @param bent  What the scene's lens makes of such a frame; nullptr for a pinhole.
+/// @param distortion  What the scene's lens makes of such a frame; nullptr for a pinhole.
 [[nodiscard]] Sequence make_rendered(const std::string& dataset,
                                      const std::string& name,
                                      const ellipse::Scene& scene,
                                      const FrameTimes& times,
                                      const Conditions& conditions = {},
-                                     std::shared_ptr<const DistortedFrame> bent = nullptr);
+                                     std::shared_ptr<const DistortedFrame> distortion = nullptr);
 
 }  // namespace evaluate

@@ -155,7 +155,7 @@ class Run {
   void count(const Moment& moment) {
     const auto phase = static_cast<std::size_t>(moment.phase);
     ++outcome_.frames.at(phase);
-    if (moment.is_seen) return;
+    if (moment.is_visible) return;
     ++outcome_.unseen.at(phase);
     if (moment.visible >= kGoodView) ++outcome_.missed.at(phase);
   }

@@ -45,8 +45,8 @@ struct Moment {
   Eigen::Vector2d platform{0.0, 0.0};
   Eigen::Vector2d platform_velocity{0.0, 0.0};
   double heading_rad = 0.0;
-  bool is_seen = false;  ///< The method has a target.
-  double visible = 0.0;  ///< Truth: share of the pad's outline in the picture.
+  bool is_visible = false;  ///< The method has a target.
+  double visible = 0.0;     ///< Truth: share of the pad's outline in the picture.
 };
 
 struct Outcome {

@@ -38,7 +38,7 @@ const cv::Mat& Map::draw(const Moment& moment) {
   middle_ = moment.platform;
   platform_way_.push_back(moment.platform);
   vehicle_way_.push_back(moment.vehicle.position.head<2>());
-  was_seen_.push_back(moment.is_seen);
+  was_seen_.push_back(moment.is_visible);
 
   canvas_.create(kFiner * kHeight, kFiner * kWidth, CV_8UC3);
   canvas_.setTo(kPaper);
@@ -119,7 +119,7 @@ void Map::draw_platform(const Moment& moment) {
 // Four rotors, the front ones filled.
 void Map::draw_vehicle(const Moment& moment) {
   const Eigen::Matrix3d world_from_body = moment.vehicle.world_from_body.toRotationMatrix();
-  const cv::Scalar& colour = moment.is_seen ? kVehicle : kBlind;
+  const cv::Scalar& colour = moment.is_visible ? kVehicle : kBlind;
   for (const Vector3d& arm : {Vector3d(0.28, 0.28, 0.0),
                               Vector3d(0.28, -0.28, 0.0),
                               Vector3d(-0.28, 0.28, 0.0),
@@ -150,7 +150,7 @@ void Map::draw_height(const Moment& moment) {
     write(std::to_string(height), x / kFiner + 9, y_of(height) / kFiner + 4, 0.35, kFaint);
   }
   write("m", kPlanWidth + 45, 32, 0.35, kFaint);
-  const cv::Scalar& colour = moment.is_seen ? kVehicle : kBlind;
+  const cv::Scalar& colour = moment.is_visible ? kVehicle : kBlind;
   const int y = y_of(moment.vehicle.position.z());
   cv::line(canvas_, {x, bottom}, {x, y}, colour, 12, cv::LINE_AA);
   cv::circle(canvas_, {x, y}, 16, colour, cv::FILLED, cv::LINE_AA);

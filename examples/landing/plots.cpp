@@ -174,7 +174,7 @@ void plot_flight(const Landing& landing, const std::filesystem::path& file) {
       const double off = (moment.vehicle.position.head<2>() - moment.platform).norm();
       const double drift = (moment.vehicle.velocity.head<2>() - moment.platform_velocity).norm();
       script << moment.time_s << ' ' << moment.vehicle.position.z() << ' ' << off << ' ' << drift
-             << ' ' << (moment.is_seen ? "NaN" : "0") << '\n';
+             << ' ' << (moment.is_visible ? "NaN" : "0") << '\n';
     }
   });
   write_phases(script, moments);

@@ -46,7 +46,7 @@ void cover_ellipse(Canvas& canvas, const Ellipse& e, double width_px) {
   }
 }
 
-// The points around a target that a lens has bent out of an ellipse.
+// The points around a target that a lens has distorted out of an ellipse.
 class Outline {
  public:
   explicit Outline(const GstEllipseMeta& meta)
@@ -82,9 +82,9 @@ void cover_outline(Canvas& canvas, const Outline& outline, double width_px) {
   constexpr int kChords = 8;
   const guint n = outline.size();
   for (guint i = 0; i < n; ++i) {
-    const bool is_seen =
+    const bool is_visible =
         outline.has(i + n - 1) && outline.has(i) && outline.has(i + 1) && outline.has(i + 2);
-    if (!is_seen) continue;
+    if (!is_visible) continue;
     const Vector2d p0 = outline.at(i + n - 1);
     const Vector2d p1 = outline.at(i);
     const Vector2d p2 = outline.at(i + 1);
@@ -108,7 +108,7 @@ void cover_axes(Canvas& canvas, const Ellipse& e, double width_px) {
   }
 }
 
-// From end to end: the lens bends them a little, too.
+// From end to end: the lens distorts them a little, too.
 void cover_axes(Canvas& canvas, const Outline& outline, double width_px) {
   const guint half = outline.size() / 2;
   for (const guint i : {0U, half / 2}) {
@@ -146,7 +146,7 @@ void cover_region(Canvas& canvas, const GstEllipseMeta& meta, double width_px) {
   }
 }
 
-// Of the circle, where the camera is known; of what a lens bends, where it is not; else of its
+// Of the circle, where the camera is known; of what a lens distorts, where it is not; else of its
 // ellipse.
 Vector2d centre_of(const GstEllipseMeta& meta) {
   const bool is_known = meta.has_pose && is_near(meta.centre_x) && is_near(meta.centre_y);

@@ -8,8 +8,9 @@
  * glare, occlusion, motion blur and clutter without any pad. Each buffer carries the exact ellipse
  * of the pad's outer edge as a #GstEllipseMeta with the role "truth". The scene "wild" is a random
  * one: the seed decides what it shows, and each of its ellipses has such metadata, targets first.
- * Through a lens that bends the picture it is the ellipse of the ideal plane, with the bent outline
- * beside it, as #ellipsetrack has them. The same properties give the same frames on any machine.
+ * Through a lens that distorts the picture it is the ellipse of the ideal plane, with the distorted
+ * outline beside it, as #ellipsetrack has them. The same properties give the same frames on any
+ * machine.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
@@ -182,8 +183,8 @@ static void attach_ellipse(GstEllipseTestSrc* self,
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
   meta->pts = GST_BUFFER_PTS(buffer);
-  const ellipse::Lens* bent_lens = self->renderer->bent_lens();
-  if (bent_lens != nullptr) write_outline(meta, *bent_lens);
+  const ellipse::Lens* distortion = self->renderer->bent_lens();
+  if (distortion != nullptr) write_outline(meta, *distortion);
 }
 
 // The pad's outer edge or, of a random scene, all its ellipses, targets first.

@@ -97,7 +97,7 @@ void SceneProperties::install(GObjectClass* object_class, guint first_id) {
   install(PROP_LENS,
           g_param_spec_enum("lens",
                             "Lens",
-                            "How the lens bends the picture",
+                            "How the lens distorts the picture",
                             gst_ellipse_lens_get_type(),
                             kNoLens,
                             flags));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A circle that the lens bends out of an ellipse is found, followed and told in the ideal plane.
+// A circle that the lens distorts out of an ellipse is found, followed and told in the ideal plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>

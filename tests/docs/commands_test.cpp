@@ -148,7 +148,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
   }
 
   // The lines of a tracker that looks at what was written.
-  std::string seen_in(const std::string& source) const {
+  std::string view_in(const std::string& source) const {
     const std::string failure =
         support::run_pipeline(source + " ! videoconvert ! ellipsetrack ! ellipsejson ! " +
                               "filesink location=" + file("seen-again.ndjson"));
@@ -170,7 +170,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
         expect_targets(support::contents_of(file(name)), frames, may_drop);
       } else if (name.ends_with(".mkv") || name.ends_with(".mp4")) {
         expect_targets(
-            seen_in("filesrc location=" + file(name) + " ! decodebin"), frames, may_drop);
+            view_in("filesrc location=" + file(name) + " ! decodebin"), frames, may_drop);
       } else if (name.ends_with(".m3u8")) {
         check_playlist(name, frames);
       } else if (name.ends_with(".jpg") || name.ends_with(".png")) {
@@ -178,7 +178,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
         const std::string source = "multifilesrc location=" + file(name) +
                                    (is_jpeg ? " caps=image/jpeg" : " caps=image/png") +
                                    ",framerate=30/1 ! " + (is_jpeg ? "jpegdec" : "pngdec");
-        expect_targets(seen_in(source), frames, may_drop);
+        expect_targets(view_in(source), frames, may_drop);
       } else if (!name.ends_with(".ts")) {  // those of a playlist
         --count;
       }
@@ -200,12 +200,12 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     }
     whole.close();
     EXPECT_GE(segments, 2U);
-    expect_targets(seen_in("filesrc location=" + file("whole.ts") + " ! decodebin"), frames, false);
+    expect_targets(view_in("filesrc location=" + file("whole.ts") + " ! decodebin"), frames, false);
   }
 
   // Of a recording: each line has the time and the target of a frame of the video.
   void check_clock(const std::string& video, const std::string& written) const {
-    const auto seen = lines_of(seen_in("filesrc location=" + file(video) + " ! decodebin"));
+    const auto seen = lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
     const auto lines = lines_of(support::contents_of(file(written)));
     ASSERT_EQ(seen.size(), lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {

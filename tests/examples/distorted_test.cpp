@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Frames that a lens bends, and how answers are judged on them.
+// Frames that a lens distorts, and how answers are judged on them.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -40,8 +40,8 @@ TEST(Distorted, AreTheScenesThroughEachLens) {
   for (const Sequence& sequence : sequences) {
     EXPECT_EQ(sequence.dataset, "distorted");
     EXPECT_EQ(sequence.frames.size(), 10U);
-    ASSERT_TRUE(sequence.bent);
-    lenses.insert(sequence.bent.get());
+    ASSERT_TRUE(sequence.distortion);
+    lenses.insert(sequence.distortion.get());
   }
   EXPECT_EQ(lenses.size(), ellipse::lens_catalog().size());  // shared: each looks up all pixels
 }
@@ -97,7 +97,7 @@ TEST(DistortedFrame, LeadsThereAndBack) {
       const auto shown = frame.to_picture(ideal);
       ASSERT_TRUE(shown) << lens;
       EXPECT_GT(max_difference_px(*shown, ideal), 0.5) << lens;
-      // Not the same to the last: what is bent is no ellipse.
+      // Not the same to the last: what is distorted is no ellipse.
       EXPECT_LT(max_difference_px(frame.to_ideal(*shown), ideal), 0.5) << lens;
     }
   }
@@ -108,19 +108,19 @@ class Truthful : public Method {
  public:
   Truthful(const char* name, bool knows_lens, bool means_ideal)
       : Method(name), knows_lens_(knows_lens), means_ideal_(means_ideal) {}
-  void start(const DistortedFrame* bent) override { bent_ = bent; }
+  void start(const DistortedFrame* distortion) override { distortion_ = distortion; }
   [[nodiscard]] bool knows_lens() const override { return knows_lens_; }
   Answer find(const Frame& frame, const cv::Mat& /*picture*/, std::int64_t /*pts_ns*/) override {
     Answer answer;
     const auto& truth = frame.truth.target;
-    answer.target = truth && !means_ideal_ ? bent_->to_picture(*truth) : truth;
+    answer.target = truth && !means_ideal_ ? distortion_->to_picture(*truth) : truth;
     return answer;
   }
 
  private:
   bool knows_lens_;
   bool means_ideal_;
-  const DistortedFrame* bent_ = nullptr;
+  const DistortedFrame* distortion_ = nullptr;
 };
 
 TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {

@@ -113,7 +113,7 @@ class Scripted : public Method {
  public:
   explicit Scripted(std::vector<std::optional<ellipse::Ellipse>> answers)
       : Method("scripted"), answers_(std::move(answers)) {}
-  void start(const DistortedFrame* /*bent*/) override { ++starts; }
+  void start(const DistortedFrame* /*distortion*/) override { ++starts; }
   Answer find(const Frame& frame, const cv::Mat& picture, std::int64_t /*pts_ns*/) override {
     EXPECT_EQ(picture.at<std::uint8_t>(0, 0), frame.number);
     return {answers_[frame.number], 1, 2.0 + double(frame.number)};

@@ -179,13 +179,13 @@ class Hover {
                         TargetFilter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1));
   }
 
-  void fly_for(double duration_s, bool is_seen, double visible_fraction = 1.0) {
+  void fly_for(double duration_s, bool is_visible, double visible_fraction = 1.0) {
     const int frames = static_cast<int>(std::lround(30.0 * duration_s));
     for (int i = 0; i < frames; ++i, ++frame_) {
       Observation seen;
       seen.time_s = frame_ / 30.0;
       seen.own = own_;
-      if (is_seen) seen.pad = aside_ - own_.position;
+      if (is_visible) seen.pad = aside_ - own_.position;
       seen.visible_fraction = visible_fraction;
       last_ = controller_->update(seen.time_s, own_, seen);
       own_.velocity = last_.velocity;

@@ -126,7 +126,7 @@ TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
   }
 }
 
-// As ellipsetrack tells it of a lens that bends the picture.
+// As ellipsetrack tells it of a lens that distorts the picture.
 TEST(EllipseTestSrc, TruthThroughALensHasItsOutline) {
   for (const char* name : {"none", "barrel", "fisheye"}) {
     const auto buffer =

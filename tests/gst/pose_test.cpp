@@ -203,8 +203,8 @@ TEST_F(PoseElement, TellsItInMessagesAndStructures) {
   EXPECT_EQ(gst_value_array_get_size(gst_structure_get_value(told, "position_covariance")), 6U);
 }
 
-// Through this lens the picture of the scene would come from a bent pad; all the same, what is told
-// of the picture must lie on the edge in the picture.
+// Through this lens the picture of the scene would come from a deformed pad; all the same, what is
+// told of the picture must lie on the edge in the picture.
 TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
@@ -223,8 +223,8 @@ TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   }
 }
 
-// What the picture shows of them, not what the ideal plane does: unbent, the disc in the corner is
-// cut by the frame.
+// What the picture shows of them, not what the ideal plane does: undistorted, the disc in the
+// corner is cut by the frame.
 TEST_F(PoseElement, TellsWhatIsSeenOfCandidatesInThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),

@@ -42,7 +42,7 @@ double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
 }
 
-// A crumpled edge leaves its ellipse by more, the larger it is; but a short arc knows no crumpling.
+// A deformed edge leaves its ellipse by more, the larger it is; but a short arc knows no crumpling.
 double fit_limit(const Ellipse& e, double length_px) {
   return kFitRms + kFitRmsRelative * std::min(radius_of(e), length_px / 3.0);
 }

@@ -14,9 +14,9 @@
 
 namespace ellipse {
 
-/// Finds ellipses from the arcs of their edges: gradient, gradient maxima, chains, arcs, then every
-/// arc and every pair of arcs that could be of one ellipse, fitted from their moments and verified
-/// on the edges around the whole perimeter.
+/// Finds ellipses from the arcs of their edges: gradient and its maxima, chains, arcs, then
+/// every arc and every pair of arcs that could be of one ellipse, fitted from their moments and
+/// verified on the edges around the whole perimeter.
 ///
 /// Looks at the picture in half its size first, refines what it finds there on the full picture,
 /// and looks at the full size only where the answer is weak, where contours below

@@ -23,7 +23,7 @@ constexpr double kRetreatOverNoise = 5.0;  // so many of the noise's
 constexpr double kWholeTurnMin = 5.2;      // [rad], of a chain that is a whole ellipse
 constexpr double kWholeTurnMax = 7.4;
 constexpr double kWholeRms = 0.8;            // [px], and
-constexpr double kWholeRmsRelative = 0.012;  // of its radius: a crumpled pad
+constexpr double kWholeRmsRelative = 0.012;  // of its radius: a deformed pad
 constexpr double kMaxRankedTurn = 3.0;       // [rad]; more is no better
 
 // The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
@@ -54,7 +54,7 @@ Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
   return Eigen::Vector2i(x, y).cast<double>();
 }
 
-// The gradient maximum's place at a pixel, finer than pixels, in the ideal plane.
+// The sub-pixel position of a gradient maximum, in the ideal plane.
 Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
   const Gradient* here = map.gradients() + pixel;
   const bool is_flat = std::abs(here->x) > std::abs(here->y);

@@ -328,8 +328,8 @@ Verdict EllipseVerifier::judge_promise(const GradientMap& map,
   const double reach_px = deformation_px(guess);
   if (reach_px < 2.2) return exact;
   const int tolerance_px = static_cast<int>(std::lround(reach_px));
-  const double crumpled = perimeter_support(map, guess, polarity, 32, tolerance_px, wanted);
-  return crumpled >= wanted ? Verdict{} : exact;
+  const double deformed = perimeter_support(map, guess, polarity, 32, tolerance_px, wanted);
+  return deformed >= wanted ? Verdict{} : exact;
 }
 
 Verdict EllipseVerifier::verify(const GradientMap& map,
@@ -341,9 +341,9 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   const Request request{map, caution, guess, polarity, thresholds};
   const Verdict exact = verify_exact(request, found);
   if (exact.is_accepted()) return exact;
-  const auto crumpled = verify_deformed(request);
-  if (!crumpled) return exact;
-  found = *crumpled;
+  const auto deformed = verify_deformed(request);
+  if (!deformed) return exact;
+  found = *deformed;
   return {};
 }
 

@@ -35,7 +35,7 @@ struct Caution {
 ///
 /// The evidence is weighed a contrario [Desolneux2000]: by how unlikely it is that edges which lie
 /// about by chance agree so well in place and direction. An ellipse that fails as an exact one has
-/// a second chance as a crumpled one: then its edge may leave it, but along a smooth curve whose
+/// a second chance as a deformed one: then its edge may leave it, but along a smooth curve whose
 /// slope is the edge's own.
 class EllipseVerifier {
  public:
@@ -47,7 +47,7 @@ class EllipseVerifier {
 
   /// @param thresholds  Axes, ratio, overlaps and contour size.
   /// @param found       Written where it is accepted.
-  /// @return Why not, as an exact ellipse: as a crumpled one it was refused too.
+  /// @return Why not, as an exact ellipse: as a deformed one it was refused too.
   [[nodiscard]] Verdict verify(const GradientMap& map,
                                const Caution& caution,
                                const Ellipse& guess,
@@ -60,7 +60,7 @@ class EllipseVerifier {
                                            const GradientMap& map,
                                            const Thresholds& thresholds);
 
-  /// How far the edge of a crumpled pad of this size may leave its ellipse [px].
+  /// How far the edge of a deformed pad of this size may leave its ellipse [px].
   [[nodiscard]] static double deformation_px(const Ellipse& e);
 
  private:

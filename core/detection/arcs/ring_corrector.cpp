@@ -10,15 +10,14 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kMaxPx = 30.0;  // semi-minor axis of a ring that may be thin
-constexpr double kGapPx =
-    2.4;  // between a thin ring's gradient maxima, within the refinement's reach
+constexpr double kGapPx = 2.4;   // between a thin ring's maxima, within the refinement's reach
 constexpr double kMinSupport = 0.7;
 constexpr double kContrastTolerance = 0.4;  // between the edges' gradients, as a logarithm
 
 }  // namespace
 
 RingCorrector::RingCorrector() {
-  prepare_repulsion();  // a few milliseconds, that no frame shall take
+  prepare_repulsion();  // takes a few milliseconds: not in a frame
 }
 
 void RingCorrector::correct(const ImageView& luma,

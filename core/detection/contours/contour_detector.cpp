@@ -75,7 +75,7 @@ struct EdgeField {
   const cv::Mat& gradient_x;
   const cv::Mat& gradient_y;
 
-  // Nearer to the border the smoothing has bent the edges.
+  // Nearer to the border the smoothing has displaced the edges.
   [[nodiscard]] bool is_inside(const cv::Point& p) const {
     return p.x >= kBorderPx && p.y >= kBorderPx && p.x < edges.cols - kBorderPx &&
            p.y < edges.rows - kBorderPx;
@@ -95,8 +95,8 @@ std::optional<Ellipse> fit_contour(std::span<const cv::Point> contour, const Edg
   return fit_ellipse(moments);
 }
 
-// Where the gradient has its gradient maximum, across the edge through a pixel of it: the vertex of
-// the parabola through three pixels along the axis closest to the gradient [Devernay1995] 2.
+// The sub-pixel gradient maximum across the edge through a pixel: the vertex of the parabola
+// through three pixels along the axis closest to the gradient [Devernay1995] 2.
 Eigen::Vector2d maximum(const EdgeField& field,
                         const cv::Point& p,
                         const Eigen::Vector2d& gradient) {
@@ -293,7 +293,7 @@ void ContourDetector::try_contour(std::span<const cv::Point> contour,
     const TracedPiece piece = traced(contour, trace_->pass());
     (trace_->pass().*stage).push_back(piece);
     found.candidate = trace_->add(
-        {&piece, 1}, has_ellipse ? unbent(lens_, found.ellipse) : std::nullopt, verdict);
+        {&piece, 1}, has_ellipse ? undistorted(lens_, found.ellipse) : std::nullopt, verdict);
   }
   if (verdict.is_accepted()) add_detection(found);
 }
@@ -330,7 +330,7 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
 void ContourDetector::take_to_ideal_plane() {
   if (!lens_.is_distorted()) return;
   std::erase_if(detections_, [&](Detection& detection) {
-    const auto ideal = unbent(lens_, detection.ellipse);
+    const auto ideal = undistorted(lens_, detection.ellipse);
     if (ideal) detection.ellipse = *ideal;
     return !ideal;
   });

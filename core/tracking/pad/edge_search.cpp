@@ -106,16 +106,16 @@ void EdgeSearch::place(const PadModel& model,
   samples_.clear();
   samples_.reserve(kMaxSamples);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
-  std::array<SeenSteps, kMaxCircles> seen;
+  std::array<VisibleSteps, kMaxCircles> visible;
   double total_px = 0.0;
-  const std::size_t circles = std::min(model.circles.size(), seen.size());
+  const std::size_t circles = std::min(model.circles.size(), visible.size());
   narrowest_ = 1e9;
   for (std::size_t c = 0; c < circles; ++c) {
     const PadCircle& circle = model.circles[c];
     for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      seen[c][i] = placement.visible.has(circle.radius * direction(kFineSteps * i));
+      visible[c][i] = placement.visible.has(circle.radius * direction(kFineSteps * i));
     }
-    const auto count = static_cast<double>(seen[c].count());
+    const auto count = static_cast<double>(visible[c].count());
     total_px += count * placement.step_px(circle);
     if (c == 0) visible_fraction_ = count / kCircleSteps;
     if (c == 0) continue;
@@ -128,17 +128,17 @@ void EdgeSearch::place(const PadModel& model,
 
   placement.spacing_px = std::max(2.0, total_px / samples);
   for (std::size_t c = 0; c < circles; ++c) {
-    place_on_circle(placement, model.circles[c], seen[c], static_cast<int>(c));
+    place_on_circle(placement, model.circles[c], visible[c], static_cast<int>(c));
   }
   for (std::size_t l = 0; l < model.lines.size(); ++l) {
     place_on_line(placement, model.lines[l], static_cast<int>(circles + l));
   }
-  if (view.lens.is_distorted()) bend(view.lens);
+  if (view.lens.is_distorted()) distort(view.lens);
 }
 
 void EdgeSearch::place_on_circle(const Placement& placement,
                                  const PadCircle& circle,
-                                 const SeenSteps& seen,
+                                 const VisibleSteps& visible,
                                  int feature) {
   const double step_px = placement.step_px(circle);
   const double spacing_px = placement.spacing_px;
@@ -146,7 +146,7 @@ void EdgeSearch::place_on_circle(const Placement& placement,
   const int fine = spacing_px < step_px ? static_cast<int>(kFineSteps) : 1;
   double since_px = 0.5 * spacing_px;
   for (std::size_t i = 0; i < kCircleSteps; ++i) {
-    if (!seen[i]) continue;
+    if (!visible[i]) continue;
     for (int k = 0; k < fine; ++k) {
       since_px += step_px / fine;
       if (since_px < spacing_px) continue;
@@ -176,7 +176,7 @@ void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, 
 }
 
 // All samples from the ideal plane to the picture.
-void EdgeSearch::bend(const LensView& lens) {
+void EdgeSearch::distort(const LensView& lens) {
   constexpr std::size_t kMost = kMaxSamples;
   std::array<std::array<float, kMost>, 6> numbers;
   auto& [x, y, nx, ny, across, along] = numbers;
@@ -187,7 +187,7 @@ void EdgeSearch::bend(const LensView& lens) {
     nx[i] = static_cast<float>(view.normal.x());
     ny[i] = static_cast<float>(view.normal.y());
   }
-  lens.bend(
+  lens.distort(
       {0.0, 0.0},
       {samples_.size(), x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -222,7 +222,7 @@ void EdgeSearch::look_along(const ImageView& luma,
                             double reach_px,
                             EdgeSample& sample) const {
   sample.count = 0;
-  sample.is_seen = false;
+  sample.is_visible = false;
   const Eigen::Vector2d& normal = sample.view.normal;
   const int axis = std::abs(normal.x()) > std::abs(normal.y()) ? 0 : 1;
   const int other = 1 - axis;
@@ -246,8 +246,8 @@ void EdgeSearch::look_along(const ImageView& luma,
   const int behind = (is_forth ? size[axis] - 1 - middle : middle) / step;
   const int first = -std::min(steps + box, before);
   const int last = std::min(steps + box, behind);
-  sample.is_seen = first <= -box && last >= box;
-  if (!sample.is_seen) return;
+  sample.is_visible = first <= -box && last >= box;
+  if (!sample.is_visible) return;
 
   const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
   const std::ptrdiff_t stride = (is_forth ? step : -step) * along;

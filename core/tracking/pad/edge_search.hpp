@@ -13,19 +13,19 @@
 
 namespace ellipse {
 
-/// An edge met on a normal.
+/// An edge matched on a normal.
 struct EdgeCandidate {
   float distance_px = 0.0F;  ///< Along the normal, from where it was expected.
   float contrast = 0.0F;     ///< [grey levels], above 0.
 };
 
-/// One place on an edge of the pad, and what was met around it.
+/// One sample of an edge of the pad, and what was matched around it.
 struct EdgeSample {
   EdgeView view;
-  float contrast = 0.0F;  ///< That it has on the pad [grey levels].
-  int feature = 0;        ///< Number of the circle; or of the line, behind all circles.
-  bool is_seen = false;   ///< Its normal is inside the picture.
-  int count = 0;          ///< Of candidates.
+  float contrast = 0.0F;    ///< That it has on the pad [grey levels].
+  int feature = 0;          ///< Number of the circle; or of the line, behind all circles.
+  bool is_visible = false;  ///< Its normal is inside the picture.
+  int count = 0;            ///< Of candidates.
   std::array<EdgeCandidate, 3> candidates;  ///< The strongest first.
 
   [[nodiscard]] double predicted_px(const HomographyChange& change) const {
@@ -36,13 +36,13 @@ struct EdgeSample {
 /// Looks for the edges of a pad along their normals, in a picture.
 class EdgeSearch {
  public:
-  /// Spreads places over all edges inside the picture, evenly by their length there.
+  /// Spreads samples over all edges inside the picture, evenly by their length there.
   void place(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
 
-  /// Looks at each place for edges of the right sign.
+  /// Looks at each sample for edges of the right sign.
   /// @param gain       Of the picture's contrast over the model's.
   /// @param reach_px   How far; where a covariance is given, three of its standard deviations and
-  ///                   2 px at each place, at least that and at most `max_px`.
+  ///                   2 px at each sample, at least that and at most `max_px`.
   void look(const ImageView& luma,
             double gain,
             double reach_px,
@@ -58,12 +58,12 @@ class EdgeSearch {
 
  private:
   static constexpr std::size_t kMaxCircles = 8;
-  using SeenSteps = std::bitset<kCircleSteps>;
+  using VisibleSteps = std::bitset<kCircleSteps>;
   struct Placement;
 
   void place_on_circle(const Placement& placement,
                        const PadCircle& circle,
-                       const SeenSteps& seen,
+                       const VisibleSteps& visible,
                        int feature);
   void place_on_line(const Placement& placement, const PadLine& line, int feature);
   void add(const Eigen::Matrix3d& view,
@@ -71,7 +71,7 @@ class EdgeSearch {
            const Eigen::Vector2d& to_bright,
            double contrast,
            int feature);
-  void bend(const LensView& lens);
+  void distort(const LensView& lens);
   void look_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
 
   std::vector<EdgeSample> samples_;

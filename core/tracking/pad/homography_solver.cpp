@@ -69,35 +69,36 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
                              double tolerance_px,
                              int circles) {
   HomographySupport support;
-  std::array<int, 8> seen{};
-  std::array<int, 8> met{};
+  std::array<int, 8> visible{};
+  std::array<int, 8> matched{};
   std::array<float, EdgeSearch::kMaxSamples> gains;
   for (const EdgeSample& sample : samples) {
-    if (!sample.is_seen) continue;
+    if (!sample.is_visible) continue;
     const double predicted = sample.predicted_px(change);
     const EdgeCandidate* edge = nearest_candidate(sample, predicted);
     const bool is_matched =
         edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
-    if (is_matched) gains[static_cast<std::size_t>(support.met)] = edge->contrast / sample.contrast;
-    ++support.seen;
-    support.met += is_matched ? 1 : 0;
+    if (is_matched)
+      gains[static_cast<std::size_t>(support.matched)] = edge->contrast / sample.contrast;
+    ++support.visible;
+    support.matched += is_matched ? 1 : 0;
     if (sample.feature >= circles) continue;
     const auto circle = static_cast<std::size_t>(sample.feature);
-    ++seen[circle];
-    met[circle] += is_matched ? 1 : 0;
+    ++visible[circle];
+    matched[circle] += is_matched ? 1 : 0;
   }
-  if (support.seen == 0) return support;
-  support.coverage = static_cast<double>(support.met) / support.seen;
-  if (seen[0] > 0) support.outline = static_cast<double>(met[0]) / seen[0];
+  if (support.visible == 0) return support;
+  support.coverage = static_cast<double>(support.matched) / support.visible;
+  if (visible[0] > 0) support.outline = static_cast<double>(matched[0]) / visible[0];
   support.weakest = 1.0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] >= 4) {
-      support.weakest = std::min(support.weakest, static_cast<double>(met[i]) / seen[i]);
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (visible[i] >= 4) {
+      support.weakest = std::min(support.weakest, static_cast<double>(matched[i]) / visible[i]);
     }
   }
-  if (support.met > 0) {
-    const auto middle = gains.begin() + support.met / 2;
-    std::nth_element(gains.begin(), middle, gains.begin() + support.met);
+  if (support.matched > 0) {
+    const auto middle = gains.begin() + support.matched / 2;
+    std::nth_element(gains.begin(), middle, gains.begin() + support.matched);
     support.gain = *middle;
   }
   return support;

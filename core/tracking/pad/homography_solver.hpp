@@ -21,15 +21,15 @@ struct HomographyEstimate {
 
 /// How well a change agrees with the samples.
 struct HomographySupport {
-  int seen = 0;           ///< Samples inside the picture.
-  int met = 0;            ///< Of these, with an edge where it should be.
-  double coverage = 0.0;  ///< met over seen.
+  int visible = 0;        ///< Samples inside the picture.
+  int matched = 0;        ///< Of these, with an edge where it should be.
+  double coverage = 0.0;  ///< matched over visible.
   double outline = 0.0;   ///< The same of the outer circle alone; 0 where none of it is in view.
   double weakest = 0.0;   ///< Coverage of the circle with the least.
   double gain = 1.0;      ///< Median contrast over the model's.
 };
 
-/// Solves for the change that brings all edges to what was met, weighted by what is known of it:
+/// Solves for the change that brings all edges to their matches, weighted by what is known of it:
 /// iterated least squares with Tukey's weights, each sample by its candidate next to the
 /// prediction.
 ///
@@ -45,7 +45,7 @@ struct HomographySupport {
     double sigma_px,
     int iterations);
 
-/// The candidate next to where a change puts the edge; nullptr where none was met.
+/// The candidate next to where a change puts the edge; nullptr where none was matched.
 [[nodiscard]] const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px);
 
 /// The sum of the samples' weights under a change: how much it explains.

@@ -18,10 +18,8 @@ constexpr double kMaxRadius = 0.97;
 constexpr double kShortened = 0.02;  // at both ends, where the direction turns
 constexpr double kContrastShare = 0.3;
 constexpr std::size_t kRoom = 4 * LineLearner::kMaxLines;
-constexpr std::size_t kMaximaOfChain =
-    10;  // fewer are rare; a quarter of the pixels are gradient maxima
-constexpr double kGradientOfStep =
-    48.0;  // the gradient maximum of GradientMap's gradient, per grey level
+constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
+constexpr double kGradientOfStep = 48.0;    // largest gradient of a step of one grey level
 
 }  // namespace
 

@@ -23,8 +23,8 @@ struct PadLine {
   Eigen::Vector2d to;
   Eigen::Vector2d to_bright;  ///< Unit normal.
   double contrast = 0.0;      ///< [grey levels]
-  int seen = 0;               ///< Frames in which enough of it was inside the picture,
-  int met = 0;                ///< and was met.
+  int visible = 0;            ///< Frames in which enough of it was inside the picture,
+  int matched = 0;            ///< and was matched.
 };
 
 /// What a pad shows: the edges by which it is followed.

@@ -22,10 +22,10 @@ constexpr double kShiftNoise = 0.0015;  // [radii]
 constexpr double kFirstTurn = 0.03;     // a velocity that is not known yet
 constexpr double kFirstShift = 0.05;
 constexpr double kUsualShare = 0.35;  // of the expected motion
-constexpr double kSurpriseRate = 0.25;
+constexpr double kInnovationRate = 0.25;
 constexpr double kMinRatio = 0.5;  // by which one frame calms it down
-constexpr double kMinSurprise = 0.25;
-constexpr double kMaxSurprise = 64.0;
+constexpr double kMinInnovationRatio = 0.25;
+constexpr double kMaxInnovationRatio = 64.0;
 constexpr double kEdgeSigmaPx = 0.6;
 constexpr int kFineSamples = 72;
 constexpr int kWideSamples = 128;
@@ -34,7 +34,7 @@ constexpr double kNearMaxPx = 12.0;
 constexpr double kFineReachPx = 3.5;
 constexpr double kSmallChangePx = 1.0;  // the edges' normals are the same still
 constexpr double kTolerancePx = 1.2;
-constexpr double kToleranceRelative = 0.012;  // of the radius: crumpled pads
+constexpr double kToleranceRelative = 0.012;  // of the radius: deformed pads
 constexpr double kNearCoverage = 0.7;
 constexpr double kWideCoverage = 0.6;
 constexpr double kWeakestCircle = 0.5;
@@ -63,7 +63,7 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
-PadView seen_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
+PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
   return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
 }
 
@@ -100,7 +100,7 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
   }
   double most = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    auto model = learn_circles(window.luma, seen_in(window, views[i]), ring_ratio_);
+    auto model = learn_circles(window.luma, view_in(window, views[i]), ring_ratio_);
     if (!model) continue;
     double contrast = 0.0;
     for (const PadCircle& circle : model->circles) contrast += circle.contrast;
@@ -122,7 +122,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
-  surprise_ = 1.0;
+  innovation_ratio_ = 1.0;
   misses_ = 0;
   learned_radius_px_ = 0.0;
   motion_ = {};
@@ -147,7 +147,8 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
 
 HomographyFilter PadTracker::predicted(double frames, double looseness) const {
   return motion_.after(
-      frames, surprise_ * looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
+      frames,
+      innovation_ratio_ * looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
 }
 
 // From a change that is about right: all edges again, near it.
@@ -157,7 +158,7 @@ std::optional<PadTracker::Attempt> PadTracker::finish(const LumaWindow& window,
                                                       const HomographyChange& change,
                                                       double reach_px) {
   const Eigen::Matrix3d view = moved(start, change);
-  search_.place(model_, seen_in(window, view), window.luma, kFineSamples);
+  search_.place(model_, view_in(window, view), window.luma, kFineSamples);
   if (search_.samples().size() < kMinMatched) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
   const HomographyPrior here{prior.mean - change, prior.information};
@@ -185,7 +186,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
                                                          const Eigen::Matrix3d& start,
                                                          const HomographyCovariance& covariance) {
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, seen_in(window, start), window.luma, kFineSamples);
+  search_.place(model_, view_in(window, start), window.luma, kFineSamples);
   if (search_.samples().size() < kMinMatched) return std::nullopt;
   search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMaxPx);
   auto estimate = solve_homography(
@@ -203,7 +204,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
   if (attempt) last_coverage_ = attempt->support.coverage;
   const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&
-                       attempt->support.met >= kMinMatched;
+                       attempt->support.matched >= kMinMatched;
   return is_good ? attempt : std::nullopt;
 }
 
@@ -214,7 +215,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& windo
                                                          const HomographyCovariance& covariance,
                                                          double reach_px) {
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, seen_in(window, start), window.luma, kWideSamples);
+  search_.place(model_, view_in(window, start), window.luma, kWideSamples);
   const auto samples = search_.samples();
   if (samples.size() < kMinMatched) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
@@ -259,7 +260,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& windo
   }
   const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&
-                       attempt->support.met >= kMinMatched;
+                       attempt->support.matched >= kMinMatched;
   return is_good ? attempt : std::nullopt;
 }
 
@@ -278,7 +279,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
     const double reach_px = std::max(8.0, 0.16 * radius_px());
     attempt = look_wide(window, prediction, before.pose, reach_px);
     if (!attempt) {
-      const auto coarse = coarse_search(window.luma, model_, seen_in(window, prediction));
+      const auto coarse = coarse_search(window.luma, model_, view_in(window, prediction));
       if (coarse) {
         HomographyCovariance loose = HomographyCovariance::Zero();
         loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
@@ -320,8 +321,10 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before) 
   }
   if (expected_px > 0.0) {
     const double ratio =
-        std::clamp(moved_px / (kUsualShare * expected_px), kMinRatio, kMaxSurprise);
-    surprise_ = std::clamp(surprise_ * std::pow(ratio, kSurpriseRate), kMinSurprise, kMaxSurprise);
+        std::clamp(moved_px / (kUsualShare * expected_px), kMinRatio, kMaxInnovationRatio);
+    innovation_ratio_ = std::clamp(innovation_ratio_ * std::pow(ratio, kInnovationRate),
+                                   kMinInnovationRatio,
+                                   kMaxInnovationRatio);
   }
   gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
   judge_lines(attempt.last);
@@ -334,7 +337,7 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before) 
 void PadTracker::refine(const LumaWindow& window, double visible) {
   if (visible < kMinVisibleToRefine) return;
   const auto exact =
-      refined_outer_edge(window.luma, seen_in(window, view_), model_, gain_, refinement_);
+      refined_outer_edge(window.luma, view_in(window, view_), model_, gain_, refinement_);
   if (!exact) return;
   const auto view = with_outer_edge(
       view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
@@ -345,7 +348,7 @@ void PadTracker::refine(const LumaWindow& window, double visible) {
 
 void PadTracker::measure_inner_edges(const LumaWindow& window) {
   if (!refined_) return;
-  const PadView view = seen_in(window, view_);
+  const PadView view = view_in(window, view_);
   for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
     const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_);
     if (!edge) continue;
@@ -355,7 +358,7 @@ void PadTracker::measure_inner_edges(const LumaWindow& window) {
   }
 }
 
-// The outer circle is the unit; where the others are met tells their radii.
+// The outer circle is the unit; the matches of the others give their radii.
 void PadTracker::learn_radii(const HomographyChange& change, double share) {
   for (std::size_t i = 1; i < model_.circles.size(); ++i) {
     PadCircle& circle = model_.circles[i];
@@ -386,7 +389,7 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
       attempt.support.coverage < kCoverageToLearn) {
     return;
   }
-  line_learner_.take(window.luma, seen_in(window, view_));
+  line_learner_.take(window.luma, view_in(window, view_));
   if (!line_learner_.is_ready()) return;
   line_learner_.learn(model_);
   line_learner_.start();
@@ -401,22 +404,22 @@ void PadTracker::judge_lines(const HomographyChange& change) {
   for (std::size_t begin = 0; begin < samples.size();) {
     const int feature = samples[begin].feature;
     std::size_t end = begin;
-    int seen = 0;
-    int met = 0;
+    int visible = 0;
+    int matched = 0;
     for (; end < samples.size() && samples[end].feature == feature; ++end) {
       const double predicted = samples[end].predicted_px(change);
       const EdgeCandidate* edge = nearest_candidate(samples[end], predicted);
-      seen += samples[end].is_seen ? 1 : 0;
-      met += edge != nullptr && std::abs(edge->distance_px - predicted) <= kTolerancePx ? 1 : 0;
+      visible += samples[end].is_visible ? 1 : 0;
+      matched += edge != nullptr && std::abs(edge->distance_px - predicted) <= kTolerancePx ? 1 : 0;
     }
     begin = end;
-    if (feature < circles || seen < 2) continue;
+    if (feature < circles || visible < 2) continue;
     PadLine& line = model_.lines[static_cast<std::size_t>(feature - circles)];
-    ++line.seen;
-    line.met += 2 * met >= seen ? 1 : 0;
+    ++line.visible;
+    line.matched += 2 * matched >= visible ? 1 : 0;
   }
   std::erase_if(model_.lines, [](const PadLine& line) {
-    return line.seen >= kTrialsOfLine && line.met < kMinMatchedOfLine * line.seen;
+    return line.visible >= kTrialsOfLine && line.matched < kMinMatchedOfLine * line.visible;
   });
 }
 
@@ -437,8 +440,9 @@ std::optional<EdgeTrack> PadTracker::told(const Attempt* attempt) const {
   track.coverage = attempt->support.coverage;
   track.outline = attempt->support.outline;
   track.visible = attempt->visible;
-  track.is_seen = track.visible >= kEnoughVisible ||
-                  (motion_.centre_sigma() <= kMaxCentreSigma && track.coverage >= kPatternCoverage);
+  track.is_visible =
+      track.visible >= kEnoughVisible ||
+      (motion_.centre_sigma() <= kMaxCentreSigma && track.coverage >= kPatternCoverage);
   return track;
 }
 
@@ -450,7 +454,7 @@ RingUncertainty PadTracker::uncertainty() const {
 Rect PadTracker::region_after(double frames, int width, int height) const {
   const Rect frame{0, 0, width, height};
   const auto ideal = project_circle(moved(view_, frames * motion_.velocity), 1.0);
-  const auto ellipse = ideal ? bent(lens_, *ideal) : std::nullopt;
+  const auto ellipse = ideal ? distorted(lens_, *ideal) : std::nullopt;
   if (!ellipse) return frame;
   const Eigen::Vector2d half = half_extent(*ellipse);
   const double margin = 1.3 * ellipse->semi_major + 16.0;

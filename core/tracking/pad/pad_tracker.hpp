@@ -30,11 +30,11 @@ struct LumaWindow {
 
 /// What one frame told.
 struct EdgeTrack {
-  Ellipse ellipse;        ///< The outer circle [px of the frame's ideal plane].
-  double coverage = 0.0;  ///< Share of the pad's edges in view that were matched.
-  double outline = 0.0;   ///< The same of its outer edge alone.
-  double visible = 0.0;   ///< Share of the outer circle inside the frame.
-  bool is_seen = false;   ///< Else its motion was continued.
+  Ellipse ellipse;          ///< The outer circle [px of the frame's ideal plane].
+  double coverage = 0.0;    ///< Share of the pad's edges in view that were matched.
+  double outline = 0.0;     ///< The same of its outer edge alone.
+  double visible = 0.0;     ///< Share of the outer circle inside the frame.
+  bool is_visible = false;  ///< Else its motion was continued.
 };
 
 /// Follows a pad by its edges: predicts its view, looks for each edge along its normal, and solves
@@ -123,8 +123,8 @@ class PadTracker {
   std::size_t inner_count_ = 0;
   Camera camera_;
   LensView lens_;
-  double surprise_ = 1.0;  // of the motion, against its noise
-  double gain_ = 1.0;      // of the picture's contrast over the model's
+  double innovation_ratio_ = 1.0;  // of the motion, against its noise
+  double gain_ = 1.0;              // of the picture's contrast over the model's
   int misses_ = 0;
   double last_coverage_ = 0.0;  // near the prediction
   bool is_locked_ = false;

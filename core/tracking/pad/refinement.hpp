@@ -7,7 +7,7 @@ namespace ellipse {
 /// What makes a followed ellipse exact.
 enum class Refinement {
   kNone,         ///< Nothing: where the edges that it is followed by put it.
-  kEdges,        ///< The gradient maximum along the outer edge.
+  kEdges,        ///< The gradient maxima along the outer edge.
   kPhotometric,  ///< The brightness of all pixels along it; gradient maxima where the ring is too
                  ///< thin.
 };

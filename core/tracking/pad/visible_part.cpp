@@ -10,7 +10,7 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kMarginPx = 3.0;  // from the border
 constexpr double kFarPx = 1e6;
-constexpr int kBorderSteps = 8;  // of each side of the picture, by which a bent one is told
+constexpr int kBorderSteps = 8;  // of each side of the picture, to follow a distorted one
 constexpr int kHalvings = 6;     // by which the rest of a line is told
 
 // A rectangle of the ideal plane.
@@ -21,8 +21,8 @@ struct IdealRect {
   double bottom;
 };
 
-// All of it is inside the picture. Where the lens bends the picture's border, it is the part that
-// no side cuts.
+// All of it is inside the picture. Where the lens distorts the picture's border, it is the part
+// that no side cuts.
 IdealRect inner_rect(const LensView& lens, double right, double bottom) {
   if (!lens.is_distorted()) return {kMarginPx, kMarginPx, right, bottom};
   IdealRect rect{-kFarPx, -kFarPx, kFarPx, kFarPx};

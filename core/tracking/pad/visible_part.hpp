@@ -21,7 +21,8 @@ class VisiblePart {
   }
 
   /// The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
-  /// Through a lens within a hundredth or so, and empty where only the border's bend lets it in.
+  /// Through a lens within a hundredth or so, and empty where only the distortion of the border
+  /// lets it in.
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:

@@ -81,8 +81,8 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
     nx[k] = static_cast<float>(normal[k].x());
     ny[k] = static_cast<float>(normal[k].y());
   }
-  view.bend(origin,
-            {kCount, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
+  view.distort(origin,
+               {kCount, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   for (std::size_t k = 0; k < kCount; ++k) {
     const auto place = view.picture_from_ideal(origin + ideal[k]);
     ASSERT_TRUE(place);
@@ -100,8 +100,8 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
 TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
   std::array<float, 2> x = {100.0F, 1e6F}, y = {100.0F, 0.0F}, nx = {1.0F, 1.0F}, ny = {};
   std::array<float, 2> across, along;
-  LensView(lens_).bend({0.0, 0.0},
-                       {2, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
+  LensView(lens_).distort(
+      {0.0, 0.0}, {2, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   EXPECT_LT(std::abs(x[0]), 640.0F);
   EXPECT_EQ(x[1], CurveSamples::kNowhere);
 }
@@ -109,9 +109,9 @@ TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
 TEST_P(EachLensView, WhatIsBentIsUnbent) {
   const LensView view(lens_);
   const Ellipse small{250.0, 200.0, 9.0, 6.0, 0.4};  // so small that the lens keeps it an ellipse
-  const auto seen = bent(view, small);
+  const auto seen = distorted(view, small);
   ASSERT_TRUE(seen);
-  const auto back = unbent(view, *seen);
+  const auto back = undistorted(view, *seen);
   ASSERT_TRUE(back);
   EXPECT_LT(max_difference_px(*back, small), 0.01);
   EXPECT_GT(max_difference_px(*seen, small), 0.2);
@@ -119,7 +119,7 @@ TEST_P(EachLensView, WhatIsBentIsUnbent) {
 
 TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
   const LensView view(lens_);
-  EXPECT_FALSE(bent(view, {320.0, 180.0, 5e4, 50.0, 0.0}));
+  EXPECT_FALSE(distorted(view, {320.0, 180.0, 5e4, 50.0, 0.0}));
 }
 
 TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
@@ -170,8 +170,8 @@ TEST(LensView, IsNoneByDefault) {
     EXPECT_EQ(*view.ideal_from_picture(pixel), pixel);
     EXPECT_FALSE(view.part({3.0, 4.0}).reduced(2).is_distorted());
     const Ellipse e{250.0, 200.0, 40.0, 20.0, 0.4};
-    EXPECT_EQ(bent(view, e), e);
-    EXPECT_EQ(unbent(view, e), e);
+    EXPECT_EQ(distorted(view, e), e);
+    EXPECT_EQ(undistorted(view, e), e);
   }
 }
 

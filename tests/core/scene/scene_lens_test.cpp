@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Scenes seen through a lens that bends the picture.
+// Scenes seen through a lens that distorts the picture.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>

@@ -379,7 +379,7 @@ TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
       search.place(model, image_from_pad(expected), picture.view(), 64);
       search.look(picture.view(), 1.0, 5.0);
       for (const EdgeSample& sample : search.samples()) {
-        ASSERT_TRUE(sample.is_seen);
+        ASSERT_TRUE(sample.is_visible);
         ASSERT_EQ(sample.count, 1);
         const double off = -shift.dot(sample.view.normal);
         // Circles are learned to half a percent: 0.2 px of the inner one.
@@ -604,7 +604,7 @@ TEST(Support, FallsWithTheErrorOfTheView) {
   for (const double off : {0.0, 0.03, 0.06, 0.2}) {
     const HomographyChange change = off * HomographyChange::Unit(0);
     const HomographySupport support = support_of(samples, change, 1.5, 2);
-    EXPECT_EQ(support.seen, static_cast<int>(samples.size()));
+    EXPECT_EQ(support.visible, static_cast<int>(samples.size()));
     EXPECT_LT(support.coverage, coverage) << off;
     EXPECT_LT(explained(samples, change, 5.0), weight) << off;
     coverage = support.coverage;

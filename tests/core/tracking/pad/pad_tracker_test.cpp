@@ -66,7 +66,7 @@ TEST_P(LockEdges, OnTheTruthAndStaysThere) {
   for (std::uint64_t i = 1; i < 6; ++i) {
     const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
     ASSERT_TRUE(track);
-    EXPECT_TRUE(track->is_seen);
+    EXPECT_TRUE(track->is_visible);
     EXPECT_GT(track->coverage, 0.9);
     EXPECT_EQ(track->visible, 1.0);
     EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.15);
@@ -134,7 +134,7 @@ TEST(PadTracker, LocksOnAnotherPadAfterOne) {
   const Scene disc = pad_scene(Pattern::kDisc);
   ASSERT_TRUE(tracker.lock(whole(frame_of(other, disc)), other));
   const auto track = tracker.track(whole(frame_of(other, disc, 9)), 1.0);
-  ASSERT_TRUE(track && track->is_seen);
+  ASSERT_TRUE(track && track->is_visible);
   // What was learned of the first one is not missed.
   EXPECT_GT(track->coverage, 0.95);
   EXPECT_LT(max_difference_px(track->ellipse, other), 0.15);
@@ -165,7 +165,7 @@ TEST(PadTracker, FollowsToAndFroAtARadiusAFrame) {
       const Rect region = tracker.region_after(1.0, kWidth, kHeight);
       const auto track = tracker.track(part(picture, region), 1.0);
       ASSERT_TRUE(track) << i;
-      EXPECT_TRUE(track->is_seen) << i;
+      EXPECT_TRUE(track->is_visible) << i;
       EXPECT_LT(max_difference_px(track->ellipse, truth), 0.7) << i;
     }
   }
@@ -182,7 +182,7 @@ TEST(PadTracker, FollowsGrowthAndTilt) {
   for (int i = 1; i < 35; ++i) {  // four times as large
     const auto track =
         tracker.track(whole(frame_of(truth_at(i), scene, static_cast<std::uint64_t>(i))), 1.0);
-    ASSERT_TRUE(track && track->is_seen) << i;
+    ASSERT_TRUE(track && track->is_visible) << i;
     EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 0.5) << i;
   }
 }
@@ -195,7 +195,7 @@ TEST(PadTracker, FollowsAsTheLightFails) {
     scene.sensor.gain *= 0.94;  // to 0.11
     const Ellipse truth = translated(kPad, 3.0 * static_cast<double>(i), 0.0);
     const auto track = tracker.track(whole(frame_of(truth, scene, i)), 1.0);
-    ASSERT_TRUE(track && track->is_seen) << i;
+    ASSERT_TRUE(track && track->is_visible) << i;
     EXPECT_LT(max_difference_px(track->ellipse, truth), 0.4) << i;
   }
 }
@@ -208,7 +208,7 @@ TEST(PadTracker, FollowsBehindABar) {
     const double x = 200.0 + 5.0 * static_cast<double>(i);
     scene.bars = {support::bar_px({x, 0.0}, {x, 360.0}, 18.0, 60.0, kWidth, kHeight)};
     const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
-    ASSERT_TRUE(track && track->is_seen) << i;
+    ASSERT_TRUE(track && track->is_visible) << i;
     EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.6) << i;
   }
 }
@@ -226,7 +226,7 @@ TEST(PadTracker, ForgetsLinesThatAreNotThePads) {
   for (std::uint64_t i = 1; i <= kGone + 20; ++i) {
     if (i == kGone) scene.bars.clear();
     const auto track = tracker.track(whole(frame_of(kPad, scene, i)), 1.0);
-    ASSERT_TRUE(track && track->is_seen) << i;
+    ASSERT_TRUE(track && track->is_visible) << i;
     if (i == kGone) {
       EXPECT_LT(track->coverage, 0.95);
     }
@@ -247,12 +247,12 @@ TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
   const Picture ground = empty_frame();
   const auto first = tracker.track(whole(ground), 1.0);
   ASSERT_TRUE(first);
-  EXPECT_FALSE(first->is_seen);
+  EXPECT_FALSE(first->is_visible);
   EXPECT_EQ(first->coverage, 0.0);
   EXPECT_LT(max_difference_px(first->ellipse, truth_at(16)), 1.5);
   int predicted = 1;
   while (const auto track = tracker.track(whole(ground), 1.0)) {
-    EXPECT_FALSE(track->is_seen);
+    EXPECT_FALSE(track->is_visible);
     ASSERT_LT(++predicted, 60);
   }
   EXPECT_GE(predicted, 5);
@@ -269,7 +269,7 @@ TEST(PadTracker, FindsAPadAgainThatWasHiddenForAWhile) {
     const Picture picture = is_hidden ? empty_frame() : frame_of(truth_at(i));
     const auto track = tracker.track(whole(picture), 1.0);
     ASSERT_TRUE(track) << i;
-    EXPECT_EQ(track->is_seen, !is_hidden) << i;
+    EXPECT_EQ(track->is_visible, !is_hidden) << i;
     if (is_hidden) continue;
     EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 0.4) << i;
   }
@@ -285,11 +285,11 @@ TEST(PadTracker, TakesAGapForALongerStep) {
   PadTracker blind = tracker;
   const auto predicted = blind.track(whole(empty_frame()), 5.0);
   ASSERT_TRUE(predicted);
-  EXPECT_FALSE(predicted->is_seen);
+  EXPECT_FALSE(predicted->is_visible);
   EXPECT_LT(max_difference_px(predicted->ellipse, truth_at(25)), 4.0);
   const Rect region = tracker.region_after(5.0, kWidth, kHeight);
   const auto track = tracker.track(part(frame_of(truth_at(25)), region), 5.0);
-  ASSERT_TRUE(track && track->is_seen);
+  ASSERT_TRUE(track && track->is_visible);
   EXPECT_LT(max_difference_px(track->ellipse, truth_at(25)), 0.3);
   // And goes on as before.
   EXPECT_LT(
@@ -313,11 +313,11 @@ TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
     }
     const auto track = tracker.track(whole(picture), 1.0);
     if (truth.visible_fraction >= 0.15) {
-      EXPECT_TRUE(track && track->is_seen) << i;
+      EXPECT_TRUE(track && track->is_visible) << i;
       continue;
     }
     ++little;
-    if (!track || !track->is_seen) continue;
+    if (!track || !track->is_visible) continue;
     ++seen;
     const double off_px = (track->ellipse.center() - truth.outer_edge->center()).norm();
     // With nothing of the ring in view the camera may look beside the centre.
@@ -389,7 +389,7 @@ TEST(PadTracker, NeedsNoMoreThanItsRegion) {
     const auto first = of_frames.track(whole(picture), 1.0);
     const auto second = of_parts.track(part(picture, region), 1.0);
     ASSERT_TRUE(first && second) << i;
-    EXPECT_TRUE(first->is_seen && second->is_seen) << i;
+    EXPECT_TRUE(first->is_visible && second->is_visible) << i;
     EXPECT_LT(max_difference_px(first->ellipse, second->ellipse), 0.01) << i;
     EXPECT_NEAR(first->coverage, second->coverage, 0.02) << i;
     EXPECT_DOUBLE_EQ(first->visible, second->visible) << i;
@@ -427,10 +427,10 @@ TEST(PadTracker, SurvivesEmptyAndTinyWindows) {
     ASSERT_TRUE(tracker.lock(whole(picture), kPad));
     const auto track = tracker.track(part(picture, region), 1.0);
     ASSERT_TRUE(track) << size;
-    EXPECT_FALSE(track->is_seen) << size;
+    EXPECT_FALSE(track->is_visible) << size;
     // And finds it again.
     const auto again = tracker.track(whole(picture), 1.0);
-    ASSERT_TRUE(again && again->is_seen) << size;
+    ASSERT_TRUE(again && again->is_visible) << size;
     EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3) << size;
   }
 }
@@ -441,10 +441,10 @@ TEST(PadTracker, SurvivesFramesWithoutPixels) {
   ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
   for (int i = 0; i < 3; ++i) {
     const auto track = tracker.track({}, 1.0);
-    EXPECT_FALSE(track && track->is_seen);
+    EXPECT_FALSE(track && track->is_visible);
   }
   const auto again = tracker.track(whole(frame_of(kPad)), 1.0);
-  ASSERT_TRUE(again && again->is_seen);
+  ASSERT_TRUE(again && again->is_visible);
   EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3);
 }
 
