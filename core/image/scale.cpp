@@ -37,8 +37,8 @@ void halve(const std::uint8_t* __restrict upper,
   for (int x = 0; x < width; ++x) {
     std::uint16_t a = 0;  // two pixels
     std::uint16_t b = 0;
-    std::memcpy(&a, upper + 2 * x, sizeof a);
-    std::memcpy(&b, lower + 2 * x, sizeof b);
+    std::memcpy(&a, upper + std::ptrdiff_t(2) * x, sizeof a);
+    std::memcpy(&b, lower + std::ptrdiff_t(2) * x, sizeof b);
     const auto sum = static_cast<std::uint16_t>((a & 0xff) + (a >> 8) + (b & 0xff) + (b >> 8) + 2);
     out[x] = static_cast<std::uint8_t>(sum >> 2);
   }

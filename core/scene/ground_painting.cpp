@@ -148,6 +148,7 @@ void rounded(Painter& painter, int count) {
 std::vector<cv::Point2d> circle(const cv::Point2d& center, double radius) {
   constexpr int kCorners = 180;
   std::vector<cv::Point2d> outline;
+  outline.reserve(kCorners);
   for (int i = 0; i < kCorners; ++i) {
     outline.push_back(towards(center, 2.0 * kPi * i / kCorners, radius));
   }

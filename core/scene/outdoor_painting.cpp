@@ -47,7 +47,7 @@ void pavement(cv::Mat& tile, Painter& painter) {
   constexpr int kJoint = 4;
   for (int row = 0; row < kSize / kHeight; ++row) {
     for (int column = 0; column < kSize / kWidth; ++column) {
-      const double left = column * kWidth + (row % 2) * kWidth / 2;
+      const double left = column * kWidth + 0.5 * (row % 2) * kWidth;
       const double top = row * kHeight;
       const double right = left + kWidth - kJoint;
       const double bottom = top + kHeight - kJoint;
@@ -91,8 +91,9 @@ void field(cv::Mat& tile, Painter& painter, std::uint64_t seed) {
 
 void page(Painter& painter) {
   Random& random = painter.random();
-  constexpr double kLine = 32.0;
-  for (double top = 4.0; top < kSize; top += kLine) {
+  constexpr int kLine = 32;
+  for (int line = 0; line < kSize / kLine; ++line) {
+    const double top = line * kLine + 4.0;
     for (double x = 0.0; x < kSize - 20.0;) {
       const double width = random.between(6.0, 12.0);
       if (random.unit() < 0.16) {

@@ -56,8 +56,10 @@ void Draft::netting() {
     note("fence");
     const double spacing = random.between(0.08, 0.25);
     const double width = spacing * random.between(0.06, 0.25);
-    for (double x = -0.6; x < 0.6; x += spacing) {
+    double x = -0.6;
+    while (x < 0.6) {
       net.shapes.push_back(stroke({x, -0.6}, {x + 0.03, 0.6}, width, paint(grey, 8.0)));
+      x += spacing;
     }
     for (const double y : {random.between(-0.3, -0.1), random.between(0.1, 0.3)}) {
       net.shapes.push_back(stroke({-0.7, y}, {0.7, y + 0.04}, width, paint(grey, 8.0)));

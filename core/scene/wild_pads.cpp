@@ -261,13 +261,15 @@ void make_polygons(Draft& draft) {
                                        draft.random.between(0.0, kTwoPi));
   const double rounding = draft.random.between(0.0, 0.35);
   double grey = greys.paint;
-  for (double size = 1.0; size > 0.6; size *= draft.random.between(0.8, 0.95)) {
+  double size = 1.0;
+  while (size > 0.6) {
     Shape shape = is_square ? box({0.0, 0.0}, {0.9, 0.9}, 0.0, draft.paint(grey, 3.0), rounding)
                             : polygon(corners, draft.paint(grey, 3.0));
     shape.place = Eigen::Scaling(size) * shape.place;
     sheet.shapes.push_back(shape);
     grey = greys.paint + greys.around - grey;
     if (draft.chance(0.4)) break;
+    size *= draft.random.between(0.8, 0.95);
   }
   std::vector<Shape> mark =
       glyph(draft.chance(0.7) ? 'H' : 'X', draft.random.between(0.15, 0.4), draft.paint(grey));

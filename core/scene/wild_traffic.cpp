@@ -106,8 +106,8 @@ void add_sign(Draft& draft, Sheet& sheet, bool is_round) {
 void add_hills(Draft& draft) {
   Sheet& hills = draft.sheet(upright_frame({0.0, 60.0, 0.0}, 1.0, kFacing));
   std::vector<Vector2d> outline{{120.0, 5.0}, {-120.0, 5.0}};
-  for (double x = -120.0; x <= 120.0; x += 6.0) {
-    outline.emplace_back(x, -draft.random.between(2.0, 9.0));
+  for (int x = -120; x <= 120; x += 6) {
+    outline.emplace_back(static_cast<double>(x), -draft.random.between(2.0, 9.0));
   }
   hills.shapes.push_back(
       polygon(outline, draft.paint(draft.random.between(40.0, 130.0), 20.0, 1.0)));

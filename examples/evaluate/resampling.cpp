@@ -47,7 +47,7 @@ struct FrameRange {
 // The ranges of one resample, one after the other.
 class Draw {
  public:
-  Draw(const SourceFrames& source, const Scheme& scheme) : source_(source), scheme_(scheme) {
+  Draw(const SourceFrames& source, const Scheme& scheme) : scheme_(scheme) {
     std::size_t begin = 0;
     for (const std::size_t length : source.sequence_lengths) {
       sequences_.push_back({begin, begin + length});
@@ -84,7 +84,6 @@ class Draw {
     return static_cast<std::size_t>(random_.below(static_cast<int>(count)));
   }
 
-  const SourceFrames& source_;
   Scheme scheme_;
   std::vector<FrameRange> sequences_;
   std::vector<FrameRange> ranges_;

@@ -87,7 +87,7 @@ static std::string changed(TrackShared& shared, const PropertyChange& change, bo
     change.apply_to(*shared.wanted);
     if (misfit_of(*shared.wanted).empty()) next = *shared.wanted;
   }
-  const std::string misfit = misfit_of(next);
+  std::string misfit = misfit_of(next);
   if (misfit.empty()) shared.properties = next;
   return misfit;
 }
@@ -133,7 +133,7 @@ static std::string set_or_refuse(GstEllipseTrack* self,
   try {
     const PropertyChange change(which, value);  // may read a file
     const ObjectLock lock(self);
-    const std::string misfit = changed(shared, change, is_stopped(self));
+    std::string misfit = changed(shared, change, is_stopped(self));
     shared.senseless.erase(name);
     return misfit;
   } catch (const std::exception& error) {
