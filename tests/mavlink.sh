@@ -3,16 +3,17 @@
 # Runs the tests of examples/mavlink with the packages of its lock file, in a folder of its own.
 #   mavlink.sh SOURCE FOLDER
 set -euo pipefail
-if ! command -v npm > /dev/null; then
-  echo "mavlink.sh: skipped, there is no npm"
+skip() {
+  echo "mavlink.sh: skipped, $1"
   exit 77
-fi
+}
+command -v npm > /dev/null || skip "there is no npm"
 mkdir -p "$2"
 cp "$1"/*.js "$1"/*.json "$2"
 cd "$2"
 # What is there already is not asked of the network again.
 if ! cmp -s package-lock.json node_modules/.lock; then
-  npm ci --no-audit --no-fund --loglevel=error --fetch-retries=5
+  npm ci --no-audit --no-fund --loglevel=error --fetch-retries=5 > npm.log 2>&1 || skip "npm ci failed, see $2/npm.log"
   cp package-lock.json node_modules/.lock
 fi
 node --test
