@@ -212,7 +212,8 @@ constexpr std::array kGroundNicks = {"plain",
                                      "foliage",
                                      "field",
                                      "page",
-                                     "skin"};
+                                     "skin",
+                                     "polygons"};
 
 }  // namespace
 

@@ -102,6 +102,26 @@ void squares(Painter& painter, int count) {
   }
 }
 
+// Five to eight corners; some with another polygon in the middle, as on a traffic sign.
+void polygons(Painter& painter, int count) {
+  Random& random = painter.random();
+  for (int i = 0; i < count; ++i) {
+    const cv::Point2d center = painter.somewhere();
+    const double turn = random.between(0.0, kPi);
+    const int corners = 5 + random.below(4);
+    const auto draw = [&](double size) {
+      std::vector<cv::Point2d> outline;
+      for (int corner = 0; corner < corners; ++corner) {
+        outline.push_back(towards(center, turn + 2.0 * kPi * corner / corners, size));
+      }
+      painter.polygon(outline, strong_level(random));
+    };
+    const double size = random.between(50.0, 110.0);
+    draw(size);
+    if (random.unit() < 0.5) draw(random.between(0.6, 0.95) * size);
+  }
+}
+
 void flowers(Painter& painter, int count) {
   Random& random = painter.random();
   for (int i = 0; i < count; ++i) {
@@ -220,6 +240,9 @@ cv::Mat draw_ground(GroundKind kind, std::uint64_t seed) {
       break;
     case GroundKind::kPage:
       page(painter);
+      break;
+    case GroundKind::kPolygons:
+      polygons(painter, 30);
       break;
     case GroundKind::kSkin:
       add_noise(tile, 6, 14.0F, seed + 2);

@@ -23,6 +23,7 @@ enum class GroundKind {
   kField,     ///< Furrows.
   kPage,      ///< Lines of straight strokes, as of print.
   kSkin,      ///< Soft, without edges.
+  kPolygons,  ///< A clutter of regular polygons, of five corners and more.
   kPicture,   ///< A picture of one's own.
 };
 
