@@ -31,14 +31,15 @@ constexpr char kEffectsBegin[] = "<!-- effects of settings -->";
 constexpr char kEffectsEnd[] = "<!-- end of effects -->";
 constexpr char kVersion[] = ELLIPSE_VERSION;  // major and minor
 
-std::string quoted(const std::string& text) {
+std::string in_backticks(const std::string& text) {
   return "`" + text + "`";
 }
 
 template <class Value>
 std::string nicks_of(const Value* values, guint count) {
   std::string nicks;
-  for (guint i = 0; i < count; ++i) nicks += (i > 0 ? ", " : "") + quoted(values[i].value_nick);
+  for (guint i = 0; i < count; ++i)
+    nicks += (i > 0 ? ", " : "") + in_backticks(values[i].value_nick);
   return nicks;
 }
 
@@ -60,7 +61,7 @@ std::string flags_of(const GValue& value) {
     if (!nicks.empty()) nicks += "+";
     nicks += flag.value_nick;
   }
-  return quoted(nicks);
+  return in_backticks(nicks);
 }
 
 // Angle brackets would be taken for markup.
@@ -118,7 +119,7 @@ std::string default_of(GstElement* element, GParamSpec* spec) {
     text = content != nullptr && *content != '\0' ? content : "empty";
   } else {
     const std::unique_ptr<gchar, decltype(&g_free)> serialized(gst_value_serialize(&value), g_free);
-    text = G_VALUE_HOLDS_ENUM(&value) ? quoted(serialized.get()) : serialized.get();
+    text = G_VALUE_HOLDS_ENUM(&value) ? in_backticks(serialized.get()) : serialized.get();
   }
   g_value_unset(&value);
   return text;
@@ -134,7 +135,7 @@ std::string changeable(const GParamSpec* spec) {
 
 // The last column of a row that begins with this name; empty where there is none.
 std::string since_of(const std::string& name, const std::string& document) {
-  const std::regex row("\\n\\| " + quoted(name) + " \\|.*\\| (\\d+\\.\\d+) \\|(?=\\n)");
+  const std::regex row("\\n\\| " + in_backticks(name) + " \\|.*\\| (\\d+\\.\\d+) \\|(?=\\n)");
   std::smatch found;
   return std::regex_search(document, found, row) ? found[1].str() : "";
 }
@@ -175,7 +176,7 @@ std::string table_of(const std::string& name, const std::string& document) {
     const bool is_qos = spec->owner_type == GST_TYPE_BASE_TRANSFORM;
     if (spec->owner_type != G_OBJECT_TYPE(element.get()) && !is_qos) continue;
     const std::string since = since_of(spec->name, section);
-    table += "| " + quoted(spec->name) + " | " + type_of(spec) + " | " +
+    table += "| " + in_backticks(spec->name) + " | " + type_of(spec) + " | " +
              default_of(element.get(), spec) + " | " + changeable(spec) + " | " +
              escaped(g_param_spec_get_blurb(spec)) + " | " + (since.empty() ? kVersion : since) +
              " |\n";
@@ -195,7 +196,7 @@ std::string cell_of(const ellipse::SettingEffect& effect,
       break;
   }
   const std::string otherwise = effect.otherwise;
-  return otherwise.empty() ? "-" : "with " + quoted(otherwise);
+  return otherwise.empty() ? "-" : "with " + in_backticks(otherwise);
 }
 
 // Our detector and tracking first: they are the defaults.
@@ -206,7 +207,7 @@ constexpr ellipse::TrackingMode kTrackings[] = {
 
 void write_effects_of(const std::string& name, std::ostream& table) {
   const ellipse::SettingEffect effect = ellipse::effect_of(name);
-  table << "| " << quoted(name) << " |";
+  table << "| " << in_backticks(name) << " |";
   for (const auto detector : kDetectors) {
     for (const auto tracking : kTrackings) {
       table << ' ' << cell_of(effect, detector, tracking) << " |";
@@ -220,8 +221,9 @@ std::string effects_table() {
   table << "| property |";
   for (const auto detector : kDetectors) {
     for (const auto tracking : kTrackings) {
-      table << ' ' << quoted(ellipse::detector_nicks()[static_cast<std::size_t>(detector)]) << ", "
-            << quoted(ellipse::tracking_nicks()[static_cast<std::size_t>(tracking)]) << " |";
+      table << ' ' << in_backticks(ellipse::detector_nicks()[static_cast<std::size_t>(detector)])
+            << ", " << in_backticks(ellipse::tracking_nicks()[static_cast<std::size_t>(tracking)])
+            << " |";
     }
   }
   table << "\n|---|---|---|---|---|---|---|\n";
