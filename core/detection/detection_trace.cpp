@@ -24,9 +24,6 @@ void DetectionTrace::clear() {
 }
 
 TracedPass& DetectionTrace::begin_pass(const ImageView& luma, int scale) {
-  for (TracedCandidate& candidate : candidates_) {
-    if (candidate.verdict.is_accepted()) candidate.verdict = {Reason::kLookedAgain};
-  }
   TracedPass& pass = passes_.emplace_back();
   pass.region = {0, 0, scale * luma.width, scale * luma.height};
   pass.scale = scale;
@@ -47,6 +44,16 @@ int DetectionTrace::add(std::span<const TracedPiece> pieces,
   if (ellipse) candidate.ellipse = to_frame(*ellipse, {}, passes_.back().scale);
   candidate.verdict = magnified(verdict, passes_.back().scale);
   return static_cast<int>(candidates_.size()) - 1;
+}
+
+void DetectionTrace::measure(int candidate,
+                             const Ellipse& ellipse,
+                             const Features& features,
+                             double probability) {
+  TracedCandidate& known = candidates_[static_cast<std::size_t>(candidate)];
+  known.ellipse = ellipse;
+  known.features = features;
+  known.probability = probability;
 }
 
 void DetectionTrace::revise(int candidate, const Verdict& verdict) {

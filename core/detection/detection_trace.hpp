@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/detection/detector.hpp"
+#include "core/detection/evidence.hpp"
 #include "core/detection/verdict.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/image/image_view.hpp"
@@ -52,6 +53,8 @@ struct TracedCandidate {
   double contour_overlap = 0.0;     ///< [Keipour2021] Eq. (1); of what was found only.
   double ellipse_overlap = 0.0;     ///< [Keipour2021] Eq. (2); of what was found only.
   double score = 0.0;               ///< As in Detection; of what was found only.
+  double probability = 0.0;         ///< That it is an ellipse; 0 where nothing was measured.
+  Features features{};              ///< What that was computed from.
   bool is_target = false;           ///< By select_target().
 };
 
@@ -69,7 +72,6 @@ class DetectionTrace {
   // What follows is for those who detect.
 
   void clear();
-  /// What earlier passes have found counts no more.
   TracedPass& begin_pass(const ImageView& luma, int scale);
   [[nodiscard]] TracedPass& pass() { return passes_.back(); }
 
@@ -78,6 +80,8 @@ class DetectionTrace {
   int add(std::span<const TracedPiece> pieces,
           const std::optional<Ellipse>& ellipse,
           const Verdict& verdict);
+  /// What was measured of it, after it was brought to the edges [px of the picture].
+  void measure(int candidate, const Ellipse& ellipse, const Features& features, double probability);
   /// A later test has the last word, in pixels of the picture. Does nothing for candidate -1.
   void revise(int candidate, const Verdict& verdict);
   /// What is found in the end [px of the picture]; anything else was crowded out.

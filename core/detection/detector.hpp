@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/camera/lens_view.hpp"
+#include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/image/image_view.hpp"
@@ -17,6 +18,7 @@ struct Detection {
   double contour_overlap = 0.0;  ///< [Keipour2021] Eq. (1).
   double ellipse_overlap = 0.0;  ///< [Keipour2021] Eq. (2).
   double score = 0.0;            ///< Evidence for it; comparable within one detector only.
+  double probability = 1.0;      ///< That it is an ellipse; 1 where a detector does not say.
   int candidate = -1;            ///< Its number in a DetectionTrace; -1 without one.
 };
 
@@ -53,8 +55,12 @@ class Detector {
   /// Through what lens every picture from now on is seen; none by default.
   void set_lens(const LensView& lens) { lens_ = lens; }
 
+  /// By what evidence is judged from now on, where the detector gives a probability.
+  void set_evidence(const EvidenceTable& table) { evidence_ = table; }
+
  protected:
   DetectionTrace* trace_ = nullptr;
+  EvidenceTable evidence_ = built_in_evidence();
   LensView lens_;
 };
 

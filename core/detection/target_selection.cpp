@@ -59,6 +59,9 @@ Verdict judge_beside(const Detection& member, const Detection& other) {
 
 // Of a set that is not the best.
 Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
+  if (set.probability < best.probability) {
+    return {Reason::kWeakerSet, set.score, best.score};
+  }
   if (set.has_two_edges != best.has_two_edges) return {Reason::kSingle};
   return {Reason::kWeakerSet, set.score, best.score};
 }
@@ -70,6 +73,7 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
   for (const Detection& other : detections) {
     if (!are_concentric(ellipse, other.ellipse)) continue;
     set.has_two_edges = set.has_two_edges || !are_one_edge(ellipse, other.ellipse);
+    set.probability = std::max(set.probability, other.probability);
     set.score += other.score;
     set.best_score = std::max(set.best_score, other.score);
   }

@@ -28,12 +28,14 @@ namespace ellipse {
 
 /// What is known of the set of all ellipses that are concentric with one.
 struct ConcentricSet {
+  double probability = 0.0;  ///< The largest; the same of all where a detector does not say.
   bool has_two_edges = false;
   double score = 0.0;
   double best_score = 0.0;
 
   bool operator<(const ConcentricSet& other) const {
-    return std::tie(has_two_edges, score) < std::tie(other.has_two_edges, other.score);
+    return std::tie(probability, has_two_edges, score) <
+           std::tie(other.probability, other.has_two_edges, other.score);
   }
 };
 

@@ -23,6 +23,7 @@ void check_range(const char* field, double value, const Range& range) {
 void Thresholds::validate() const {
   check_range("contour_overlap", contour_overlap, kShareRange);
   check_range("ellipse_overlap", ellipse_overlap, kShareRange);
+  check_range("min_probability", min_probability, kShareRange);
   check_range("min_axis_px", min_axis_px, kAxisRangePx);
   check_range("max_axis_px", max_axis_px, {min_axis_px, kAxisRangePx.max});
   check_range("max_axis_ratio", max_axis_ratio, kAxisRatioRange);

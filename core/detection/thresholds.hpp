@@ -33,6 +33,7 @@ struct Thresholds {
   int min_contour_size = 50;      ///< minContourSize: shortest accepted contour [px].
   double edge_low = 0.0;          ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
   double edge_high = 0.0;         ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
+  double min_probability = 0.5;   ///< That an ellipse is one, where the detector says; 0 to 1.
   bool wants_all = false;         ///< All ellipses, not just what a target is chosen from.
 
   /// Throws std::invalid_argument that names the field, where a value is NaN, out of its range, or

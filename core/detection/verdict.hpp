@@ -24,16 +24,8 @@ enum class Reason {
   kPoorFit,         ///< Its arcs are not of one ellipse.
   kFarOutside,      ///< Its centre is farther from the picture than the picture is large.
   kRefused,         ///< The same was refused before, by as many edges.
-  kTooFewEdges,     ///< Met along its normals.
-  kUnlikely,        ///< Chance may have made it.
-  kWrongDirection,  ///< The edges have another direction than it has there.
-  kScattered,       ///< The edges scatter about it.
-  kOpenEnds,        ///< No edges where it turns most.
-  kNoPartner,       ///< Counts beside a concentric one only, and there is none.
-  kLoneCut,         ///< Alone, and the frame cuts off too much of it.
-  kLoneCutFlat,     ///< Alone, cut by the frame, and flat.
-  kLoneOpen,        ///< Alone, and not whole enough for that.
-  kLookedAgain,     ///< At half the size only; the full size was looked at instead.
+  kTooFewEdges,     ///< Along its normals.
+  kUnlikely,        ///< Its edges are not those of an ellipse.
   // Those of SelectTarget, [Keipour2021] Algorithm 3.
   kOtherPlace,  ///< Away from where the target was.
   kOtherSize,   ///< Of another size than the target was.

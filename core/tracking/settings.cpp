@@ -56,11 +56,12 @@ constexpr auto kLimits = &TrackerSettings::limits;
 
 // The smallest share of its edges on an ellipse that `arcs` reports, over all scenes of the catalog
 // once a second: .953 of 333. Below it their contour overlap refuses nothing.
-constexpr double kMinOnEllipse = 0.95;
+constexpr double kMinOnEllipse = 0.7;
 
 // The tests hold every setting's effect against what the tracker does.
 constexpr SettingEffect kOfContours{.detector = DetectorKind::kContours,
                                     .elsewhere_above = kMinOnEllipse};
+constexpr SettingEffect kOfArcs{.detector = DetectorKind::kArcs};
 constexpr SettingEffect kOfRedetect{.tracking = TrackingMode::kRedetect};
 constexpr SettingEffect kOfContoursRedetect{.detector = DetectorKind::kContours,
                                             .tracking = TrackingMode::kRedetect,
@@ -99,6 +100,8 @@ const std::array kSettings = {
         "max-axis", kAxisRangePx, true, "Largest major axis of an ellipse, full length, in px"),
     setting<kLimits, &Thresholds::max_axis_ratio>(
         "max-axis-ratio", kAxisRatioRange, true, "Largest ratio of the major to the minor axis"),
+    setting<kLimits, &Thresholds::min_probability>(
+        "min-probability", kShareRange, true, "Smallest probability of an ellipse", kOfArcs),
     setting<kLimits, &Thresholds::min_contour_size>(
         "min-contour-size", kContourSizeRangePx, true, "Shortest contour that is looked at, in px"),
     setting<&TrackerSettings::max_scale>(

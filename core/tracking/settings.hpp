@@ -7,6 +7,7 @@
 
 #include "core/camera/camera.hpp"
 #include "core/detection/detectors.hpp"
+#include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
 #include "core/tracking/pad/refinement.hpp"
 
@@ -25,7 +26,8 @@ struct TrackerSettings {
   Refinement refine = Refinement::kEdges;  ///< Of the ellipse while its edges are followed.
   Overlaps detect_overlaps = {};           ///< Each 0 = the detector's own.
   Overlaps track_overlaps = {};            ///< Each 0 = the detector's own.
-  Thresholds limits = {};             ///< All else; its two overlaps are replaced by those above.
+  Thresholds limits = {};  ///< All else; its two overlaps are replaced by those above.
+  EvidenceTable evidence = built_in_evidence();  ///< Of the detector `arcs`.
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
   int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.

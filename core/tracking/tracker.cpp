@@ -28,7 +28,7 @@ constexpr double kDetectedSigmaPx = 0.3;  // of the edges of an ellipse that is 
 
 bool is_better(const ConcentricSet& chosen, const ConcentricSet& followed) {
   if (!(followed < chosen)) return false;
-  return chosen.has_two_edges != followed.has_two_edges ||
+  return chosen.has_two_edges > followed.has_two_edges ||
          chosen.score > kMuchBetter * followed.score;
 }
 
@@ -333,6 +333,7 @@ void Tracker::configure(const TrackerSettings& settings) {
                            !settings.limits.admit_axes_of(last_ellipse_);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;
   settings_ = settings;
+  detector_->set_evidence(settings.evidence);
   pad_tracker_->configure(settings.refine, settings.ring_ratio);
   if (starts_over || is_other_camera || is_excluded) reset();
   while (scale_ > settings_.max_scale) scale_ /= 2;

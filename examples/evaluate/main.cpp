@@ -30,9 +30,18 @@ CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* dat
   CLI::Option* leave = app.add_flag("--leave-one-out",
                                     options.leave_one_out,
                                     "For each data set: choose on the others, report on this one")
-                           ->needs(datasets)
-                           ->needs(choose);
+                           ->needs(datasets);
   choose->needs(leave);
+  CLI::Option* fit =
+      app.add_flag("--fit-evidence",
+                   options.fit_evidence,
+                   "Fit the table by which the detector arcs decides to the data sets; with "
+                   "--leave-one-out to all but the one that is judged")
+          ->needs(datasets)
+          ->excludes(choose);
+  app.add_option("--out", options.evidence_file, "Write the table there; none = to the terminal")
+      ->needs(fit)
+      ->excludes(leave);
   app.add_option("--groups",
                  options.groups_file,
                  "Which data sets are left out together: lines GROUP: NAME NAME..., with * and ?; "
@@ -46,10 +55,10 @@ void add_options(CLI::App& app, Options& options) {
       "DATASET",
       options.datasets,
       "Folders with gt.csv or ground_truth.txt, or folders of such; scenes:SEED, scenes:FROM-TO or "
-      "a "
-      "list of them = all scenes of the catalog; distorted:SEED and so on = the same "
+      "a list of them = all scenes of the catalog; distorted:SEED and so on = the same "
       "through lenses that distort the picture; wild:SEED and so on = random scenes; "
-      "wild-frames:SEED and so on = a frame of each; none = the rendered twin");
+      "wild-frames:SEED and so on = a frame of each; clutter:SEED and so on = what resembles a pad "
+      "and is none; none = the rendered twin");
   app.add_option(
          "--seconds", options.pace.seconds, "How long each of scenes:SEED and distorted:SEED is")
       ->capture_default_str()

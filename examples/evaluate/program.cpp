@@ -11,6 +11,7 @@
 
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/evaluation.hpp"
+#include "examples/evaluate/evidence_fit.hpp"
 #include "examples/evaluate/frame_files.hpp"
 #include "examples/evaluate/leave_one_out.hpp"
 #include "examples/evaluate/measures.hpp"
@@ -82,11 +83,16 @@ class Program {
     for (const std::string& text : options_.peers) peers_.push_back(parse_peer(text));
     std::vector<Property> grid;
     for (const std::string& text : options_.choices) grid.push_back(parse_property(text));
+    if (options_.leave_one_out && grid.empty() && !options_.fit_evidence) {
+      throw std::invalid_argument("--leave-one-out requires --choose or --fit-evidence");
+    }
     gather();
     if (!options_.dataset_folder.empty()) {
       write_frame_files(options_.dataset_folder);
     } else if (options_.leave_one_out) {
       judge_left_out(grid);
+    } else if (options_.fit_evidence) {
+      fit_evidence();
     } else if (!sweeps.empty()) {
       for (const Sweep& sweep : sweeps) run_sweep(sweep);
     } else {
@@ -121,6 +127,9 @@ class Program {
 
   [[nodiscard]] Dataset dataset_by_name(const std::string& name) const {
     if (const auto seeds = scene_seeds(name)) return {make_scenes(*seeds, options_.pace), {}, 0};
+    if (const auto seeds = scene_seeds(name, "clutter")) {
+      return {make_clutter(*seeds, options_.pace), {}, 0};
+    }
     if (auto sequences = wild_by_name(name, options_.wild_seconds)) {
       return {std::move(*sequences), {}, 0};
     }
@@ -207,13 +216,29 @@ class Program {
     const ellipse::TrackerSettings settings = settings_of(method, settings_);
     ProgressBar progress(2 * frames_of(sequences_));  // choosing, then judging
     const auto next = [&](const Frame& frame) { return advance(progress, frame); };
-    GridChooser chooser(grid, settings, sequences_, rule_, next);
-    note_missing(chooser.problems());
-    if (interrupted) return;
-    const auto results = leave_one_out(sequences_, groups, chooser, settings, rule_, next);
+    const auto judge = [&](auto&& chooser) {
+      note_missing(chooser.problems());
+      return interrupted ? std::vector<LeftOut>()
+                         : leave_one_out(sequences_, groups, chooser, settings, rule_, next);
+    };
+    const auto results = options_.fit_evidence
+                             ? judge(EvidenceFitter(settings, sequences_, next))
+                             : judge(GridChooser(grid, settings, sequences_, rule_, next));
     if (results.empty()) return;
     print(std::cout, left_out_table(method, results));
     print(std::cout, in_sample_table(method, results));
+  }
+
+  void fit_evidence() {
+    std::ofstream out;
+    if (!options_.evidence_file.empty()) out = open_for_writing(options_.evidence_file);
+    ProgressBar progress(frames_of(sequences_));
+    const EvidenceFitter fitter(
+        settings_, sequences_, [&](const Frame& frame) { return advance(progress, frame); });
+    note_missing(fitter.problems());
+    if (interrupted) return;
+    ellipse::write_evidence(out.is_open() ? out : std::cout, fitter.fit_all());
+    check_written(out, options_.evidence_file);
   }
 
   void compare() {

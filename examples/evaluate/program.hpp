@@ -17,6 +17,8 @@ struct Options {
   std::vector<std::string> sweeps;
   std::vector<std::string> choices;
   std::string groups_file;
+  bool fit_evidence = false;
+  std::string evidence_file;
   bool leave_one_out = false;
   bool all_ellipses = false;
   ScenePace pace;

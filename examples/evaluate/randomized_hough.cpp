@@ -147,7 +147,7 @@ std::optional<ellipse::Detection> RandomizedHough::vote(const EdgePixel& p, cons
   const auto e = ellipse_of_axes(cx, cy, a, b, std::atan2(axis_y, axis_x));
   const double score = pixels_per_voter_ * here;
   if (!e || score < kMinShare * ellipse::perimeter_px(*e)) return std::nullopt;
-  return ellipse::Detection{*e, 0.0, 0.0, score};
+  return ellipse::Detection{.ellipse = *e, .score = score};
 }
 
 // Of several that are one ellipse, the one with the most votes stays.

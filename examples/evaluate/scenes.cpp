@@ -89,6 +89,26 @@ std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds, const
   return sequences;
 }
 
+std::vector<Sequence> make_clutter(const std::vector<std::uint64_t>& seeds, const ScenePace& pace) {
+  const FrameTimes times = times_of(pace);
+  std::vector<Sequence> sequences;
+  for (const ellipse::GroundKind kind : {ellipse::GroundKind::kClutter,
+                                         ellipse::GroundKind::kFlowers,
+                                         ellipse::GroundKind::kRounded,
+                                         ellipse::GroundKind::kSquares,
+                                         ellipse::GroundKind::kPolygons,
+                                         ellipse::GroundKind::kRoad}) {
+    for (const std::uint64_t seed : seeds) {
+      ellipse::Scene scene = ellipse::scene_by_name("negative", seed);
+      scene.ground.kind = kind;
+      const char* ground = ellipse::ground_nicks()[static_cast<std::size_t>(kind)];
+      const std::string name = format("%s-%llu", ground, static_cast<unsigned long long>(seed));
+      sequences.push_back(make_rendered("clutter", name, scene, times));
+    }
+  }
+  return sequences;
+}
+
 std::vector<Sequence> make_distorted(const std::vector<std::uint64_t>& seeds,
                                      const ScenePace& pace) {
   const FrameTimes times = times_of(pace);

@@ -27,6 +27,11 @@ struct ScenePace {
 [[nodiscard]] std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds,
                                                 const ScenePace& pace);
 
+/// The scene without a pad on each ground that is full of what resembles one, as sequences
+/// "flowers-901" and so on of the data set "clutter". Throws as make_scenes().
+[[nodiscard]] std::vector<Sequence> make_clutter(const std::vector<std::uint64_t>& seeds,
+                                                 const ScenePace& pace);
+
 /// The same through each lens that has a name, as sequences "approach-barrel-901" and so on of the
 /// data set "distorted".
 [[nodiscard]] std::vector<Sequence> make_distorted(const std::vector<std::uint64_t>& seeds,

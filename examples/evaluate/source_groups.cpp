@@ -11,7 +11,7 @@ namespace evaluate {
 
 SourceGroups::SourceGroups()
     : groups_{{"airlab", {"airlab-*"}},
-              {"rendered", {"twin", "thin", "scenes", "distorted", "wild"}}} {}
+              {"rendered", {"twin", "thin", "scenes", "distorted", "wild", "clutter"}}} {}
 
 SourceGroups::SourceGroups(const std::filesystem::path& file) {
   std::ifstream in(file);

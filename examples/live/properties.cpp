@@ -51,7 +51,9 @@ std::vector<GParamSpec*> tunable(GstElement* tracker) {
   auto** specs = reinterpret_cast<GParamSpec**>(list.get());
   std::vector<GParamSpec*> result;
   std::copy_if(specs, specs + count, std::back_inserter(result), [tracker](const GParamSpec* spec) {
-    return spec->owner_type == G_OBJECT_TYPE(tracker) && (spec->flags & G_PARAM_WRITABLE) != 0;
+    // A client that could set a path could open any file of this machine.
+    return spec->owner_type == G_OBJECT_TYPE(tracker) && (spec->flags & G_PARAM_WRITABLE) != 0 &&
+           g_strcmp0(spec->name, "evidence-file") != 0;
   });
   return result;
 }

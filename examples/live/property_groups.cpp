@@ -18,6 +18,7 @@ constexpr std::array kGroups = {
     Group{"min-axis", "detection"},
     Group{"max-axis", "detection"},
     Group{"min-contour-size", "detection"},
+    Group{"min-probability", "detection"},
     Group{"candidates", "detection"},
     Group{"tracking", "tracking"},
     Group{"track-", "tracking"},

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/camera/camera_file.hpp"
+#include "core/detection/evidence.hpp"
 #include "core/tracking/setting_effect.hpp"
 #include "gst/track/track_enums.hpp"
 
@@ -26,6 +27,7 @@ enum {
   PROP_ROI_TYPE,
   PROP_MAX_PROCESSING_TIME,
   PROP_CAMERA_FILE,
+  PROP_EVIDENCE_FILE,
   PROP_GRAVITY,
   PROP_OVERLAY,
   PROP_OVERLAY_COLOR,
@@ -226,7 +228,14 @@ void install_region(const Installer& install, const TrackProperties& initial) {
                               kPlaying));
 }
 
-void install_camera(const Installer& install) {
+void install_files(const Installer& install) {
+  install(PROP_EVIDENCE_FILE,
+          g_param_spec_string("evidence-file",
+                              "Evidence file",
+                              "Table of ellipse-evaluate --fit-evidence, by which detector=arcs "
+                              "decides; empty = the built-in one",
+                              "",
+                              kPlaying));
   install(PROP_CAMERA_FILE,
           g_param_spec_string("camera-file",
                               "Camera file",
@@ -258,7 +267,7 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   install_load(install, initial);
   install_reports(install, initial);
   install_region(install, initial);
-  install_camera(install);
+  install_files(install);
   install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
   guint which = PROP_FIRST_NUMBER;
   for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
@@ -277,9 +286,11 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
 }
 
 PropertyChange::PropertyChange(guint which, const GValue* value) : which_(which), value_(value) {
-  if (which != PROP_CAMERA_FILE || g_value_get_string(value) == nullptr) return;
-  camera_file_ = g_value_get_string(value);
-  if (!camera_file_.empty()) camera_ = ellipse::read_camera(camera_file_);
+  if (which != PROP_CAMERA_FILE && which != PROP_EVIDENCE_FILE) return;
+  if (g_value_get_string(value) != nullptr) file_ = g_value_get_string(value);
+  if (file_.empty()) return;
+  if (which == PROP_CAMERA_FILE) camera_ = ellipse::read_camera(file_);
+  if (which == PROP_EVIDENCE_FILE) evidence_ = ellipse::read_evidence(file_);
 }
 
 void PropertyChange::apply_to(TrackProperties& properties) const {
@@ -314,7 +325,11 @@ void PropertyChange::apply_to(TrackProperties& properties) const {
   }
   if (which_ == PROP_CAMERA_FILE) {
     tracker.camera = camera_;
-    properties.camera_file = camera_file_;
+    properties.camera_file = file_;
+  }
+  if (which_ == PROP_EVIDENCE_FILE) {
+    tracker.evidence = evidence_;
+    properties.evidence_file = file_;
   }
   if (which_ == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
   if (which_ >= PROP_OVERLAY && which_ <= PROP_LINE_WIDTH) {
@@ -343,6 +358,7 @@ void TrackProperties::get(guint which, GValue* value) const {
   if (which == PROP_ROI_TYPE) g_value_set_string(value, roi_type.c_str());
   if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
   if (which == PROP_CAMERA_FILE) g_value_set_string(value, camera_file.c_str());
+  if (which == PROP_EVIDENCE_FILE) g_value_set_string(value, evidence_file.c_str());
   if (which == PROP_GRAVITY) write_vector(tracker.gravity, value);
   if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
     get_overlay_property(overlay, which - PROP_OVERLAY, value);

@@ -21,6 +21,7 @@ struct TrackProperties {
   ellipse::Rect roi;                     ///< [px] of the frame; clipped to it where it is used.
   std::string roi_type;                  ///< Of the regions that count; empty = all.
   std::string camera_file;               ///< That tracker.camera was read from.
+  std::string evidence_file;             ///< That tracker.evidence was read from.
   GstClockTime max_processing_time = 0;  ///< [ns] a frame; 0 = any.
 
   /// Installs them all, with ids from first_id on; the last ones are those of setting_infos().
@@ -35,7 +36,7 @@ class PropertyChange {
  public:
   /// @param which  The property's id minus that of the first.
   /// @param value  Borrowed as long as this lives.
-  /// Reads the file that `camera-file` names: not to be made under a lock. Throws
+  /// Reads the file that `camera-file` or `evidence-file` names: not to be made under a lock. Throws
   /// std::invalid_argument where it cannot be read.
   PropertyChange(guint which, const GValue* value);
 
@@ -46,6 +47,7 @@ class PropertyChange {
  private:
   guint which_;
   const GValue* value_;
-  std::string camera_file_;
+  std::string file_;
   std::optional<ellipse::Camera> camera_;
+  ellipse::EvidenceTable evidence_ = ellipse::built_in_evidence();
 };

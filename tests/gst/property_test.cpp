@@ -50,7 +50,8 @@ TEST(EllipseTrackProperties, HaveTheFlagsOfTheContract) {
                                            "max-target-size",
                                            "roi-expansion",
                                            "edge-low",
-                                           "edge-high"};
+                                           "edge-high",
+                                           "min-probability"};
   guint count = 0;
   GParamSpec** specs =
       g_object_class_list_properties(G_OBJECT_GET_CLASS(element_of(harness)), &count);

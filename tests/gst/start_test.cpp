@@ -3,9 +3,12 @@
 // ellipsetrack where a setting is refused before the pipeline starts.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <fstream>
 #include <string>
 
-#include "tests/gst/support.hpp"
+#include "core/detection/evidence.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 
@@ -60,6 +63,41 @@ TEST(EllipseTrackStart, FailsForACameraFileThatCannotBeRead) {
   std::ofstream(folder.file("bad.yaml")) << "image_width: twelve\n";
   const std::string bad = run_tracker("camera-file=" + folder.file("bad.yaml"));
   EXPECT_NE(bad.find(folder.file("bad.yaml")), std::string::npos) << bad;
+}
+
+TEST(EllipseTrackStart, FailsForATableThatCannotBeRead) {
+  const TemporaryFolder folder;
+  const std::string missing = run_tracker("evidence-file=" + folder.file("no-such.txt"));
+  EXPECT_NE(missing.find(folder.file("no-such.txt")), std::string::npos) << missing;
+  std::ofstream(folder.file("bad.txt")) << "radius much\n";
+  const std::string bad = run_tracker("evidence-file=" + folder.file("bad.txt"));
+  EXPECT_NE(bad.find(folder.file("bad.txt") + ":1"), std::string::npos) << bad;
+}
+
+TEST(EllipseTrackStart, DecidesByTheTableThatItIsGiven) {
+  const TemporaryFolder folder;
+  ellipse::EvidenceTable sceptical = ellipse::built_in_evidence();
+  sceptical.bias = -30.0;
+  std::ofstream file(folder.file("sceptical.txt"));
+  ellipse::write_evidence(file, sceptical);
+  file.close();
+  const auto harness = support::harness_of("ellipsetrack name=t tracking=none",
+                                           support::caps_of("GRAY8", 320, 240),
+                                           support::caps_of("GRAY8", 320, 240));
+  const auto target_in = [&](std::uint64_t frame) {
+    const ellipse::Ellipse pad{160.0, 120.0, 40.0, 32.0, 0.4};
+    const auto picture = support::rendered(ellipse::Scene{}, pad, 320, 240, frame);
+    const auto buffer = support::push(harness, support::gray_buffer_of(picture));
+    return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET) != nullptr;
+  };
+  GstElement* element = support::element_of(harness);
+  EXPECT_TRUE(target_in(0));
+  g_object_set(element, "evidence-file", folder.file("sceptical.txt").c_str(), nullptr);
+  EXPECT_FALSE(target_in(1));
+  g_object_set(element, "evidence-file", "/no/such/table.txt", nullptr);
+  EXPECT_FALSE(target_in(2));
+  g_object_set(element, "evidence-file", "", nullptr);
+  EXPECT_TRUE(target_in(3));
 }
 
 TEST(EllipseTrackStart, FailsForAVectorThatIsNone) {

@@ -84,9 +84,12 @@ GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 // What the metadata told of each frame; fails where messages or lines told otherwise.
 std::vector<Told> story() {
-  const auto harness = support::harness_of("ellipsetrack name=t messages=every-frame ! ellipsejson",
-                                           support::caps_of("GRAY8", 320, 240),
-                                           "application/x-ndjson");
+  // With the probability of half a pad it would be detected again.
+  const auto harness = support::harness_of(
+      "ellipsetrack name=t min-probability=0.99 "
+      "messages=every-frame ! ellipsejson",
+      support::caps_of("GRAY8", 320, 240),
+      "application/x-ndjson");
   GstElement* element = support::element_of(harness);
   BusTap bus(element);
   Told on_buffer;

@@ -32,7 +32,8 @@ TEST(LiveSettings, DescribesEveryPropertyOfTheElement) {
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count);
   for (guint i = 0; i < count; ++i) {
     const bool is_setting = specs[i]->owner_type == G_OBJECT_TYPE(element.get()) &&
-                            (specs[i]->flags & G_PARAM_WRITABLE) != 0;
+                            (specs[i]->flags & G_PARAM_WRITABLE) != 0 &&
+                            std::string(specs[i]->name) != "evidence-file";  // no files by HTTP
     JsonObject* described = property(answer, specs[i]->name);
     ASSERT_EQ(described != nullptr, is_setting) << specs[i]->name;
     if (!is_setting) continue;

@@ -32,19 +32,19 @@ struct Source {
 };
 
 constexpr Source kSources[] = {
-    {"airlab-mbzirc", {631, 0}, {629, 0}},
-    {"airlab-deformed", {160, 9}, {155, 12}},
-    {"airlab-gascola", {445, 3}, {423, 6}},
-    {"pupil-infrared", {855, 21}, {808, 0}},
-    {"pupil-blinks", {250, 2}, {244, 0}},
+    {"airlab-mbzirc", {630, 1}, {630, 1}},
+    {"airlab-deformed", {174, 0}, {173, 1}},
+    {"airlab-gascola", {454, 0}, {455, 0}},
+    {"pupil-infrared", {1058, 30}, {1018, 24}},
+    {"pupil-blinks", {255, 9}, {262, 1}},
     {"calibration-discs", {20, 0}, {20, 0}},
-    {"large-cut-ellipse", {50, 0}, {32, 0}},
-    {"octagon-negative", {137, 4}, {136, 5}},
+    {"large-cut-ellipse", {50, 0}, {50, 0}},
+    {"octagon-negative", {139, 2}, {136, 5}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 
 /// All ellipses of calibration-discs, by single frames.
-constexpr int kMinRightDiscs = 998;
+constexpr int kMinRightDiscs = 2060;
 constexpr int kMaxMistakenDiscs = 0;
 
 void PrintTo(const Source& source, std::ostream* out) {

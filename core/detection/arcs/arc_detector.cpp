@@ -7,50 +7,38 @@
 #include "core/detection/detection_trace.hpp"
 #include "core/detection/target_selection.hpp"
 #include "core/edges/edge_refinement.hpp"
-#include "core/edges/thin_ring.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
 namespace {
 
-// Found by experiment, see docs/provenance.md.
-constexpr double kEdgeFloor = 1.25;        // least threshold [grey levels / px]
-constexpr double kFitRms = 0.8;            // [px], and
-constexpr double kFitRmsRelative = 0.012;  // of the radius, or of a third of the arc
-constexpr double kMinScore = 62.0;         // [nats]
-constexpr int kMaxPairs = 400;
+constexpr int kScales[] = {2, 4, 1};      // in this order
+constexpr int kMinSidePx = 24;            // of a picture that is searched
+constexpr double kEdgeFloor = 1.25;       // least threshold [grey levels / px]
+constexpr double kFitRms = 0.8;           // [px], and
+constexpr double kFitRmsRelative = 0.02;  // of the radius, or of a third of the arc
+constexpr double kChainRms = 1.5;         // the same of a closed chain
+constexpr double kChainRmsRelative = 0.06;
+constexpr std::size_t kMinClosedChain = 24;  // pixels
+constexpr std::size_t kChainPoints = 64;     // of a chain's fit
+constexpr double kClosingChord = 0.35;       // of a chain's length
+constexpr int kMaxPairs = 80;
 constexpr double kConvexSlackPx = 2.0;  // by which one arc may lie outside the other, and
 constexpr double kConvexSlack = 0.1;    // of their distance
-constexpr double kSameExact = 0.05;
-constexpr double kSameDeformed = 0.08;
-constexpr double kSameRefused = 0.1;
+constexpr double kSame = 0.05;          // of the axes
 constexpr double kMuchLonger = 1.4;
 constexpr double kOnEllipsePx = 2.5;
-constexpr double kEnoughScore = 150.0;  // at half size [nats], and
-constexpr double kEnoughScoreAlone = 75.0;
-constexpr double kEnoughSupport = 0.85;
-constexpr double kFullSizeGradient = 0.4;  // of the threshold at half size, where edges are steeper
-constexpr double kMinTurnSupport = 0.5;
-constexpr double kLoneInside = 0.3;        // of the perimeter
-constexpr double kLonePartSupport = 0.35;  // above the wanted one, where less than half is inside
-constexpr double kLoneSupport = 0.25;      // above the wanted one
-constexpr double kLoneCut = 0.75;          // of the perimeter; with less of it the frame cuts it
-constexpr double kLoneRatio = 2.2;         // of the axes
-constexpr double kThickRing = 0.9;         // inner over outer radius
+constexpr double kNoDoubt = 3.0;            // log odds
+constexpr double kSteeperAtHalfSize = 0.4;  // gradients at full size over those at half
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
 }
 
-// A deformed edge leaves its ellipse by more, the larger it is; but a short arc knows no crumpling.
-double fit_limit(const Ellipse& e, double length_px) {
-  return kFitRms + kFitRmsRelative * std::min(radius_of(e), length_px / 3.0);
-}
-
-bool are_same(const Ellipse& a, const Ellipse& b, double tolerance) {
-  return std::abs(a.cx - b.cx) + std::abs(a.cy - b.cy) < 2.0 * tolerance * b.semi_minor + 1.0 &&
-         std::abs(a.semi_major - b.semi_major) < tolerance * b.semi_major + 1.0 &&
-         std::abs(a.semi_minor - b.semi_minor) < tolerance * b.semi_minor + 1.0;
+bool are_same(const Ellipse& a, const Ellipse& b, double px) {
+  return std::abs(a.cx - b.cx) + std::abs(a.cy - b.cy) < 2.0 * kSame * b.semi_minor + px &&
+         std::abs(a.semi_major - b.semi_major) < kSame * b.semi_major + px &&
+         std::abs(a.semi_minor - b.semi_minor) < kSame * b.semi_minor + px;
 }
 
 // Whether all of b is on the inner side of a's edge: what lies on one convex curve does.
@@ -65,29 +53,12 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   return true;
 }
 
-// Lengths for a picture of half the size.
-Thresholds halved(const Thresholds& thresholds) {
-  Thresholds half = thresholds;
-  half.min_axis_px /= 2.0;
-  half.max_axis_px /= 2.0;
-  half.min_contour_size /= 2;
-  return half;
+double log_odds(double probability) {
+  return std::log(probability / std::max(1e-12, 1.0 - probability));
 }
 
-// Whether the target, with all that are concentric with it, is beyond doubt: by much evidence, or
-// by less where nothing else is there.
-bool is_beyond_doubt(const Detection& target, std::span<const Detection> detections) {
-  if (target.ellipse_overlap < kEnoughSupport) return false;
-  double score = 0.0;
-  bool is_alone = true;
-  for (const Detection& other : detections) {
-    if (other.ellipse == target.ellipse || are_partners(target.ellipse, other.ellipse)) {
-      score += other.score;
-    } else {
-      is_alone = false;
-    }
-  }
-  return score >= (is_alone ? kEnoughScoreAlone : kEnoughScore);
+double probability_of(double odds) {
+  return 1.0 / (1.0 + std::exp(-odds));
 }
 
 }  // namespace
@@ -95,69 +66,42 @@ bool is_beyond_doubt(const Detection& target, std::span<const Detection> detecti
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
                                                const Thresholds& thresholds) {
   if (trace_ != nullptr) trace_->clear();
-  if (!detect_at_half_size(luma, thresholds)) {
-    // Who asks for short contours takes less evidence for enough.
-    const double share = std::min(1.0, double(thresholds.min_contour_size) / kHalfSizeContourPx);
-    detect_all(luma, thresholds, share * kMinScore, 1);
-  }
+  found_.clear();
+  search_scales(luma, thresholds);
+  refine_at_full_size(luma, thresholds);
+  report();
   ring_corrector_.correct(luma, min_gradient_, polarities_, lens_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
 
-bool ArcDetector::detect_at_half_size(const ImageView& luma, const Thresholds& thresholds) {
-  if (thresholds.wants_all || thresholds.min_contour_size < kHalfSizeContourPx) return false;
-  const ImageView half = scaler_.reduce(luma, 2);
-  detect_all(half, halved(thresholds), kMinScore, 2);
-  const auto target = select_target(detections_);
-  if (!target || !is_beyond_doubt(*target, detections_)) return false;
-  refine_at_full_size(luma, thresholds);
-  return true;
-}
-
-// What the exact axes show to be beyond the limits is left out.
-void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < detections_.size(); ++i) {
-    Detection detection = detections_[i];
-    detection.ellipse = scaled(detection.ellipse, 2.0);
-    const auto refined = refined_on_picture(
-        luma, detection.ellipse, polarities_[i], min_gradient_, kMaxRefinementSamples, lens_);
-    if (refined) detection.ellipse = refined->ellipse;
-    const Verdict verdict = thresholds.judge_axes_of(detection.ellipse);
-    if (!verdict.is_accepted()) {
-      reject(detection.candidate, verdict);
-      continue;
-    }
-    polarities_[kept] = polarities_[i];
-    detections_[kept++] = detection;
+void ArcDetector::search_scales(const ImageView& luma, const Thresholds& thresholds) {
+  for (const int scale : kScales) {
+    if (scale > 1 && std::min(luma.width, luma.height) < scale * kMinSidePx) continue;
+    search(scaler_.reduce(luma, scale), thresholds, scale);
+    if (!thresholds.wants_all && is_beyond_doubt()) return;
   }
-  detections_.resize(kept);
+  confirm_at_finer_scales(thresholds);
 }
 
-void ArcDetector::detect_all(const ImageView& luma,
-                             const Thresholds& thresholds,
-                             double min_score,
-                             int scale) {
-  detections_.clear();
-  polarities_.clear();
-  found_.clear();
-  refused_.clear();
+void ArcDetector::search(const ImageView& luma, const Thresholds& full, int scale) {
+  scale_ = scale;
+  rejected_.clear();
   if (luma.empty()) return;
+  const Thresholds thresholds = full.at_scale(scale);
   const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
-  map_.compute(luma, thresholds.edge_high, floor);
-  map_.set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
-  min_gradient_ = kFullSizeGradient * map_.threshold();
-  if (trace_ != nullptr) trace_edges(luma, scale);
-  chains_.trace(map_);
-  arcs_ = splitter_.split(map_, chains_, thresholds.wants_all);
+  map_ = &map_at(scale);
+  map_->compute(luma, thresholds.edge_high, floor);
+  map_->set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
+  min_gradient_ = map_->threshold() * std::pow(kSteeperAtHalfSize, std::log2(scale));
+  if (trace_ != nullptr) trace_edges(luma);
+  chains_.trace(*map_);
+  arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
   if (trace_ != nullptr) trace_arcs();
-  caution_.edge_density = static_cast<double>(chains_.pixels().size()) / (luma.width * luma.height);
-  caution_.min_score = min_score;
   is_used_.assign(arcs_.size(), 0);
   try_single_arcs(thresholds);
+  try_closed_chains(thresholds);
   try_pairs(thresholds);
-  report(thresholds);
 }
 
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
@@ -165,6 +109,39 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
     const Arc& arc = arcs_[i];
     if (is_used_[i] != 0 || arc.turn_rad < ArcSplitter::kMinSingleTurn) continue;
     try_arcs({&arc}, thresholds);
+  }
+}
+
+// Where an outline is too rough to be cut into arcs, the whole of it may still be of one ellipse.
+void ArcDetector::try_closed_chains(const Thresholds& thresholds) {
+  const std::int32_t stride = map_->stride();
+  const auto point_of = [&](std::int32_t pixel) -> Eigen::Vector2d {
+    return map_->lens().near_ideal(Eigen::Vector2d(pixel % stride, pixel / stride));
+  };
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < chains_.size(); ++i) {
+    const std::span<const std::int32_t> pixels = chains_.chain(i).pixels;
+    const TracedPiece piece{begin, begin + pixels.size()};
+    begin = piece.end;
+    const auto length_px = static_cast<double>(pixels.size());
+    if (pixels.size() < kMinClosedChain) continue;
+    const Eigen::Vector2d chord = point_of(pixels.back()) - point_of(pixels.front());
+    if (!(chord.norm() < kClosingChord * length_px)) continue;
+    const std::size_t step = pixels.size() / kChainPoints + 1;
+    Moments moments(Eigen::Vector2d(0.5 * map_->width(), 0.5 * map_->height()));
+    for (std::size_t k = 0; k < pixels.size(); k += step) {
+      const Eigen::Vector2d point = point_of(pixels[k]);
+      if (point.allFinite()) moments.add(point, static_cast<double>(step));
+    }
+    const auto fit = fit_with_residual(moments);
+    if (!fit || fit->rms_px > kChainRms + kChainRmsRelative * radius_of(fit->ellipse)) continue;
+    double outwards = 0.0;
+    for (std::size_t k = 0; k < pixels.size(); k += step) {
+      const Gradient& g = map_->gradients()[pixels[k]];
+      outwards += (point_of(pixels[k]) - fit->ellipse.center()).dot(Eigen::Vector2d(g.x, g.y));
+    }
+    const Polarity polarity = outwards > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
+    try_guess({fit->ellipse, polarity, length_px, 0.0}, {&piece, 1}, thresholds);
   }
 }
 
@@ -193,49 +170,61 @@ void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresho
     moments.add(other->moments);
     length_px += other->length_px();
   }
+  TracedPiece pieces[2];
+  std::transform(arcs.begin(), arcs.end(), pieces, [](const Arc* arc) {
+    return TracedPiece{arc->begin, arc->end};
+  });
+  const std::span<const TracedPiece> made_of(pieces, arcs.size());
   const auto fit = fit_with_residual(moments);
-  VerifiedEllipse verified;
-  Verdict verdict = {Reason::kNoEllipse};
   if (fit) {
-    verdict = examine({fit->ellipse, first.polarity, length_px, fit->rms_px}, thresholds, verified);
+    try_guess({fit->ellipse, first.polarity, length_px, fit->rms_px}, made_of, thresholds);
+  } else if (trace_ != nullptr) {
+    (void)trace_->add(made_of, std::nullopt, {Reason::kNoEllipse});
   }
+}
+
+void ArcDetector::try_guess(const Guess& guess,
+                            std::span<const TracedPiece> pieces,
+                            const Thresholds& thresholds) {
+  MeasuredEllipse measured;
+  const Verdict verdict = examine(guess, thresholds, measured);
   if (trace_ != nullptr) {
-    TracedPiece pieces[2];
-    std::transform(arcs.begin(), arcs.end(), pieces, [](const Arc* arc) {
-      return TracedPiece{arc->begin, arc->end};
-    });
-    const std::optional<Ellipse> guess = fit ? std::optional(fit->ellipse) : std::nullopt;
-    verified.candidate = trace_->add({pieces, arcs.size()}, guess, verdict);
+    measured.candidate = trace_->add(pieces, guess.ellipse, verdict);
+    if (measured.probability > 0.0)
+      trace_->measure(measured.candidate,
+                      to_frame(measured.ellipse, {}, scale_),
+                      measured.features,
+                      measured.probability);
   }
-  if (verdict.is_accepted()) add(verified);
+  if (verdict.is_accepted()) add(measured);
 }
 
 Verdict ArcDetector::examine(const Guess& guess,
                              const Thresholds& thresholds,
-                             VerifiedEllipse& verified) {
+                             MeasuredEllipse& measured) {
   const auto& [ellipse, polarity, length_px, rms_px] = guess;
-  Verdict verdict = at_most(Reason::kPoorFit, rms_px, fit_limit(ellipse, length_px));
-  if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, map_, thresholds);
+  const double limit_px = kFitRms + kFitRmsRelative * std::min(radius_of(ellipse), length_px / 3.0);
+  Verdict verdict = at_most(Reason::kPoorFit, rms_px, limit_px);
+  if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, *map_, thresholds);
   if (verdict.is_accepted()) verdict = judge_news(guess);
-  if (verdict.is_accepted()) {
-    verdict = EllipseVerifier::judge_promise(map_, ellipse, polarity, thresholds);
-  }
+  if (verdict.is_accepted()) verdict = EllipseVerifier::judge_promise(*map_, ellipse, polarity);
   if (!verdict.is_accepted()) return verdict;
-  verdict = verifier_.verify(map_, caution_, ellipse, polarity, thresholds, verified);
-  if (!verdict.is_accepted()) refused_.push_back(guess);
+  verdict = verifier_.verify(*map_, ellipse, polarity, thresholds, evidence_, measured);
+  if (!verdict.is_accepted()) rejected_.push_back(guess);
   return verdict;
 }
 
 Verdict ArcDetector::judge_news(const Guess& guess) const {
-  for (const VerifiedEllipse& known : found_) {
-    const double tolerance = known.is_deformed ? kSameDeformed : kSameExact;
-    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, tolerance)) {
+  const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
+  for (const Found& known : found_) {
+    if (known.scale == scale_ && known.measured.polarity == guess.polarity &&
+        are_same(known.measured.ellipse, in_frame, scale_)) {
       return {Reason::kKnown};
     }
   }
-  // One from much more of its edge may do better than the one that was refused.
-  for (const Guess& known : refused_) {
-    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, kSameRefused) &&
+  // One from much more of its edge may do better than the one that was rejected.
+  for (const Guess& known : rejected_) {
+    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, 1.0) &&
         guess.length_px < kMuchLonger * known.length_px) {
       return {Reason::kRefused};
     }
@@ -243,91 +232,101 @@ Verdict ArcDetector::judge_news(const Guess& guess) const {
   return {};
 }
 
-// Of two that are the same, the better one stays.
-void ArcDetector::add(const VerifiedEllipse& found) {
-  for (VerifiedEllipse& known : found_) {
-    const bool is_deformed = found.is_deformed || known.is_deformed;
-    const double tolerance = is_deformed ? kSameDeformed : kSameExact;
-    if (known.polarity != found.polarity || !are_same(known.ellipse, found.ellipse, tolerance)) {
+// Of two that are the same, the more probable one stays.
+void ArcDetector::add(const MeasuredEllipse& measured) {
+  use_arcs_on(measured.ellipse, measured.polarity);
+  Found found{measured, scale_};
+  found.measured.ellipse = to_frame(measured.ellipse, {}, scale_);
+  for (Found& known : found_) {
+    const int coarser = std::max(known.scale, scale_);
+    if (known.measured.polarity != measured.polarity ||
+        !are_same(known.measured.ellipse, found.measured.ellipse, coarser)) {
       continue;
     }
-    const bool is_better = known.needs_partner != found.needs_partner ? known.needs_partner
-                                                                      : found.score > known.score;
-    reject(is_better ? known.candidate : found.candidate, {Reason::kKnown});
+    const bool is_better = measured.probability > known.measured.probability;
+    reject(is_better ? known.measured.candidate : measured.candidate, {Reason::kKnown});
     if (is_better) known = found;
     return;
   }
   found_.push_back(found);
-  if (!found.needs_partner) use_arcs_on(found);
 }
 
-void ArcDetector::use_arcs_on(const VerifiedEllipse& found) {
-  const double tolerance_px =
-      found.is_deformed ? std::max(kOnEllipsePx, EllipseVerifier::deformation_px(found.ellipse))
-                        : kOnEllipsePx;
+void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
+  const double tolerance_px = std::max(kOnEllipsePx, EllipseVerifier::deformation_px(e));
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
-    if (is_used_[i] != 0 || arcs_[i].polarity != found.polarity) continue;
+    if (is_used_[i] != 0 || arcs_[i].polarity != polarity) continue;
     const auto& points = arcs_[i].points;
     is_used_[i] = std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
-      return std::abs(sampson_distance(found.ellipse, point)) <= tolerance_px;
+      return std::abs(sampson_distance(e, point)) <= tolerance_px;
     });
   }
 }
 
-bool ArcDetector::has_partner(std::size_t i, double largest_ratio) const {
-  const VerifiedEllipse& one = found_[i];
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    const VerifiedEllipse& other = found_[k];
-    if (k == i || !are_partners(one.ellipse, other.ellipse, largest_ratio)) continue;
-    if (!other.needs_partner) return true;
-    if (one.polarity != other.polarity && std::min(one.covered, other.covered) >= 0.2 &&
-        std::min(one.inside_fraction, other.inside_fraction) >= 0.3) {
-      return true;
-    }
-  }
-  return false;
+// Whether another look would find nothing better.
+bool ArcDetector::is_beyond_doubt() {
+  report();
+  const auto target = select_target(detections_);
+  return target && log_odds(target->probability) >= kNoDoubt;
 }
 
-// What is alone must be more than a painted arc, or a petal: whole; or, where the frame cuts it,
-// round, seen to a good part, and there without a gap.
-Verdict ArcDetector::judge_alone(const VerifiedEllipse& found, const Thresholds& thresholds) {
-  const double support = std::min(found.support, found.turn_support);
-  const double wanted = thresholds.ellipse_overlap;
-  const Verdict inside = at_least(Reason::kLoneCut, found.inside_fraction, kLoneInside);
-  if (!inside.is_accepted()) return inside;
-  if (found.inside_fraction < kLoneCut) {
-    const double ratio = found.ellipse.aspect_ratio();
-    const Verdict flat = at_most(Reason::kLoneCutFlat, ratio, kLoneRatio);
-    if (!flat.is_accepted()) return flat;
-  }
-  const double margin = found.inside_fraction < 0.5 ? kLonePartSupport : kLoneSupport;
-  if (support >= wanted + margin) return {};
-  return below_setting(Reason::kLoneOpen, support - margin, wanted);
+// The log odds of what a reduced picture shows are averaged with those at the finer scales: the
+// corners of a polygon vanish in the small, an ellipse stays one in the large.
+void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
+  Thresholds thresholds = full;
+  thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
+  thresholds.min_contour_size = 0;
+  thresholds.min_probability = probability_of(-kNoDoubt);
+  std::erase_if(found_, [&](Found& found) {
+    double sum = log_odds(found.measured.probability);
+    int scales = 1;
+    for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
+      const Ellipse guess = to_region(found.measured.ellipse, {}, scale);
+      MeasuredEllipse finer;
+      const Verdict verdict = verifier_.verify(map_at(scale),
+                                               guess,
+                                               found.measured.polarity,
+                                               thresholds.at_scale(scale),
+                                               evidence_,
+                                               finer);
+      const bool holds = verdict.is_accepted() &&
+                         are_same(finer.ellipse, guess, static_cast<double>(found.scale) / scale);
+      sum += holds ? log_odds(finer.probability) : -kNoDoubt;
+      ++scales;
+    }
+    found.measured.probability = probability_of(sum / scales);
+    const Verdict verdict =
+        at_least(Reason::kUnlikely, found.measured.probability, full.min_probability);
+    if (!verdict.is_accepted()) reject(found.measured.candidate, verdict);
+    return !verdict.is_accepted();
+  });
 }
 
-// Both edges of a painted line are partners too. So a thin ring has to stand alone.
-Verdict ArcDetector::judge_credit(std::size_t i, const Thresholds& thresholds) const {
-  const VerifiedEllipse& found = found_[i];
-  const Verdict turn = at_least(Reason::kOpenEnds, found.turn_support, kMinTurnSupport);
-  if (!turn.is_accepted()) return turn;
-  if (found.needs_partner && !has_partner(i, kMaxRingRatio)) return {Reason::kNoPartner};
-  return has_partner(i, kThickRing) ? Verdict{} : judge_alone(found, thresholds);
+// What the exact axes show to be beyond the limits is left out.
+void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
+  std::erase_if(found_, [&](Found& found) {
+    if (found.scale == 1) return false;
+    MeasuredEllipse& measured = found.measured;
+    const auto refined = refined_on_picture(
+        luma, measured.ellipse, measured.polarity, min_gradient_, kMaxRefinementSamples, lens_);
+    if (refined) measured.ellipse = refined->ellipse;
+    const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
+    if (!verdict.is_accepted()) reject(measured.candidate, verdict);
+    return !verdict.is_accepted();
+  });
 }
 
-void ArcDetector::report(const Thresholds& thresholds) {
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    const VerifiedEllipse& found = found_[i];
-    Verdict verdict = judge_credit(i, thresholds);
-    if (verdict.is_accepted()) {
-      verdict = at_least(Reason::kContourOverlap, found.on_ellipse, thresholds.contour_overlap);
-    }
-    if (!verdict.is_accepted()) {
-      reject(found.candidate, verdict);
-      continue;
-    }
-    detections_.push_back(
-        {found.ellipse, found.on_ellipse, found.support, found.score, found.candidate});
-    polarities_.push_back(found.polarity);
+void ArcDetector::report() {
+  detections_.clear();
+  polarities_.clear();
+  for (const Found& found : found_) {
+    const MeasuredEllipse& one = found.measured;
+    detections_.push_back({one.ellipse,
+                           one.on_ellipse,
+                           one.support,
+                           log_odds(one.probability),
+                           one.probability,
+                           one.candidate});
+    polarities_.push_back(one.polarity);
   }
 }
 
@@ -335,19 +334,19 @@ void ArcDetector::reject(int candidate, const Verdict& verdict) {
   if (trace_ != nullptr) trace_->revise(candidate, verdict);
 }
 
-void ArcDetector::trace_edges(const ImageView& luma, int scale) {
-  TracedPass& pass = trace_->begin_pass(luma, scale);
-  pass.edge_low = pass.edge_high = map_.threshold() / kGradientGain;
-  for (int y = 0; y < map_.height(); ++y) {
-    const std::uint8_t* row = map_.maxima() + std::ptrdiff_t(y) * map_.stride();
-    for (int x = 0; x < map_.width(); ++x) pass.edges.push_back(row[x] != 0 ? 255 : 0);
+void ArcDetector::trace_edges(const ImageView& luma) {
+  TracedPass& pass = trace_->begin_pass(luma, scale_);
+  pass.edge_low = pass.edge_high = map_->threshold() / kGradientGain;
+  for (int y = 0; y < map_->height(); ++y) {
+    const std::uint8_t* row = map_->maxima() + std::ptrdiff_t(y) * map_->stride();
+    for (int x = 0; x < map_->width(); ++x) pass.edges.push_back(row[x] != 0 ? 255 : 0);
   }
 }
 
 void ArcDetector::trace_arcs() {
   TracedPass& pass = trace_->pass();
   for (const std::int32_t pixel : chains_.pixels()) {
-    pass.points.push_back({pixel % map_.stride(), pixel / map_.stride()});
+    pass.points.push_back({pixel % map_->stride(), pixel / map_->stride()});
   }
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     const std::size_t begin = pass.chains.empty() ? 0 : pass.chains.back().end;

@@ -1,5 +1,8 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -14,70 +17,83 @@
 
 namespace ellipse {
 
-/// Finds ellipses from the arcs of their edges: gradient and its maxima, chains, arcs, then
-/// every arc and every pair of arcs that could be of one ellipse, fitted from their moments and
-/// verified on the edges around the whole perimeter.
+struct TracedPiece;
+
+/// Finds ellipses from the arcs of their edges: gradient, its maxima, chains, arcs; then every arc,
+/// every pair of arcs that could be of one ellipse and every closed chain is a candidate, fitted
+/// from its moments and measured on the edges around its whole perimeter. The probability that
+/// these make an ellipse decides.
 ///
-/// Looks at the picture in half its size first, refines what it finds there on the full picture,
-/// and looks at the full size only where the answer is weak, where contours below
-/// kHalfSizeContourPx are asked for, or where all ellipses are.
+/// Looks at the picture in half its size first, then in a quarter and in full, as long as the
+/// evidence leaves a doubt. The same ellipse from two sizes is one. What is found on a reduced
+/// picture is refined on the full one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded: by its pixels, by
 /// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
 class ArcDetector final : public Detector {
  public:
-  explicit ArcDetector(Simd simd = best_simd()) : map_(simd) {}
+  explicit ArcDetector(Simd simd = best_simd())
+      : maps_{GradientMap(simd), GradientMap(simd), GradientMap(simd)} {}
 
   [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
                                                   const Thresholds& thresholds) override;
-  [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.7, 0.55}; }
-  [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.6, 0.45}; }
-
-  static constexpr int kHalfSizeContourPx = 50;
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {}; }
 
  private:
   struct Guess {
-    Ellipse ellipse;
+    Ellipse ellipse;  // [px of the pass]
     Polarity polarity;
-    double length_px;  // of the arcs that it comes from
+    double length_px;  // of the edges that it comes from
     double rms_px;     // and how well it fits them
   };
 
-  void detect_all(const ImageView& luma, const Thresholds& thresholds, double min_score, int scale);
-  [[nodiscard]] bool detect_at_half_size(const ImageView& luma, const Thresholds& thresholds);
-  void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
+  struct Found {
+    MeasuredEllipse measured;  // [px of the picture]
+    int scale;                 // of the pass that it was found in
+  };
+
+  void search_scales(const ImageView& luma, const Thresholds& thresholds);
+  void search(const ImageView& luma, const Thresholds& thresholds, int scale);
+  [[nodiscard]] GradientMap& map_at(int scale) {
+    return maps_[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)))];
+  }
   void try_single_arcs(const Thresholds& thresholds);
+  void try_closed_chains(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
+  void try_guess(const Guess& guess,
+                 std::span<const TracedPiece> pieces,
+                 const Thresholds& thresholds);
   [[nodiscard]] Verdict examine(const Guess& guess,
                                 const Thresholds& thresholds,
-                                VerifiedEllipse& verified);
+                                MeasuredEllipse& measured);
   [[nodiscard]] Verdict judge_news(const Guess& guess) const;
-  void add(const VerifiedEllipse& found);
-  void use_arcs_on(const VerifiedEllipse& found);
-  [[nodiscard]] bool has_partner(std::size_t i, double largest_ratio) const;
-  [[nodiscard]] Verdict judge_credit(std::size_t i, const Thresholds& thresholds) const;
-  [[nodiscard]] static Verdict judge_alone(const VerifiedEllipse& found,
-                                           const Thresholds& thresholds);
-  void report(const Thresholds& thresholds);
+  void add(const MeasuredEllipse& measured);
+  void use_arcs_on(const Ellipse& e, Polarity polarity);
+  [[nodiscard]] bool is_beyond_doubt();
+  void confirm_at_finer_scales(const Thresholds& full);
+  void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
+  void report();
   void reject(int candidate, const Verdict& verdict);
-  void trace_edges(const ImageView& luma, int scale);
+  void trace_edges(const ImageView& luma);
   void trace_arcs();
 
   Scaler scaler_;
-  GradientMap map_;
+  std::array<GradientMap, 3> maps_;  // of the full picture, half and a quarter
+  GradientMap* map_ = nullptr;       // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
   EllipseVerifier verifier_;
   RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // by an ellipse that was found
-  std::vector<VerifiedEllipse> found_;
-  std::vector<Guess> refused_;
+  std::vector<Found> found_;
+  std::vector<Guess> rejected_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
+  int scale_ = 1;                     // of this pass
   double min_gradient_ = 0.0;         // of an edge on the full picture
-  Caution caution_;
 };
 
 }  // namespace ellipse

@@ -225,7 +225,7 @@ TEST(SettingEffect, IsToldInWords) {
   EXPECT_EQ(condition_of(effect_of("refine")), "with tracking=edges only");
   EXPECT_EQ(
       condition_of(effect_of("track-contour-overlap")),
-      "with detector=contours and tracking=redetect only (with another detector: above 0.95)");
+      "with detector=contours and tracking=redetect only (with another detector: above 0.7)");
   EXPECT_EQ(condition_of(effect_of("max-scale")),
             "with tracking=redetect, or together with max-processing-time");
   EXPECT_EQ(blurb_of("Text", effect_of("roi-expansion")), "Text; acts with tracking=redetect only");
@@ -239,7 +239,7 @@ TEST(SettingsInForce, HaveTheDetectorsOwnOverlapsWhereTheyAreZero) {
   EXPECT_EQ(in_force(settings).detect_overlaps, (Overlaps{0.5, 0.95}));
   EXPECT_EQ(in_force(settings).track_overlaps, (Overlaps{0.7, 0.3}));
   settings.detector = DetectorKind::kArcs;
-  EXPECT_EQ(in_force(settings).detect_overlaps, (Overlaps{0.5, 0.55}));
+  EXPECT_EQ(in_force(settings).detect_overlaps, (Overlaps{0.5, 0.0}));
   settings.fx_px = 500.0;
   EXPECT_EQ(in_force(settings).fy_px, 500.0);
 }

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "examples/evaluate/evidence_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "core/detection/detection_trace.hpp"
+#include "core/detection/detectors.hpp"
+#include "examples/evaluate/measures.hpp"
+
+namespace evaluate {
+namespace {
+
+using ellipse::EvidenceTable;
+using ellipse::Features;
+using ellipse::kFeatures;
+
+constexpr double kRightIou = 0.85;
+constexpr double kWrongIou = 0.6;
+constexpr double kConcentricPart = 0.12;    // of the semi-major axis, between centres
+constexpr double kConcentricAspect = 0.15;  // between axis ratios
+constexpr int kRounds = 2;                  // after the first fit
+constexpr int kHardest = 5;                 // wrong candidates of a frame
+constexpr double kWrongWeight = 0.7;        // of all wrong candidates over all right ones
+constexpr double kFewCandidates = 100.0;    // of a source, which weighs less then
+constexpr double kRidge = 1e-5;
+constexpr int kMaxNewtonSteps = 40;
+
+enum class Label { kRight, kWrong, kUnclear };
+
+bool are_concentric(const ellipse::Ellipse& a, const ellipse::Ellipse& truth) {
+  const double aspect = a.semi_minor / a.semi_major - truth.semi_minor / truth.semi_major;
+  return (a.center() - truth.center()).norm() < kConcentricPart * truth.semi_major &&
+         std::abs(aspect) < kConcentricAspect;
+}
+
+Label label_of(const ellipse::Ellipse& e, const Truth& truth, const FrameSize& size) {
+  double best = 0.0;
+  bool is_concentric = false;
+  for (const TrueEllipse& each : ellipses_of(truth)) {
+    best = std::max(best, iou_of(e, each.ellipse, size));
+    is_concentric = is_concentric || are_concentric(e, each.ellipse);
+  }
+  if (best >= kRightIou) return Label::kRight;
+  return best < kWrongIou && !is_concentric ? Label::kWrong : Label::kUnclear;
+}
+
+struct Sample {
+  const LabelledCandidate* candidate;
+  double weight;
+};
+
+// Each source alike, its right and wrong candidates too.
+void weigh(std::vector<Sample>& samples) {
+  std::map<std::pair<std::size_t, bool>, double> counts;
+  for (const Sample& s : samples) ++counts[{s.candidate->source, s.candidate->is_right}];
+  double sum = 0.0;
+  for (Sample& s : samples) {
+    const double count = counts[{s.candidate->source, s.candidate->is_right}];
+    s.weight = (s.candidate->is_right ? 1.0 : kWrongWeight) / std::max(count, kFewCandidates);
+    sum += s.weight;
+  }
+  for (Sample& s : samples) s.weight /= sum;
+}
+
+using Vector = Eigen::Matrix<double, kFeatures + 1, 1>;
+using Matrix = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
+
+struct Scaling {
+  Features means{};
+  Features deviations{};
+
+  [[nodiscard]] Vector apply(const Features& features) const {
+    Vector x;
+    for (std::size_t i = 0; i < kFeatures; ++i) {
+      x[Eigen::Index(i)] = (features[i] - means[i]) / deviations[i];
+    }
+    x[kFeatures] = 1.0;
+    return x;
+  }
+};
+
+Scaling scaling_of(const std::vector<Sample>& samples) {
+  Scaling scaling;
+  for (std::size_t i = 0; i < kFeatures; ++i) {
+    double mean = 0.0;
+    double square = 0.0;
+    for (const Sample& s : samples) mean += s.weight * s.candidate->features[i];
+    for (const Sample& s : samples) {
+      const double d = s.candidate->features[i] - mean;
+      square += s.weight * d * d;
+    }
+    scaling.means[i] = mean;
+    scaling.deviations[i] = std::sqrt(square) + 1e-9;
+  }
+  return scaling;
+}
+
+// Newton's method on the weighted log likelihood with a ridge [HastieTibshiraniFriedman2009] 4.4.1.
+EvidenceTable regress(const std::vector<Sample>& samples) {
+  const Scaling scaling = scaling_of(samples);
+  Vector b = Vector::Zero();
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
+    Vector gradient = kRidge * b;
+    Matrix hessian = kRidge * Matrix::Identity();
+    gradient[kFeatures] = 0.0;
+    for (const Sample& s : samples) {
+      const Vector x = scaling.apply(s.candidate->features);
+      const double p = 1.0 / (1.0 + std::exp(-b.dot(x)));
+      gradient += s.weight * (p - (s.candidate->is_right ? 1.0 : 0.0)) * x;
+      hessian += s.weight * p * (1.0 - p) * x * x.transpose();
+    }
+    const Vector change = hessian.ldlt().solve(gradient);
+    b -= change;
+    if (change.lpNorm<Eigen::Infinity>() < 1e-6) break;
+  }
+  EvidenceTable table;
+  table.means = scaling.means;
+  for (std::size_t i = 0; i < kFeatures; ++i) {
+    table.weights[i] = b[Eigen::Index(i)] / scaling.deviations[i];
+  }
+  table.bias = b[kFeatures];
+  return table;
+}
+
+// All right candidates, and of each frame the wrong ones with the largest probability.
+std::vector<Sample> hardest(const std::vector<Sample>& all, const EvidenceTable& table) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    order.emplace_back(-table.log_odds(all[i].candidate->features), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::map<std::size_t, int> wrong_of_frame;
+  std::vector<Sample> kept;
+  for (const auto& [odds, i] : order) {
+    const LabelledCandidate& candidate = *all[i].candidate;
+    if (candidate.is_right || wrong_of_frame[candidate.frame]++ < kHardest) kept.push_back(all[i]);
+  }
+  weigh(kept);
+  return kept;
+}
+
+}  // namespace
+
+EvidenceFitter::EvidenceFitter(const ellipse::TrackerSettings& settings,
+                               const std::vector<Sequence>& sequences,
+                               const std::function<bool(const Frame&)>& advance)
+    : settings_(settings) {
+  for (const Sequence& sequence : sequences) {
+    auto source = std::ranges::find(sources_, sequence.dataset);
+    if (source == sources_.end()) source = sources_.insert(source, sequence.dataset);
+    for (const Frame& frame : sequence.frames) {
+      try {
+        add(frame, sequence, static_cast<std::size_t>(source - sources_.begin()));
+      } catch (const std::runtime_error& error) {
+        problems_.emplace_back(error.what());
+      }
+      if (!advance(frame)) return;
+    }
+  }
+}
+
+void EvidenceFitter::add(const Frame& frame, const Sequence& sequence, std::size_t source) {
+  const cv::Mat picture = sequence.pictures->picture(frame);
+  if (!frame.truth.is_labelled) return;
+  const FrameSize size{picture.cols, picture.rows, sequence.distortion.get()};
+  // A probability of 1 is never reached: everything is measured, and nothing found that would
+  // keep others from being tried.
+  ellipse::Thresholds thresholds = settings_.limits;
+  thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
+  thresholds.min_probability = 1.0;
+  thresholds.wants_all = true;
+  const auto detector = ellipse::make_detector(ellipse::DetectorKind::kArcs);
+  ellipse::DetectionTrace trace;
+  detector->set_trace(&trace);
+  (void)detector->detect(
+      {picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)},
+      thresholds);
+  for (const ellipse::TracedCandidate& candidate : trace.candidates()) {
+    if (candidate.probability == 0.0) continue;
+    const Label label = label_of(*candidate.ellipse, frame.truth, size);
+    if (label == Label::kUnclear) continue;
+    candidates_.push_back({source, frames_, candidate.features, label == Label::kRight});
+  }
+  ++frames_;
+}
+
+EvidenceTable EvidenceFitter::fit(const std::vector<std::string>& sources) const {
+  std::vector<Sample> all;
+  for (const LabelledCandidate& candidate : candidates_) {
+    const bool is_one = std::ranges::find(sources, sources_[candidate.source]) != sources.end();
+    if (is_one) all.push_back({&candidate, 0.0});
+  }
+  const auto right =
+      std::count_if(all.begin(), all.end(), [](const Sample& s) { return s.candidate->is_right; });
+  if (right == 0 || static_cast<std::size_t>(right) == all.size()) {
+    throw std::invalid_argument(
+        std::string("--fit-evidence: the frames show no candidate that is ") +
+        (right == 0 ? "an ellipse" : "none"));
+  }
+  weigh(all);
+  EvidenceTable table = regress(all);
+  for (int round = 0; round < kRounds; ++round) table = regress(hardest(all, table));
+  return table;
+}
+
+EvidenceTable EvidenceFitter::fit_all() const {
+  return fit(sources_);
+}
+
+Choice EvidenceFitter::choose(const std::vector<std::string>& sources) {
+  Choice choice{"fitted", settings_};
+  choice.settings.evidence = fit(sources);
+  return choice;
+}
+
+}  // namespace evaluate

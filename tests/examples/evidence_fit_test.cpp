@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+//
+// The table by which the detector decides, fitted to labelled frames.
+#include "examples/evaluate/evidence_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/scene/catalog.hpp"
+#include "core/tracking/tracker.hpp"
+#include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/rendered.hpp"
+#include "examples/evaluate/scenes.hpp"
+#include "examples/evaluate/wild.hpp"
+
+namespace evaluate {
+namespace {
+
+bool go_on(const Frame& /*frame*/) {
+  return true;
+}
+
+std::vector<Sequence> wild_frames(const char* name) {
+  std::optional<std::vector<Sequence>> sequences = wild_by_name(name, 0.0);
+  return sequences ? std::move(*sequences) : std::vector<Sequence>{};
+}
+
+std::vector<Sequence> frames_to_fit() {
+  std::vector<Sequence> sequences = wild_frames("wild-frames:1-40");
+  for (const Sequence& sequence : make_clutter({1, 2}, {2.0, 1.0})) sequences.push_back(sequence);
+  return sequences;
+}
+
+struct Answers {
+  int targets = 0;
+  int right = 0;  // of them
+};
+
+Answers answers_on(const std::vector<Sequence>& sequences,
+                   const ellipse::TrackerSettings& settings) {
+  Answers answers;
+  for (const Sequence& sequence : sequences) {
+    for (const Frame& frame : sequence.frames) {
+      const cv::Mat picture = sequence.pictures->picture(frame);
+      const ellipse::ImageView view{
+          picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
+      ellipse::Tracker tracker(settings);
+      const auto target = tracker.process(view, 0);
+      if (!target) continue;
+      ++answers.targets;
+      for (const TrueEllipse& truth : ellipses_of(frame.truth)) {
+        const FrameSize size{picture.cols, picture.rows, nullptr};
+        if (iou_of(target->ellipse, truth.ellipse, size) < 0.8) continue;
+        ++answers.right;
+        break;
+      }
+    }
+  }
+  return answers;
+}
+
+TEST(EvidenceFit, TellsEllipsesFromClutterThatItHasNotSeen) {
+  EvidenceFitter fitter({}, frames_to_fit(), go_on);
+  const ellipse::EvidenceTable table = fitter.fit_all();
+  EXPECT_TRUE(fitter.problems().empty());
+  EXPECT_EQ(fitter.fit_all(), table);
+  ellipse::TrackerSettings settings;
+  settings.tracking = ellipse::TrackingMode::kNone;
+  settings.evidence = table;
+  EXPECT_GE(answers_on(make_scenes({7}, {1.0, 1.0}), settings).right, 12);     // of 18
+  EXPECT_LE(answers_on(make_clutter({7}, {4.0, 1.0}), settings).targets, 10);  // of 24
+}
+
+TEST(EvidenceFit, UsesNoSourceButThoseThatItIsGiven) {
+  EvidenceFitter both({}, frames_to_fit(), go_on);
+  std::vector<Sequence> with_more = frames_to_fit();
+  for (Sequence sequence : wild_frames("wild-frames:50-60")) {
+    sequence.dataset = "more";
+    with_more.push_back(sequence);
+  }
+  EvidenceFitter all({}, with_more, go_on);
+  EXPECT_EQ(all.choose({"wild", "clutter"}).settings.evidence, both.fit_all());
+  EXPECT_NE(all.fit_all(), both.fit_all());
+}
+
+// The scene "occluded" behind bars eight times as wide.
+std::vector<Sequence> behind_wide_bars(std::uint64_t seed) {
+  ellipse::Scene scene = ellipse::scene_by_name("occluded", seed);
+  for (ellipse::Bar& bar : scene.bars) bar.width *= 8.0;
+  return {make_rendered("mine", "bars", scene, {0.0, 40, 1, 2.0})};
+}
+
+TEST(EvidenceFit, HelpsOnFootageThatTheBuiltInTableFindsHard) {
+  std::vector<Sequence> sequences = frames_to_fit();
+  sequences.push_back(behind_wide_bars(1).front());
+  ellipse::TrackerSettings settings;
+  settings.tracking = ellipse::TrackingMode::kNone;
+  const int before = answers_on(behind_wide_bars(2), settings).right;
+  settings.evidence = EvidenceFitter({}, sequences, go_on).fit_all();
+  const int after = answers_on(behind_wide_bars(2), settings).right;
+  RecordProperty("before", before);
+  RecordProperty("after", after);
+  EXPECT_GE(after, before + 5);
+}
+
+TEST(EvidenceFit, WantsBothKinds) {
+  const EvidenceFitter none({}, make_clutter({1}, {1.0, 1.0}), go_on);
+  EXPECT_THROW((void)none.fit_all(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace evaluate
