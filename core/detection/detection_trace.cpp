@@ -49,11 +49,12 @@ int DetectionTrace::add(std::span<const TracedPiece> pieces,
 void DetectionTrace::measure(int candidate,
                              const Ellipse& ellipse,
                              const Features& features,
-                             double probability) {
+                             const EvidenceTable& table) {
   TracedCandidate& known = candidates_[static_cast<std::size_t>(candidate)];
   known.ellipse = ellipse;
   known.features = features;
-  known.probability = probability;
+  known.contributions = table.contributions(features);
+  known.probability = table.probability(features);
 }
 
 void DetectionTrace::revise(int candidate, const Verdict& verdict) {
@@ -71,6 +72,7 @@ void DetectionTrace::report(std::span<const Detection> detections) {
     candidate.contour_overlap = detection.contour_overlap;
     candidate.ellipse_overlap = detection.ellipse_overlap;
     candidate.score = detection.score;
+    candidate.probability = detection.probability;
   }
 }
 

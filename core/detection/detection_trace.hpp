@@ -55,6 +55,7 @@ struct TracedCandidate {
   double score = 0.0;               ///< As in Detection; of what was found only.
   double probability = 0.0;         ///< That it is an ellipse; 0 where nothing was measured.
   Features features{};              ///< What that was computed from.
+  Features contributions{};         ///< What each of them adds to the log odds.
   bool is_target = false;           ///< By select_target().
 };
 
@@ -81,7 +82,10 @@ class DetectionTrace {
           const std::optional<Ellipse>& ellipse,
           const Verdict& verdict);
   /// What was measured of it, after it was brought to the edges [px of the picture].
-  void measure(int candidate, const Ellipse& ellipse, const Features& features, double probability);
+  void measure(int candidate,
+               const Ellipse& ellipse,
+               const Features& features,
+               const EvidenceTable& table);
   /// A later test has the last word, in pixels of the picture. Does nothing for candidate -1.
   void revise(int candidate, const Verdict& verdict);
   /// What is found in the end [px of the picture]; anything else was crowded out.

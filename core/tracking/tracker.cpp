@@ -145,6 +145,7 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   target.id = last_id_;
   target.contour_overlap = track->coverage;
   target.ellipse_overlap = track->outline;
+  target.probability = last_probability_;
   target.visible_fraction = visible;
   target.search_region = search_region_;
   if (lens_) target.uncertainty = pad_tracker_->uncertainty();
@@ -187,7 +188,10 @@ std::optional<Target> Tracker::look_at_all(const PixelView& frame,
   trust_ = 0;  // it must be confirmed at once
   next_look_ = 1;
   if (!had_target_ && is_doubtful(target)) {
-    if (pad_tracker_->is_locked()) last_id_ = target.id;
+    if (pad_tracker_->is_locked()) {
+      last_id_ = target.id;
+      last_probability_ = target.probability;
+    }
     return std::nullopt;
   }
   return target;
@@ -246,6 +250,7 @@ std::optional<Target> Tracker::detect_target(const PixelView& frame, bool is_tra
   target.id = had_target_ ? last_id_ : last_id_ + 1;
   target.contour_overlap = selected->contour_overlap;
   target.ellipse_overlap = selected->ellipse_overlap;
+  target.probability = selected->probability;
   target.visible_fraction = visible_fraction(lens(), target.ellipse, frame.width, frame.height);
   target.scale = scale_;
   target.search_region = search_region_;
@@ -270,6 +275,7 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
   if (target) {
     last_id_ = target->id;
     last_ellipse_ = target->ellipse;
+    last_probability_ = target->probability;
   }
   is_tracking_ = had_target_ && settings_.tracking == TrackingMode::kRedetect;
   roi_ = {};

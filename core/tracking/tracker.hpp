@@ -34,6 +34,8 @@ struct Target {
   /// [Keipour2021] Eq. (2). Where edges are followed: share of the outer edge in view that was
   /// matched.
   double ellipse_overlap = 0.0;
+  /// That it is an ellipse, by the detector when it last chose it; 1 where it does not say.
+  double probability = 1.0;
   double visible_fraction = 0.0;  ///< Share of the perimeter inside the frame.
   int scale = 1;                  ///< Frame scale that it was found at.
   Rect search_region;             ///< Where it was looked for [px].
@@ -124,6 +126,7 @@ class Tracker {
   Rect frame_bounds_;
   Rect searchable_;  // of this frame
   Ellipse last_ellipse_;
+  double last_probability_ = 1.0;
   std::uint64_t last_id_ = 0;
   int scale_ = 1;
   int finest_scale_ = 1;

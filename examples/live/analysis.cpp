@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/detection/evidence.hpp"
 #include "core/tracking/tracker.hpp"
 #include "examples/live/json_writer.hpp"
 #include "gst/track/video_view.hpp"
@@ -49,6 +50,20 @@ void write_passes(JsonWriter& json, const ellipse::DetectionTrace& trace) {
   json.end_array();
 }
 
+void write_evidence(JsonWriter& json, const ellipse::TracedCandidate& candidate) {
+  const auto infos = ellipse::feature_infos();
+  json.key("evidence").begin_array();
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    json.begin_object()
+        .member("name", infos[i].nick)
+        .member("description", infos[i].description)
+        .member("value", candidate.features[i])
+        .member("contribution", candidate.contributions[i])
+        .end_object();
+  }
+  json.end_array();
+}
+
 void write_candidate(JsonWriter& json, const ellipse::TracedCandidate& candidate) {
   const ellipse::Verdict& verdict = candidate.verdict;
   json.begin_object()
@@ -62,7 +77,9 @@ void write_candidate(JsonWriter& json, const ellipse::TracedCandidate& candidate
       .member("contour_overlap", candidate.contour_overlap)
       .member("ellipse_overlap", candidate.ellipse_overlap)
       .member("score", candidate.score)
-      .key("ellipse");
+      .member("probability", candidate.probability);
+  if (candidate.contributions != ellipse::Features{}) write_evidence(json, candidate);
+  json.key("ellipse");
   if (candidate.ellipse) {
     write_ellipse(json, *candidate.ellipse);
   } else {

@@ -57,6 +57,8 @@ GType gst_ellipse_state_get_type(void);
  *   its edges: share of all its edges in view that were matched
  * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; of a target followed by its
  *   edges: share of the outer edge in view that was matched
+ * @probability: that it is an ellipse, by the detector when it last chose it, 0 to 1; 1 of a
+ *   detector that does not say; 0 of the truth
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale that it was found at, a power of two
  * @roi_x: left edge of the region that was searched, in px
@@ -116,6 +118,7 @@ struct _GstEllipseMeta {
   gdouble angle_rad;
   gdouble contour_overlap;
   gdouble ellipse_overlap;
+  gdouble probability;
   gdouble visible_fraction;
   guint scale;
   gint roi_x;

@@ -58,6 +58,7 @@ static void add_ellipse(GstStructure* structure, const GstEllipseMeta* meta) {
                                   FIELD(angle_rad),
                                   FIELD(contour_overlap),
                                   FIELD(ellipse_overlap),
+                                  FIELD(probability),
                                   FIELD(visible_fraction),
                                   FIELD(scale),
                                   FIELD(roi_x),
@@ -223,11 +224,11 @@ static void append_position(GString* json, const GstEllipseMeta* meta) {
  * @meta: an ellipse
  *
  * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, visible, scale; pixels and radians; and, where one
- * is known, the region that was searched, roi, as x, y, width and height. With a camera also
- * bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter
- * position, other_position, position_covariance; metres. The truth has neither state nor overlaps
- * nor scale; a number that is not finite is null.
+ * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale; pixels and radians; and,
+ * where one is known, the region that was searched, roi, as x, y, width and height. With a camera
+ * also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
+ * diameter position, other_position, position_covariance; metres. The truth has no state, overlaps,
+ * probability or scale; a number that is not finite is null.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
  *
@@ -252,6 +253,7 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
   if (was_found) {
     append_number(json, "contour_overlap", "%.4f", meta->contour_overlap);
     append_number(json, "ellipse_overlap", "%.4f", meta->ellipse_overlap);
+    append_number(json, "probability", "%.4f", meta->probability);
   }
   append_number(json, "visible", "%.4f", meta->visible_fraction);
   if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);

@@ -54,6 +54,7 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->id = target.id;
   meta->contour_overlap = target.contour_overlap;
   meta->ellipse_overlap = target.ellipse_overlap;
+  meta->probability = target.probability;
   meta->visible_fraction = target.visible_fraction;
   meta->scale = static_cast<guint>(target.scale);
   meta->roi_x = target.search_region.x;
@@ -81,6 +82,7 @@ static void attach_candidate_metas(GstBuffer* buffer,
     GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
     meta->contour_overlap = candidate.contour_overlap;
     meta->ellipse_overlap = candidate.ellipse_overlap;
+    meta->probability = candidate.probability;
     meta->visible_fraction = ellipse::visible_fraction(
         lens, candidate.ellipse, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
     write_outline(meta, lens);

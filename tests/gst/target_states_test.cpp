@@ -150,6 +150,30 @@ GstPadProbeReturn note_truth(GstPad*, GstPadProbeInfo* info, gpointer data) {
   return GST_PAD_PROBE_OK;
 }
 
+double in_line(GstBuffer* line, const char* name) {
+  const auto lines = support::parse_ndjson(std::istringstream(support::bytes_of(line)));
+  JsonArray* targets = json_object_get_array_member(object_of(lines.at(0)), "targets");
+  return json_object_get_double_member(json_array_get_object_element(targets, 0), name);
+}
+
+TEST(TargetStates, HaveTheProbabilityOfTheirDetection) {
+  const auto harness = support::harness_of("ellipsetrack name=t ! ellipsejson",
+                                           support::caps_of("GRAY8", 320, 240),
+                                           "application/x-ndjson");
+  const auto probability_in = [&](int frame) {
+    const auto line =
+        support::push(harness, support::gray_buffer_of(picture_of(Sight::kClear, frame)));
+    return in_line(line.get(), "probability");
+  };
+  const double detected = probability_in(0);
+  EXPECT_GT(detected, 0.5);
+  EXPECT_LT(detected, 1.0);
+  for (int frame = 1; frame < 4; ++frame) EXPECT_GT(probability_in(frame), 0.5);
+  gst_util_set_object_arg(G_OBJECT(support::element_of(harness)), "detector", "contours");
+  gst_util_set_object_arg(G_OBJECT(support::element_of(harness)), "tracking", "redetect");
+  EXPECT_EQ(probability_in(4), 1.0);
+}
+
 TEST(TargetStates, NumbersChangeOnlyWhileThePadIsOutOfThePicture) {
   std::vector<Seen> frames;
   ASSERT_EQ(support::run_pipeline(

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/detection/evidence.hpp"
 #include "core/tracking/tracker.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/live/live_clients.hpp"
@@ -208,6 +210,31 @@ TEST(LiveApi, TheTargetIsAskedForByItself) {
   EXPECT_GT(json_object_get_double_member(answer.object(), "semi_major"), 20.0);
 }
 
+// Of the candidates of an analysis, those that were measured.
+int count_measured(const Answer& answer) {
+  JsonArray* candidates = json_object_get_array_member(answer.object(), "candidates");
+  int measured = 0;
+  for (guint i = 0; i < json_array_get_length(candidates); ++i) {
+    JsonObject* candidate = json_array_get_object_element(candidates, i);
+    if (!json_object_has_member(candidate, "evidence")) continue;
+    ++measured;
+    JsonArray* evidence = json_object_get_array_member(candidate, "evidence");
+    EXPECT_EQ(json_array_get_length(evidence), ellipse::kFeatures);
+    double sum = 0.0;
+    for (guint k = 0; k < json_array_get_length(evidence); ++k) {
+      sum +=
+          json_object_get_double_member(json_array_get_object_element(evidence, k), "contribution");
+    }
+    const double log_odds = ellipse::built_in_evidence().bias + sum;
+    // What was found may have other odds at other scales.
+    if (json_object_get_boolean_member(candidate, "found")) continue;
+    EXPECT_NEAR(json_object_get_double_member(candidate, "probability"),
+                1.0 / (1.0 + std::exp(-log_odds)),
+                1e-6);
+  }
+  return measured;
+}
+
 int count_of(const Answer& answer, const char* reason) {
   JsonObject* counts = json_object_get_object_member(answer.object(), "counts");
   return static_cast<int>(json_object_get_int_member_with_default(counts, reason, 0));
@@ -221,6 +248,7 @@ TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
   const Answer now = client.post("api/analyze", R"({"stage":"edges"})");
   ASSERT_EQ(now.status, 200U) << now.body;
   EXPECT_GE(count_of(now, "accepted"), 1);
+  EXPECT_GE(count_measured(now), 1);
   const std::string url = json_object_get_string_member(now.object(), "picture");
   gsize size = 0;
   const support::Ref<guchar> png(g_base64_decode(url.substr(url.find(',') + 1).c_str(), &size));
@@ -231,6 +259,7 @@ TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
   const Answer strict =
       client.post("api/analyze", R"({"properties":{"detector":"contours","min-axis":600}})");
   EXPECT_EQ(count_of(strict, "accepted"), 0);
+  EXPECT_EQ(count_measured(strict), 0);
   EXPECT_GE(count_of(strict, "too-small"), 1);
   EXPECT_EQ(json_object_get_int_member(strict.object(), "pts_ns"),
             json_object_get_int_member(now.object(), "pts_ns"));

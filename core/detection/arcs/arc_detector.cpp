@@ -190,11 +190,12 @@ void ArcDetector::try_guess(const Guess& guess,
   const Verdict verdict = examine(guess, thresholds, measured);
   if (trace_ != nullptr) {
     measured.candidate = trace_->add(pieces, guess.ellipse, verdict);
-    if (measured.probability > 0.0)
+    if (measured.probability > 0.0) {
       trace_->measure(measured.candidate,
                       to_frame(measured.ellipse, {}, scale_),
                       measured.features,
-                      measured.probability);
+                      evidence_);
+    }
   }
   if (verdict.is_accepted()) add(measured);
 }

@@ -105,6 +105,7 @@ export class Compare {
       ["Minor axis [px]", ...[ta, tb].map((t) => figure(t, ({ ellipse }) => 2 * ellipse.semi_minor, 1))],
       ["ContourOverlap", ...[ta, tb].map((t) => figure(t, (c) => c.contour_overlap, 3))],
       ["EllipseOverlap", ...[ta, tb].map((t) => figure(t, (c) => c.ellipse_overlap, 3))],
+      ["Probability", ...[ta, tb].map((t) => figure(t, (c) => c.probability, 3))],
       ["Ellipses found", found(a), found(b)],
       ["Candidates", String(a.candidates.length), String(b.candidates.length)],
       ["Analysis [ms]", ...[a, b].map(({ processing_ns: time }) => (time / 1e6).toFixed(2))],

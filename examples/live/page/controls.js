@@ -78,7 +78,7 @@ function numberControl(property, change) {
     field.value = isOwn ? "" : Number(value.toPrecision(12));
   });
   const set = (value, inForce = null) => {
-    isOwn = value === 0 && inForce !== null;
+    isOwn = value === 0 && Boolean(inForce);
     field.placeholder = isOwn ? `0 = ${Number(inForce.toPrecision(6))}` : "";
     slider.value = Math.round(kSteps * toShare(value));
     slider.style.setProperty("--at", `${100 * toShare(value)}%`);

@@ -220,7 +220,7 @@ export class Stages {
     const figure = group.quantity
       ? `${group.quantity} ${short(member.measured)}${group.unit ? ` ${group.unit}` : ""}, ` +
         `${member.measured < member.limit ? "at least" : "at most"} ${short(member.limit)}`
-      : member.found ? `score ${member.score.toFixed(0)}` : "";
+      : member.found ? foundText(member) : "";
     const button = make("button", {},
       make("span", {}, (member.is_target ? "The target, " : "") + figure),
       make("span", { className: "where" }, placeText(member.ellipse)));
@@ -232,7 +232,7 @@ export class Stages {
     };
     button.onpointerenter = button.onfocus = button.onclick = mark(member.number);
     button.onpointerleave = button.onblur = mark(null);
-    return make("li", {}, button);
+    return make("li", {}, button, ...(member.evidence ? [evidenceOf(member.evidence)] : []));
   }
 
   // The candidate whose perimeter is next to the pointer is shown in the list.
@@ -257,6 +257,23 @@ export class Stages {
     row?.scrollIntoView({ block: "center" });
     this.say(best.candidate.text);
   }
+}
+
+// Where a detector gives a probability its score is the log odds of it.
+function foundText({ evidence, probability, score }) {
+  if (!evidence) return `score ${score.toFixed(0)}`;
+  return `probability ${probability < 0.9995 ? probability.toFixed(3) : "above 0.999"}`;
+}
+
+// What each feature adds to the log odds, as a bar from the middle: to the right for an ellipse.
+function evidenceOf(evidence) {
+  const most = Math.max(...evidence.map(({ contribution }) => Math.abs(contribution)), 1);
+  return make("dl", { className: "evidence" }, ...evidence.flatMap(({ description, contribution }) => {
+    const bar = make("i", { className: contribution < 0 ? "against" : "for" });
+    bar.style.width = `${(50 * Math.abs(contribution)) / most}%`;
+    const figure = `${contribution < 0 ? "−" : "+"}${Math.abs(contribution).toFixed(1)}`;
+    return [make("dt", {}, description), make("dd", {}, make("span", { className: "bar" }, bar), figure)];
+  }));
 }
 
 function short(value) {

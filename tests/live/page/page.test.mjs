@@ -247,7 +247,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const greyed = await page.$$eval(".setting.idle", (nodes) => nodes.map((node) => node.dataset.setting));
     assert.deepEqual(greyed.sort(), ["detect-contour-overlap", "max-scale", "max-target-size", "min-target-size",
       "roi-expansion", "track-contour-overlap", "track-ellipse-overlap"]);
-    assert.equal(await idle("detect-contour-overlap"), "No effect with detector=arcs up to 0.95");
+    assert.equal(await idle("detect-contour-overlap"), "No effect with detector=arcs up to 0.7");
     assert.equal(await idle("track-contour-overlap"), "No effect with detector=arcs and tracking=edges");
     assert.equal(await idle("max-scale"), "No effect with tracking=edges unless max-processing-time is set");
     assert.equal(await idle("ring-ratio"), "");
@@ -271,7 +271,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       const field = document.querySelector("[data-setting=detect-ellipse-overlap] input[type=number]");
       return field.value === content && field.placeholder === behind;
     }, [value, placeholder]);
-    await holds("", "0 = 0.55");
+    await holds("0", "");
     await setting(page, "detector").getByText("contours", { exact: true }).click();
     await holds("", "0 = 0.95");
     await box.fill("0.66");
@@ -324,6 +324,12 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       pictures.add(await page.evaluate(() => document.querySelector("#screen").toDataURL("image/png")));
     }
     assert.equal(pictures.size, 5);
+    const target = page.locator("[data-reason=accepted]");
+    if (!await target.evaluate((node) => node.open)) await target.locator("summary").click();
+    await target.locator("li button").first().focus();
+    await target.locator("li .evidence").first().waitFor();
+    assert.equal(await target.locator("li").first().locator(".evidence dd").count(), 8);
+    assert.match(await target.locator("li button").first().textContent(), /probability (above )?0\.\d{3}/);
     assert.deepEqual(page.troubles, []);
     await page.close();
   });
