@@ -10,11 +10,11 @@ const color = (name) => style.getPropertyValue(`--${name}`).trim();
 
 const kFirst = "#86b7ff";
 const kSecond = "#ffb37a";
+const kThird = "#9be28f";
 const kPlots = [
   { title: "Centre", unit: "px", curves: [["x", kFirst, (s) => s.target?.cx], ["y", kSecond, (s) => s.target?.cy]], digits: 1 },
   { title: "Axes", unit: "px", curves: [["major", kFirst, (s) => s.target && 2 * s.target.semi_major], ["minor", kSecond, (s) => s.target && 2 * s.target.semi_minor]], digits: 1, from: 0 },
-  { title: "Overlaps", unit: "", curves: [["contour", kFirst, (s) => s.target?.contour_overlap], ["ellipse", kSecond, (s) => s.target?.ellipse_overlap]], digits: 2, from: 0, to: 1 },
-  { title: "Probability", unit: "", curves: [["target", kFirst, (s) => s.target?.probability]], digits: 3, from: 0, to: 1 },
+  { title: "Overlaps", unit: "", curves: [["contour", kFirst, (s) => s.target?.contour_overlap], ["ellipse", kSecond, (s) => s.target?.ellipse_overlap], ["probability", kThird, (s) => s.target?.probability]], digits: 2, from: 0, to: 1 },
   { title: "Analysis", unit: "ms", curves: [["time", kFirst, (s) => s.time_ms]], digits: 2, from: 0 },
 ];
 

@@ -272,7 +272,7 @@ function evidenceOf(evidence) {
     const bar = make("i", { className: contribution < 0 ? "against" : "for" });
     bar.style.width = `${(50 * Math.abs(contribution)) / most}%`;
     const figure = `${contribution < 0 ? "−" : "+"}${Math.abs(contribution).toFixed(1)}`;
-    return [make("dt", {}, description), make("dd", {}, make("span", { className: "bar" }, bar), figure)];
+    return [make("dt", {}, description), make("dd", {}, make("span", { className: "weight" }, bar), figure)];
   }));
 }
 
