@@ -26,7 +26,6 @@ constexpr double kConcentricPart = 0.12;    // of the semi-major axis, between c
 constexpr double kConcentricAspect = 0.15;  // between axis ratios
 constexpr int kRounds = 2;                  // after the first fit
 constexpr int kHardest = 5;                 // wrong candidates of a frame
-constexpr double kWrongWeight = 0.7;        // of all wrong candidates over all right ones
 constexpr double kFewCandidates = 100.0;    // of a source, which weighs less then
 constexpr double kRidge = 1e-5;
 constexpr int kMaxNewtonSteps = 40;
@@ -62,7 +61,7 @@ void weigh(std::vector<Sample>& samples) {
   double sum = 0.0;
   for (Sample& s : samples) {
     const double count = counts[{s.candidate->source, s.candidate->is_right}];
-    s.weight = (s.candidate->is_right ? 1.0 : kWrongWeight) / std::max(count, kFewCandidates);
+    s.weight = 1.0 / std::max(count, kFewCandidates);
     sum += s.weight;
   }
   for (Sample& s : samples) s.weight /= sum;

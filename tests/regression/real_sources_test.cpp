@@ -35,16 +35,16 @@ constexpr Source kSources[] = {
     {"airlab-mbzirc", {630, 1}, {630, 1}},
     {"airlab-deformed", {174, 0}, {173, 1}},
     {"airlab-gascola", {454, 0}, {455, 0}},
-    {"pupil-infrared", {1058, 30}, {1018, 24}},
-    {"pupil-blinks", {255, 9}, {262, 1}},
+    {"pupil-infrared", {1041, 28}, {984, 22}},
+    {"pupil-blinks", {254, 9}, {260, 1}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {139, 2}, {136, 5}},
+    {"octagon-negative", {141, 0}, {139, 2}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 
 /// All ellipses of calibration-discs, by single frames.
-constexpr int kMinRightDiscs = 2060;
+constexpr int kMinRightDiscs = 2059;
 constexpr int kMaxMistakenDiscs = 0;
 
 void PrintTo(const Source& source, std::ostream* out) {

@@ -85,8 +85,8 @@ constexpr Limits kLimits[] = {
     {"occluded", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "redetect", 20, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "none", 20, 0},
-    {"touchdown", 2.0, 0.1, 40, "arcs", "redetect", 21, 1},
-    {"touchdown", 2.0, 0.1, 40, "arcs", "none", 22, 0},
+    {"touchdown", 2.0, 0.1, 40, "arcs", "redetect", 23, 1},
+    {"touchdown", 2.0, 0.1, 40, "arcs", "none", 25, 0},
     {"reenter", 2.0, 0.1, 40, "arcs", "redetect", 15, 0},
     {"reenter", 2.0, 0.1, 40, "arcs", "none", 16, 0},
     {"thin", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
@@ -99,8 +99,8 @@ constexpr Limits kLimits[] = {
     {"crumpled", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"noise", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"noise", 2.0, 0.1, 40, "arcs", "none", 40, 0},
-    {"negative", 2.0, 0.1, 40, "arcs", "redetect", 0, 7},
-    {"negative", 2.0, 0.1, 40, "arcs", "none", 0, 7},
+    {"negative", 2.0, 0.1, 40, "arcs", "redetect", 0, 3},
+    {"negative", 2.0, 0.1, 40, "arcs", "none", 0, 3},
     {"orbit", 2.0, 0.1, 40, "arcs", "redetect", 40, 0},
     {"orbit", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "redetect", 20, 0},
@@ -122,7 +122,7 @@ constexpr Limits kLimits[] = {
     {"bullseye", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"crumpled", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"noise", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
-    {"negative", 2.0, 0.1, 40, "arcs", "edges", 0, 5},
+    {"negative", 2.0, 0.1, 40, "arcs", "edges", 0, 2},
     {"orbit", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
     {"shake", 2.0, 1.0 / 30.0, 20, "arcs", "edges", 20, 0},
     {"hover", 2.0, 0.1, 40, "arcs", "edges", 40, 0},
@@ -263,7 +263,7 @@ TEST(Clutter, FoolsTheArcsInFewFrames) {
     }
   }
   RecordProperty("false", wrong);
-  EXPECT_LE(wrong, 20);
+  EXPECT_LE(wrong, 14);
 }
 
 }  // namespace
