@@ -24,7 +24,9 @@ constexpr std::array<FeatureInfo, kFeatures> kInfos = {{
 }};
 constexpr const char* kBias = "bias";
 
-std::invalid_argument error_at(const std::filesystem::path& file, int line, const std::string& text) {
+std::invalid_argument error_at(const std::filesystem::path& file,
+                               int line,
+                               const std::string& text) {
   return std::invalid_argument(file.string() + ":" + std::to_string(line) + ": " + text);
 }
 

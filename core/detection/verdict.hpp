@@ -21,11 +21,11 @@ enum class Reason {
   kKnown,            ///< The same ellipse was found before, or is better seen elsewhere.
   kCrowdedOut,       ///< There are too many, and better ones.
   // Those of the arcs besides.
-  kPoorFit,         ///< Its arcs are not of one ellipse.
-  kFarOutside,      ///< Its centre is farther from the picture than the picture is large.
-  kRefused,         ///< The same was refused before, by as many edges.
-  kTooFewEdges,     ///< Along its normals.
-  kUnlikely,        ///< Its edges are not those of an ellipse.
+  kPoorFit,      ///< Its arcs are not of one ellipse.
+  kFarOutside,   ///< Its centre is farther from the picture than the picture is large.
+  kRefused,      ///< The same was refused before, by as many edges.
+  kTooFewEdges,  ///< Along its normals.
+  kUnlikely,     ///< Its edges are not those of an ellipse.
   // Those of SelectTarget, [Keipour2021] Algorithm 3.
   kOtherPlace,  ///< Away from where the target was.
   kOtherSize,   ///< Of another size than the target was.

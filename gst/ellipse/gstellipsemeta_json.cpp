@@ -224,9 +224,9 @@ static void append_position(GString* json, const GstEllipseMeta* meta) {
  * @meta: an ellipse
  *
  * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale; pixels and radians; and,
- * where one is known, the region that was searched, roi, as x, y, width and height. With a camera
- * also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
+ * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale; pixels and radians;
+ * and, where one is known, the region that was searched, roi, as x, y, width and height. With a
+ * camera also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
  * diameter position, other_position, position_covariance; metres. The truth has no state, overlaps,
  * probability or scale; a number that is not finite is null.
  *

@@ -36,8 +36,8 @@ class PropertyChange {
  public:
   /// @param which  The property's id minus that of the first.
   /// @param value  Borrowed as long as this lives.
-  /// Reads the file that `camera-file` or `evidence-file` names: not to be made under a lock. Throws
-  /// std::invalid_argument where it cannot be read.
+  /// Reads the file that `camera-file` or `evidence-file` names: not to be made under a lock.
+  /// Throws std::invalid_argument where it cannot be read.
   PropertyChange(guint which, const GValue* value);
 
   /// Does not check how the value fits the others: that is tracker.validate(). Throws

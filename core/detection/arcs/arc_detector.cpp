@@ -191,10 +191,8 @@ void ArcDetector::try_guess(const Guess& guess,
   if (trace_ != nullptr) {
     measured.candidate = trace_->add(pieces, guess.ellipse, verdict);
     if (measured.probability > 0.0) {
-      trace_->measure(measured.candidate,
-                      to_frame(measured.ellipse, {}, scale_),
-                      measured.features,
-                      evidence_);
+      trace_->measure(
+          measured.candidate, to_frame(measured.ellipse, {}, scale_), measured.features, evidence_);
     }
   }
   if (verdict.is_accepted()) add(measured);

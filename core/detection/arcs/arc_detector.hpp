@@ -25,8 +25,9 @@ struct TracedPiece;
 /// these make an ellipse decides.
 ///
 /// Looks at the picture in half its size first, then in a quarter and in full, as long as the
-/// evidence leaves a doubt. The same ellipse from two sizes is one. What is found on a reduced
-/// picture is refined on the full one.
+/// evidence leaves a doubt; then what a reduced picture shows is confirmed at the finer sizes. The
+/// same ellipse from two sizes is one. What is found on a reduced picture is refined on the full
+/// one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded: by its pixels, by
 /// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
