@@ -49,8 +49,8 @@ class ChainTracer::Walk {
       at = next_of(at, octant);
       if (at < 0) break;
       const unsigned code = maxima_[at];
-      maxima_[at] = static_cast<std::uint8_t>(code ^ (maximum::kFree | maximum::kChained));
       octant = code & maximum::kOctant;
+      maxima_[at] = static_cast<std::uint8_t>(octant | maximum::kChained);
       *out++ = at;
     }
     return out;
@@ -95,20 +95,20 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
          std::abs(a / stride - b / stride) <= kClosingGap;
 }
 
-// Calls use(index) for each free gradient maximum, until it says no. Most blocks have none any
-// more: a chain is walked from its first pixel in this order.
+// Calls use(index) for each seed where no walk has been yet, until it says no. Most blocks have
+// none any more.
 template <class Use>
-void for_each_free(const GradientMap& map, const Use& use) {
-  constexpr std::uint64_t kAllFree = 0x0101010101010101U * maximum::kFree;
+void for_each_seed(const GradientMap& map, const Use& use) {
+  constexpr std::uint64_t kAllSeeds = 0x0101010101010101U * maximum::kSeed;
   const std::uint8_t* maxima = map.maxima();
   for (const std::int32_t block : map.blocks()) {
     std::array<std::uint64_t, GradientMap::kBlock / 8> words;
     std::memcpy(words.data(), maxima + block, sizeof words);
     std::uint64_t all = 0;
     for (const std::uint64_t word : words) all |= word;
-    if ((all & kAllFree) == 0) continue;
+    if ((all & kAllSeeds) == 0) continue;
     for (std::int32_t i = block; i < block + GradientMap::kBlock; ++i) {
-      if ((maxima[i] & maximum::kFree) != 0 && !use(i)) return;
+      if ((maxima[i] & maximum::kSeed) != 0 && !use(i)) return;
     }
   }
 }
@@ -120,7 +120,7 @@ void ChainTracer::add_chain(std::int32_t seed,
                             std::uint8_t* maxima,
                             const Walk& against,
                             const Walk& along) {
-  maxima[seed] ^= maximum::kFree | maximum::kChained;
+  maxima[seed] = static_cast<std::uint8_t>((maxima[seed] & maximum::kOctant) | maximum::kChained);
   std::int32_t* const begin = pixels_.data() + count_;
   std::int32_t* out = against.run(seed, begin);
   std::reverse(begin, out);
@@ -154,7 +154,7 @@ void ChainTracer::trace(GradientMap& map) {
   stride_ = map.stride();
   const Walk against(map, false);
   const Walk along(map, true);
-  for_each_free(map, [&](std::int32_t pixel) {
+  for_each_seed(map, [&](std::int32_t pixel) {
     add_chain(pixel, map.maxima(), against, along);
     return count_ < most;
   });

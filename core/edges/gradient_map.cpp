@@ -18,11 +18,13 @@ constexpr int kBlock = GradientMap::kBlock;
 // Found by experiment, see docs/provenance.md.
 constexpr int kNoiseRows = 16;  // about
 constexpr double kNoiseQuantile = 0.3;
-constexpr double kThresholdOverNoise = 4.0;
+constexpr double kLowOverNoise = 3.0;
+constexpr double kHighOverLow = 2.0;  // [Canny1986]: two to three
+constexpr double kMinLow = 1.25;      // [grey levels / px]
 constexpr double kMinNoise = 20.0;  // rounding to grey levels alone makes as much
 constexpr int kHistogramBins = 1536;
 constexpr int kHistogramShift = 4;
-constexpr double kMaxThreshold = 6000.0;
+constexpr double kMaxGradient = 24480.0;
 
 // These loops are plain: the compiler makes vectors of them, twice on x86-64, and of NEON's kind on
 // AArch64. Sixteen bits are enough: the largest gradient is 16 x 255 x 6 = 24480.
@@ -76,16 +78,24 @@ struct MaximaRows {
   const Int* below;
 };
 
+// A gradient maximum is above `low`, a seed above `high`.
+struct Levels {
+  Int low;
+  Int high;
+};
+
 // Also lists the blocks that have gradient maxima, as distances from the first pixel; returns how
 // many.
 ELLIPSE_INLINE int mark_maxima_body(
-    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
+    const MaximaRows& rows, std::uint8_t* codes, Levels levels, int n, std::int32_t* blocks) {
+  const Int low = levels.low;
+  const Int high = levels.high;
   int count = 0;
   for (int begin = 0; begin < n; begin += kBlock) {
     const Int* __restrict m = rows.here + begin;
     std::uint8_t* __restrict out = codes + begin;
     Int any = 0;
-    for (int i = 0; i < kBlock; ++i) any = static_cast<Int>(any | (m[i] > least ? -1 : 0));
+    for (int i = 0; i < kBlock; ++i) any = static_cast<Int>(any | (m[i] > low ? -1 : 0));
     if (any == 0) {
       std::memset(out, 0, kBlock);
       continue;
@@ -112,9 +122,10 @@ ELLIPSE_INLINE int mark_maxima_body(
       const Int straight =
           static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
       const Int octant = static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
-      const Int is_maximum = static_cast<Int>((m[i] > least ? -1 : 0) & (m[i] >= before ? -1 : 0) &
+      const Int is_maximum = static_cast<Int>((m[i] > low ? -1 : 0) & (m[i] >= before ? -1 : 0) &
                                               (m[i] > after ? -1 : 0));
-      out[i] = static_cast<std::uint8_t>(is_maximum & (octant | maximum::kFree));
+      const Int seed = static_cast<Int>((m[i] > high ? -1 : 0) & maximum::kSeed);
+      out[i] = static_cast<std::uint8_t>(is_maximum & (octant | maximum::kFree | seed));
     }
   }
   return count;
@@ -128,8 +139,8 @@ void filter_rows(
   filter_rows_body(smooth, difference, gx, gy, m, both, n);
 }
 int mark_maxima(
-    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
-  return mark_maxima_body(rows, codes, least, n, blocks);
+    const MaximaRows& rows, std::uint8_t* codes, Levels levels, int n, std::int32_t* blocks) {
+  return mark_maxima_body(rows, codes, levels, n, blocks);
 }
 ELLIPSE_AVX2 void filter_columns_avx2(const std::uint8_t* const* rows, Int* s, Int* d, int n) {
   filter_columns_body(rows, s, d, n);
@@ -139,8 +150,8 @@ ELLIPSE_AVX2 void filter_rows_avx2(
   filter_rows_body(smooth, difference, gx, gy, m, both, n);
 }
 ELLIPSE_AVX2 int mark_maxima_avx2(
-    const MaximaRows& rows, std::uint8_t* codes, Int least, int n, std::int32_t* blocks) {
-  return mark_maxima_body(rows, codes, least, n, blocks);
+    const MaximaRows& rows, std::uint8_t* codes, Levels levels, int n, std::int32_t* blocks) {
+  return mark_maxima_body(rows, codes, levels, n, blocks);
 }
 
 struct Kernels {
@@ -235,7 +246,7 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
 
 // The gradient of noise is Rayleigh distributed, whose quantile q is sigma sqrt(-2 ln(1 - q))
 // [Rosin1997]; a quantile so low that edges have no part in it tells sigma.
-void GradientMap::measure_noise(const ImageView& luma, double floor) {
+void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
   const int step = std::max(1, height_ / kNoiseRows);
@@ -257,14 +268,19 @@ void GradientMap::measure_noise(const ImageView& luma, double floor) {
   }
   if (samples == 0) quantile = 0.0;
   noise_ = std::max(kMinNoise, quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile)));
-  threshold_ = std::clamp(kThresholdOverNoise * noise_, kGradientGain * floor, kMaxThreshold);
 }
 
-void GradientMap::compute(const ImageView& luma, double threshold, double floor) {
+void GradientMap::compute(const ImageView& luma, const EdgeThresholds& thresholds) {
   resize(luma);
   if (luma.empty()) return;
-  measure_noise(luma, floor);
-  if (threshold > 0.0) threshold_ = std::min(kGradientGain * threshold, 32767.0);
+  measure_noise(luma);
+  const auto used = [](double level, double by_default) {
+    return std::min(level > 0.0 ? level : by_default, kMaxGradient / kGradientGain);
+  };
+  const double by_noise = std::max(kLowOverNoise * noise_ / kGradientGain, kMinLow);
+  thresholds_.low =
+      used(thresholds.low, thresholds.high > 0.0 ? thresholds.high / kHighOverLow : by_noise);
+  thresholds_.high = used(thresholds.high, kHighOverLow * thresholds_.low);
   block_count_ = 0;
   for (int y = 1; y < height_ - 1; ++y) {
     compute_row(luma, y);
@@ -288,8 +304,9 @@ void GradientMap::mark_row(int y) {
                         row_of(magnitude_, y + 1) + kBorder};
   std::int32_t* blocks = blocks_.data() + block_count_;
   std::memset(codes, 0, kBorder);
-  const int count =
-      kernels_of(simd_).maxima(rows, codes + kBorder, static_cast<Int>(threshold_), inside, blocks);
+  const Levels levels{static_cast<Int>(kGradientGain * thresholds_.low),
+                      static_cast<Int>(kGradientGain * thresholds_.high)};
+  const int count = kernels_of(simd_).maxima(rows, codes + kBorder, levels, inside, blocks);
   for (int i = 0; i < count; ++i) blocks[i] += static_cast<std::int32_t>(begin) + kBorder;
   block_count_ += static_cast<std::size_t>(count);
   // The last block may have overrun.

@@ -27,6 +27,7 @@ inline constexpr double kGradientGain = 128.0;
 namespace maximum {
 inline constexpr std::uint8_t kOctant = 0x07;
 inline constexpr std::uint8_t kFree = 0x08;     ///< No walk has been here yet.
+inline constexpr std::uint8_t kSeed = 0x10;     ///< Above the high threshold, and free.
 inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
 }  // namespace maximum
 
@@ -36,20 +37,26 @@ void gradients_along(
     const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
 inline constexpr std::size_t kLongestLine = 16;
 
+/// Hysteresis [Canny1986]: an edge begins above the high threshold, and goes on above the low one
+/// [grey levels / px].
+struct EdgeThresholds {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// The gradient of a picture and its gradient maxima, in one pass over the rows.
 ///
 /// Exact integer arithmetic: separable 5 x 5 kernels, smoothing [1 4 6 4 1] one way and difference
-/// [-1 -2 0 2 1] the other [FaridSimoncelli2004]. A gradient maximum is a pixel above the threshold
-/// whose magnitude is not below its two neighbours' along the axis closest to the gradient
+/// [-1 -2 0 2 1] the other [FaridSimoncelli2004]. A gradient maximum is a pixel above the low
+/// threshold whose magnitude is not below its two neighbours' along the axis closest to the gradient
 /// [Canny1986].
 class GradientMap {
  public:
   explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}
 
-  /// @param threshold  Of a gradient maximum [grey levels per pixel]; 0 = by the noise.
-  /// @param floor      Least threshold by the noise [grey levels per pixel].
+  /// @param thresholds  0 = by the other one; both 0 = by the picture's noise.
   /// Allocates only when the picture grows. O(pixels).
-  void compute(const ImageView& luma, double threshold, double floor);
+  void compute(const ImageView& luma, const EdgeThresholds& thresholds = {});
 
   /// Through what lens the picture is seen; none by default.
   void set_lens(const LensView& lens) { lens_ = lens; }
@@ -71,7 +78,8 @@ class GradientMap {
 
   /// Standard deviation of the gradient's noise in one direction [units of Gradient].
   [[nodiscard]] double noise() const { return noise_; }
-  [[nodiscard]] double threshold() const { return threshold_; }
+  /// What was used.
+  [[nodiscard]] const EdgeThresholds& thresholds() const { return thresholds_; }
 
   /// No gradient maximum is nearer to the border: the kernels reach beyond it [pixels].
   static constexpr int kBorder = 3;
@@ -83,7 +91,7 @@ class GradientMap {
   void resize(const ImageView& luma);
   void compute_row(const ImageView& luma, int y);
   void mark_row(int y);
-  void measure_noise(const ImageView& luma, double floor);
+  void measure_noise(const ImageView& luma);
   [[nodiscard]] std::int16_t* row_of(std::vector<std::int16_t>& rows, int y);
 
   Simd simd_;
@@ -92,7 +100,7 @@ class GradientMap {
   int height_ = 0;
   int stride_ = 0;
   double noise_ = 0.0;
-  double threshold_ = 0.0;
+  EdgeThresholds thresholds_;
   std::vector<Gradient> gradients_;
   std::vector<std::uint8_t> maxima_;
   std::vector<std::int32_t> blocks_;

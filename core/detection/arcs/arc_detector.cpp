@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kScales[] = {2, 4, 1};      // in this order
 constexpr int kMinSidePx = 24;            // of a picture that is searched
-constexpr double kEdgeFloor = 1.25;       // least threshold [grey levels / px]
 constexpr double kFitRms = 0.8;           // [px], and
 constexpr double kFitRmsRelative = 0.02;  // of the radius, or of a third of the arc
 constexpr double kChainRms = 1.5;         // the same of a closed chain
@@ -89,11 +88,11 @@ void ArcDetector::search(const ImageView& luma, const Thresholds& full, int scal
   rejected_.clear();
   if (luma.empty()) return;
   const Thresholds thresholds = full.at_scale(scale);
-  const double floor = thresholds.edge_low > 0.0 ? thresholds.edge_low : kEdgeFloor;
   map_ = &map_at(scale);
-  map_->compute(luma, thresholds.edge_high, floor);
+  map_->compute(luma, {thresholds.edge_low, thresholds.edge_high});
   map_->set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
-  min_gradient_ = map_->threshold() * std::pow(kSteeperAtHalfSize, std::log2(scale));
+  min_gradient_ = kGradientGain * map_->thresholds().low *
+                  std::pow(kSteeperAtHalfSize, std::log2(scale));
   if (trace_ != nullptr) trace_edges(luma);
   chains_.trace(*map_);
   arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
@@ -335,7 +334,8 @@ void ArcDetector::reject(int candidate, const Verdict& verdict) {
 
 void ArcDetector::trace_edges(const ImageView& luma) {
   TracedPass& pass = trace_->begin_pass(luma, scale_);
-  pass.edge_low = pass.edge_high = map_->threshold() / kGradientGain;
+  pass.edge_low = map_->thresholds().low;
+  pass.edge_high = map_->thresholds().high;
   for (int y = 0; y < map_->height(); ++y) {
     const std::uint8_t* row = map_->maxima() + std::ptrdiff_t(y) * map_->stride();
     for (int x = 0; x < map_->width(); ++x) pass.edges.push_back(row[x] != 0 ? 255 : 0);

@@ -4,17 +4,12 @@
 #include <vector>
 
 #include "core/detection/detector.hpp"
+#include "core/edges/gradient_map.hpp"
 
 namespace ellipse {
 
 struct TracedPass;
 struct TracedPiece;
-
-/// Canny's two thresholds [grey levels / px].
-struct EdgeThresholds {
-  double low = 0.0;
-  double high = 0.0;
-};
 
 /// [Keipour2021] Algorithm 1, step by step on OpenCV: Canny's edges [Canny1986], the contours of
 /// [SuzukiAbe1985], one ellipse fitted to each contour and tested, the cheapest test first.

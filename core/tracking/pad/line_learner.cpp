@@ -29,7 +29,7 @@ void LineLearner::reserve(PadModel& model) {
   pixels_.assign(static_cast<std::size_t>(kSize) * kSize, 0);
   lines_.reserve(kRoom);
   chains_.reserve(pixels_.size() / 4 / kMaximaOfChain + 8);
-  map_.compute({pixels_.data(), kSize, kSize, kSize}, 1.0, 0.0);
+  map_.compute({pixels_.data(), kSize, kSize, kSize}, {1.0, 1.0});
   chains_.trace(map_);
 }
 
@@ -95,7 +95,7 @@ Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
 void LineLearner::learn(PadModel& model) {
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
   const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
-  map_.compute(above, least / kGradientGain, 0.0);
+  map_.compute(above, {least / kGradientGain, least / kGradientGain});
   forget_maxima_at_border();
   chains_.trace(map_);
   lines_.clear();

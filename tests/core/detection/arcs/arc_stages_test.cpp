@@ -24,7 +24,6 @@ using support::Picture;
 using support::plain_ring;
 using support::rendered;
 
-constexpr double kFloor = 1.25;
 
 Picture random_picture(int width, int height, std::uint64_t seed) {
   Picture picture(width, height);
@@ -47,7 +46,7 @@ TEST(GradientMap, IsTheConvolution) {
   constexpr int kSmooth[5] = {1, 4, 6, 4, 1};
   constexpr int kDifference[5] = {-1, -2, 0, 2, 1};
   GradientMap map;
-  map.compute(picture.view(), 0.0, kFloor);
+  map.compute(picture.view());
   for (int y = 3; y < 20; ++y) {
     for (int x = 3; x < 59; ++x) {
       int gx = 0;
@@ -78,9 +77,9 @@ TEST(GradientMap, IsTheSameWithAllInstructions) {
     const Picture picture = rendered(disc(), {width / 2.0, 20.0, 15.0, 10.0, 0.4}, width, 41);
     GradientMap baseline(Simd::kBaseline);
     GradientMap best(best_simd());
-    baseline.compute(picture.view(), 0.0, kFloor);
-    best.compute(picture.view(), 0.0, kFloor);
-    ASSERT_EQ(baseline.threshold(), best.threshold());
+    baseline.compute(picture.view());
+    best.compute(picture.view());
+    ASSERT_EQ(baseline.thresholds().low, best.thresholds().low);
     for (int i = 0; i < baseline.stride() * 41; ++i) {
       ASSERT_EQ(baseline.maxima()[i], best.maxima()[i]) << width;
       ASSERT_EQ(baseline.gradients()[i].x, best.gradients()[i].x) << width;
@@ -97,17 +96,24 @@ TEST(GradientMap, MeasuresTheNoise) {
     scene.ground.level = 128.0;
     const Picture picture = rendered(scene, {-90.0, 0.0, 5.0, 5.0, 0.0}, 320, 240);
     GradientMap map;
-    map.compute(picture.view(), 0.0, kFloor);
+    map.compute(picture.view());
     EXPECT_NEAR(map.noise() / (26.5 * noise), 1.0, 0.15) << noise;
-    EXPECT_NEAR(map.threshold(), std::max(4.0 * map.noise(), kFloor * kGradientGain), 1e-9);
+    EXPECT_NEAR(map.thresholds().low, std::max(3.0 * map.noise() / kGradientGain, 1.25), 1e-9);
+    EXPECT_NEAR(map.thresholds().high, 2.0 * map.thresholds().low, 1e-9);
   }
 }
 
-TEST(GradientMap, TakesAThresholdThatIsGiven) {
+TEST(GradientMap, TakesThresholdsThatAreGiven) {
   const Picture picture = random_picture(40, 40, 1);
   GradientMap map;
-  map.compute(picture.view(), 3.0, kFloor);
-  EXPECT_EQ(map.threshold(), 3.0 * kGradientGain);
+  const auto expect = [&](EdgeThresholds given, double low, double high) {
+    map.compute(picture.view(), given);
+    EXPECT_EQ(map.thresholds().low, low);
+    EXPECT_EQ(map.thresholds().high, high);
+  };
+  expect({3.0, 4.0}, 3.0, 4.0);
+  expect({3.0, 0.0}, 3.0, 6.0);
+  expect({0.0, 4.0}, 2.0, 4.0);
 }
 
 TEST(GradientMap, HasNoMaximumNearTheBorderNorInTinyPictures) {
@@ -115,7 +121,7 @@ TEST(GradientMap, HasNoMaximumNearTheBorderNorInTinyPictures) {
     for (const int height : {1, 2, 6, 7, 40}) {
       const Picture picture = random_picture(width, height, 5);
       GradientMap map;
-      map.compute(picture.view(), 0.1, kFloor);
+      map.compute(picture.view(), {0.1, 0.1});
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < map.stride(); ++x) {
           const bool is_inside = x >= 3 && y >= 3 && x < width - 3 && y < height - 3;
@@ -130,7 +136,7 @@ TEST(GradientMap, HasNoMaximumNearTheBorderNorInTinyPictures) {
 
 struct Traced {
   explicit Traced(const Picture& picture) {
-    map.compute(picture.view(), 0.0, kFloor);
+    map.compute(picture.view());
     chains.trace(map);
     arcs = splitter.split(map, chains);
   }
@@ -151,13 +157,33 @@ TEST(ChainTracer, MakesOneClosedChainOfADisc) {
   }
 }
 
+// A vertical edge whose contrast falls from row to row.
+TEST(ChainTracer, GoesOnBelowTheThresholdThatItBeganAbove) {
+  Picture picture(60, 120, 100);
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 30; x < 60; ++x) picture.at(x, y) = static_cast<std::uint8_t>(220 - y);
+  }
+  const auto longest_chain = [&](EdgeThresholds thresholds) {
+    GradientMap map;
+    map.compute(picture.view(), thresholds);
+    ChainTracer chains;
+    chains.trace(map);
+    return chains.size() == 1 ? chains.chain(0).pixels.size() : 0;
+  };
+  // 48 units of Gradient are 0.375 grey levels per pixel and grey level of the step.
+  const std::size_t above_30 = longest_chain({11.25, 11.25});
+  EXPECT_NEAR(static_cast<double>(above_30), 87.0, 3.0);
+  EXPECT_NEAR(static_cast<double>(longest_chain({7.5, 11.25})), 97.0, 3.0);
+  EXPECT_EQ(longest_chain({7.5, 60.0}), 0U);
+}
+
 TEST(ChainTracer, BridgesAGapOfOnePixel) {
   Picture picture(120, 60, 140);
   for (int y = 0; y < 60; ++y) {
     for (int x = 60; x < 120; ++x) picture.at(x, y) = 40;
   }
   GradientMap map;
-  map.compute(picture.view(), 0.0, kFloor);
+  map.compute(picture.view());
   for (int x = 0; x < map.stride(); ++x) map.maxima()[30 * map.stride() + x] = 0;
   ChainTracer chains;
   chains.trace(map);
