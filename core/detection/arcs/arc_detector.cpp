@@ -205,7 +205,6 @@ Verdict ArcDetector::examine(const Guess& guess,
   Verdict verdict = at_most(Reason::kPoorFit, rms_px, limit_px);
   if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, *map_, thresholds);
   if (verdict.is_accepted()) verdict = judge_news(guess);
-  if (verdict.is_accepted()) verdict = EllipseVerifier::judge_promise(*map_, ellipse, polarity);
   if (!verdict.is_accepted()) return verdict;
   verdict = verifier_.verify(*map_, ellipse, polarity, thresholds, evidence_, measured);
   if (!verdict.is_accepted()) rejected_.push_back(guess);

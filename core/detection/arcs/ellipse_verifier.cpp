@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kMinHits = 8;     // 5 parameters, and edges to judge them by
-constexpr double kMinPromise = 0.3;     // share of the perimeter that has edges near
+constexpr double kMinPromise = 0.4;     // share of the perimeter that has edges near
 constexpr double kBasePx = 1.5;         // an edge of a rigid outline is this near,
 constexpr double kDeformation = 0.025;  // one of a deformed outline this share of the radius more
 constexpr double kMaxDeformationPx = 8.0;
@@ -25,10 +25,11 @@ constexpr double kContourSizeOfLength = 0.9;  // pixels of a contour per pixel o
 // A Gauss-Newton step: its reach, and by how much the log odds of an ellipse grow at most from
 // here on, in 99.5 % of the ellipses of the sources.
 struct Step {
+  int samples;
   double part_of_reach;
   double max_growth;
 };
-constexpr std::array<Step, 4> kSteps = {{{1.0, 6.5}, {0.7, 4.5}, {0.5, 2.7}, {0.5, 0.5}}};
+constexpr std::array<Step, 4> kSteps = {{{32, 1.0, 7.0}, {32, 0.7, 5.0}, {32, 0.5, 2.5}, {64, 0.5, 1.0}}};
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
@@ -94,7 +95,9 @@ Verdict EllipseVerifier::approach(const GradientMap& map,
   const double wanted = std::log(thresholds.min_probability / (1.0 - thresholds.min_probability));
   for (const Step& step : kSteps) {
     const double reach_px = std::max(kOnOutlinePx, step.part_of_reach * widest_px);
-    measure(map, samples_for(e), reach_px, measured);
+    measure(map, step.samples, reach_px, measured);
+    const Verdict promise = at_least(Reason::kTooFewEdges, measured.support, kMinPromise);
+    if (!promise.is_accepted()) return promise;
     const Verdict enough =
         at_least(Reason::kTooFewEdges, double(probe_.hits().size()), static_cast<double>(kMinHits));
     if (!enough.is_accepted()) return enough;
