@@ -9,7 +9,7 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMinLength = 10;       // pixels
+constexpr std::size_t kMinLength = 14;       // pixels
 constexpr std::size_t kLongestWalk = 16384;  // pixels
 constexpr std::size_t kMinClosed = 16;       // pixels
 constexpr int kClosingGap = 3;               // pixels

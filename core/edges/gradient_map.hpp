@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -66,6 +67,12 @@ class GradientMap {
   [[nodiscard]] int height() const { return height_; }
   /// From row to row, of both maps [pixels].
   [[nodiscard]] int stride() const { return stride_; }
+
+  /// Where a pixel of the maps lies in the ideal plane [px].
+  [[nodiscard]] Eigen::Vector2d point_of(std::int32_t pixel) const {
+    const Eigen::Vector2d in_picture(pixel % stride_, pixel / stride_);
+    return lens_.near_ideal(in_picture);
+  }
 
   [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }
   [[nodiscard]] const std::uint8_t* maxima() const { return maxima_.data(); }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/image/simd.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -17,19 +19,19 @@ void add_rows(const ImageView& luma, int first, int count, std::uint16_t* __rest
   }
 }
 
-void average(const std::uint16_t* __restrict sums,
-             int scale,
-             int width,
-             std::uint8_t* __restrict out) {
-  const int pixels = scale * scale;
+ELLIPSE_INLINE void average(const std::uint16_t* __restrict sums,
+                            unsigned scale,
+                            int width,
+                            std::uint8_t* __restrict out) {
+  const unsigned pixels = scale * scale;
   for (int x = 0; x < width; ++x, sums += scale) {
-    int sum = pixels / 2;
-    for (int k = 0; k < scale; ++k) sum += sums[k];
+    unsigned sum = pixels / 2;
+    for (unsigned k = 0; k < scale; ++k) sum += sums[k];
     out[x] = static_cast<std::uint8_t>(sum / pixels);
   }
 }
 
-// The scale that is used most.
+// The two scales that are used most are known when this is compiled.
 void halve(const std::uint8_t* __restrict upper,
            const std::uint8_t* __restrict lower,
            int width,
@@ -59,7 +61,11 @@ ImageView Scaler::reduce(const ImageView& luma, int scale) {
       halve(luma.row(2 * y), luma.row(2 * y + 1), width, out);
     } else {
       add_rows(luma, y * scale, scale, sums_.data());
-      average(sums_.data(), scale, width, out);
+      if (scale == 4) {
+        average(sums_.data(), 4, width, out);
+      } else {
+        average(sums_.data(), static_cast<unsigned>(scale), width, out);
+      }
     }
   }
   return {reduced_.data(), width, height, width};

@@ -21,7 +21,7 @@ constexpr double kChainRmsRelative = 0.06;
 constexpr std::size_t kMinClosedChain = 24;  // pixels
 constexpr std::size_t kChainPoints = 64;     // of a chain's fit
 constexpr double kClosingChord = 0.35;       // of a chain's length
-constexpr int kMaxPairs = 80;
+constexpr int kMaxPairs = 50;
 constexpr double kConvexSlackPx = 2.0;  // by which one arc may lie outside the other, and
 constexpr double kConvexSlack = 0.1;    // of their distance
 constexpr double kSame = 0.05;          // of the axes
@@ -113,35 +113,40 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
 
 // Where an outline is too rough to be cut into arcs, the whole of it may still be of one ellipse.
 void ArcDetector::try_closed_chains(const Thresholds& thresholds) {
-  const std::int32_t stride = map_->stride();
-  const auto point_of = [&](std::int32_t pixel) -> Eigen::Vector2d {
-    return map_->lens().near_ideal(Eigen::Vector2d(pixel % stride, pixel / stride));
-  };
   std::size_t begin = 0;
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     const std::span<const std::int32_t> pixels = chains_.chain(i).pixels;
     const TracedPiece piece{begin, begin + pixels.size()};
     begin = piece.end;
-    const auto length_px = static_cast<double>(pixels.size());
     if (pixels.size() < kMinClosedChain) continue;
-    const Eigen::Vector2d chord = point_of(pixels.back()) - point_of(pixels.front());
-    if (!(chord.norm() < kClosingChord * length_px)) continue;
-    const std::size_t step = pixels.size() / kChainPoints + 1;
-    Moments moments(Eigen::Vector2d(0.5 * map_->width(), 0.5 * map_->height()));
-    for (std::size_t k = 0; k < pixels.size(); k += step) {
-      const Eigen::Vector2d point = point_of(pixels[k]);
-      if (point.allFinite()) moments.add(point, static_cast<double>(step));
-    }
-    const auto fit = fit_with_residual(moments);
-    if (!fit || fit->rms_px > kChainRms + kChainRmsRelative * radius_of(fit->ellipse)) continue;
-    double outwards = 0.0;
-    for (std::size_t k = 0; k < pixels.size(); k += step) {
-      const Gradient& g = map_->gradients()[pixels[k]];
-      outwards += (point_of(pixels[k]) - fit->ellipse.center()).dot(Eigen::Vector2d(g.x, g.y));
-    }
-    const Polarity polarity = outwards > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
-    try_guess({fit->ellipse, polarity, length_px, 0.0}, {&piece, 1}, thresholds);
+    const double chord = (map_->point_of(pixels.back()) - map_->point_of(pixels.front())).norm();
+    if (!(chord < kClosingChord * static_cast<double>(pixels.size()))) continue;
+    const auto guess = guess_from_chain(pixels);
+    if (guess) try_guess(*guess, {&piece, 1}, thresholds);
   }
+}
+
+// A chain runs with the bright side on its left: the sign of the area that it encloses tells which
+// side is dark.
+std::optional<ArcDetector::Guess> ArcDetector::guess_from_chain(
+    std::span<const std::int32_t> pixels) const {
+  const std::size_t step = pixels.size() / kChainPoints + 1;
+  const Eigen::Vector2d first = map_->point_of(pixels.front());
+  Moments moments(first);
+  Eigen::Vector2d last(0.0, 0.0);  // from the first
+  double twice_area = 0.0;
+  for (std::size_t k = 0; k < pixels.size(); k += step) {
+    const Eigen::Vector2d point = map_->point_of(pixels[k]);
+    if (!point.allFinite()) continue;
+    moments.add(point, static_cast<double>(step));
+    const Eigen::Vector2d from_first = point - first;
+    twice_area += last.x() * from_first.y() - last.y() * from_first.x();
+    last = from_first;
+  }
+  const auto fit = fit_with_residual(moments);
+  if (!fit || fit->rms_px > kChainRms + kChainRmsRelative * radius_of(fit->ellipse)) return {};
+  const Polarity polarity = twice_area > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
+  return Guess{fit->ellipse, polarity, static_cast<double>(pixels.size()), 0.0};
 }
 
 // The best arcs with each other first: by the sum of their ranks.

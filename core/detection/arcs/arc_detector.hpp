@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,6 +62,7 @@ class ArcDetector final : public Detector {
   }
   void try_single_arcs(const Thresholds& thresholds);
   void try_closed_chains(const Thresholds& thresholds);
+  [[nodiscard]] std::optional<Guess> guess_from_chain(std::span<const std::int32_t> pixels) const;
   void try_pairs(const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,

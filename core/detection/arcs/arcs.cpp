@@ -13,7 +13,7 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Found by experiment, see docs/provenance.md.
 constexpr std::size_t kMinLength = 10;
-constexpr std::size_t kEnoughPoints = 48;  // of an arc
+constexpr std::size_t kEnoughPoints = 32;  // of an arc
 constexpr double kMinTurn = 0.25;          // [rad]
 constexpr std::size_t kCornerReach = 3;    // [px] before and after
 constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
@@ -285,7 +285,7 @@ Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
   const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};
   for (std::size_t k = 0; k < 3; ++k) {
     const double angle = mean_angle(at[k], arc.begin, arc.end);
-    arc.points[k] = map.lens().near_ideal(place_of(pixels_[at[k]], map.stride()));
+    arc.points[k] = map.point_of(pixels_[at[k]]);
     arc.inwards[k] = -static_cast<int>(arc.polarity) *
                      ideal_normal(map.lens(), arc.points[k], {std::cos(angle), std::sin(angle)});
   }
