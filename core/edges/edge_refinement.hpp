@@ -14,26 +14,27 @@ namespace ellipse {
 struct RefinedEllipse {
   Ellipse ellipse;
   RingUncertainty uncertainty;
-  double support = 0.0;   ///< Share of the places inside the picture with a gradient maximum near.
+  double support = 0.0;   ///< Share of the perimeter inside the picture that meets the edge.
   double gradient = 0.0;  ///< Mean of these gradient maxima [units of Gradient].
 };
 
-inline constexpr int kMaxRefinementSamples = 96;
+inline constexpr std::size_t kRefinementSamples = 96;
 
 /// Refines an ellipse that is known within a pixel or two, on the picture itself: looks for the
-/// gradient maximum across its perimeter at some places, and computes no gradient elsewhere.
+/// gradient maximum across its perimeter at some samples, and computes no gradient elsewhere.
 ///
-/// @param places  At most kMaxRefinementSamples. With fewer it is faster, and the noise tells more.
+/// @param samples  As of OutlineSamples. With fewer it is faster, and the noise tells more.
 /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
 /// @param lens    The ellipse is of the ideal plane, before and after; the perimeter is searched as
 ///                the lens distorts it.
 /// @return nullopt where too few gradient maxima are near. Allocates nothing; the time depends on
 /// no size.
-[[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
-                                                               const Ellipse& e,
-                                                               Polarity polarity,
-                                                               double min_gradient,
-                                                               int places = kMaxRefinementSamples,
-                                                               const LensView& lens = {});
+[[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(
+    const ImageView& luma,
+    const Ellipse& e,
+    Polarity polarity,
+    double min_gradient,
+    std::size_t samples = kRefinementSamples,
+    const LensView& lens = {});
 
 }  // namespace ellipse

@@ -86,9 +86,9 @@ TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
   Ellipse guess = translated(*seen.truth.outer_edge, 0.4, -0.3);
   guess.semi_major += 0.3;
   const auto refined = refined_on_picture(
-      seen.picture.view(), guess, Polarity::kBrightInside, 200.0, kMaxRefinementSamples, lens_);
+      seen.picture.view(), guess, Polarity::kBrightInside, 200.0, kRefinementSamples, lens_);
   const auto other = refined_on_picture(
-      seen.picture.view(), guess, Polarity::kDarkInside, 200.0, kMaxRefinementSamples, lens_);
+      seen.picture.view(), guess, Polarity::kDarkInside, 200.0, kRefinementSamples, lens_);
   ASSERT_TRUE(refined || other);
   const Ellipse& e = refined ? refined->ellipse : other->ellipse;
   EXPECT_LT(max_difference_px(e, *seen.truth.outer_edge), 0.1);

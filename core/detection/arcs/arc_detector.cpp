@@ -91,8 +91,8 @@ void ArcDetector::search(const ImageView& luma, const Thresholds& full, int scal
   map_ = &map_at(scale);
   map_->compute(luma, {thresholds.edge_low, thresholds.edge_high});
   map_->set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
-  min_gradient_ = kGradientGain * map_->thresholds().low *
-                  std::pow(kSteeperAtHalfSize, std::log2(scale));
+  min_gradient_ =
+      kGradientGain * map_->thresholds().low * std::pow(kSteeperAtHalfSize, std::log2(scale));
   if (trace_ != nullptr) trace_edges(luma);
   chains_.trace(*map_);
   arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
@@ -309,7 +309,7 @@ void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& t
     if (found.scale == 1) return false;
     MeasuredEllipse& measured = found.measured;
     const auto refined = refined_on_picture(
-        luma, measured.ellipse, measured.polarity, min_gradient_, kMaxRefinementSamples, lens_);
+        luma, measured.ellipse, measured.polarity, min_gradient_, kRefinementSamples, lens_);
     if (refined) measured.ellipse = refined->ellipse;
     const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
     if (!verdict.is_accepted()) reject(measured.candidate, verdict);

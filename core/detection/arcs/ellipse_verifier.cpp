@@ -12,32 +12,40 @@ namespace ellipse {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr std::size_t kMinHits = 8;     // 5 parameters, and edges to judge them by
+constexpr double kMinEdges = 8.0;       // 5 parameters, and edges to judge them by
 constexpr double kMinPromise = 0.4;     // share of the perimeter that has edges near
 constexpr double kBasePx = 1.5;         // an edge of a rigid outline is this near,
 constexpr double kDeformation = 0.025;  // one of a deformed outline this share of the radius more
 constexpr double kMaxDeformationPx = 8.0;
-constexpr double kOnOutlinePx = 2.0;
+constexpr double kOnOutlinePx = 2.0;          // an edge on the outline is this near,
+constexpr double kSigmas = 2.0;               // and so many of its standard deviations more
+constexpr double kOnEllipsePx = 1.0;          // for the paper's Eq. (1): this near,
+constexpr double kOnEllipseRad = 0.3;         // and in this direction
 constexpr double kTurnWindow = 0.2;           // [rad] of the outline's turn, to both sides
 constexpr double kStraightSlope = -0.5;       // halfway between an ellipse's 0 and a line's -1
 constexpr double kContourSizeOfLength = 0.9;  // pixels of a contour per pixel of length
 
-// A Gauss-Newton step: its reach, and by how much the log odds of an ellipse grow at most from
-// here on, in 99.5 % of the ellipses of the sources.
+constexpr std::size_t kFewSamples = 32;  // of a look that only rejects,
+constexpr std::size_t kSamples = 128;    // of one that decides,
+constexpr double kFewInside = 16.0;      // and more of those that are inside the picture
+
+// A Gauss-Newton step: its samples, its reach, and by how much the log odds of an ellipse grow at
+// most from here on, in 99 % of the ellipses of the sources.
 struct Step {
-  int samples;
+  std::size_t samples;
   double part_of_reach;
   double max_growth;
 };
-constexpr std::array<Step, 4> kSteps = {{{32, 1.0, 7.0}, {32, 0.7, 5.0}, {32, 0.5, 2.5}, {64, 0.5, 1.0}}};
+constexpr std::array<Step, 4> kSteps = {
+    {{kFewSamples, 1.0, 7.0}, {kFewSamples, 0.7, 5.0}, {kFewSamples, 0.5, 2.5}, {64, 0.5, 1.0}}};
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
 }
 
-int samples_for(const Ellipse& e) {
+std::size_t samples_for(const Ellipse& e) {
   const double length = std::numbers::pi * (e.semi_major + e.semi_minor);
-  return length < 100.0 ? 64 : 128;
+  return length < 100.0 ? 64 : kSamples;
 }
 
 double median(std::vector<double>& values) {
@@ -46,18 +54,45 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-double longest_gap(std::span<const EdgeHit> hits, int samples) {
-  int longest = 0;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const int next = i + 1 < hits.size() ? hits[i + 1].sample : hits.front().sample + samples;
-    longest = std::max(longest, next - hits[i].sample - 1);
+// As a share of all samples.
+double longest_gap(std::span<const EdgeMeasurement> edges, std::size_t samples) {
+  const int count = static_cast<int>(samples);
+  int longest = edges.empty() ? count : 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const int next = i + 1 < edges.size() ? edges[i + 1].sample : edges.front().sample + count;
+    longest = std::max(longest, next - edges[i].sample - 1);
   }
-  return static_cast<double>(longest) / samples;
+  return static_cast<double>(longest) / count;
 }
 
-double turn_of(const EdgeHit& hit) {
-  return 1.0 / (hit.weight * hit.weight);  // but for a factor
+bool is_on_outline(const EdgeMeasurement& edge, double reach_px) {
+  return std::abs(edge.offset.distance_px) <= reach_px + kSigmas * edge.sigma_px;
 }
+
+// Over the edges of an outline.
+struct Sums {
+  double length = 0.0;
+  double length_on_ellipse = 0.0;
+  double squares = 0.0;
+  double contrast = 0.0;
+  double turn = 0.0;  // but for a factor
+  double turn_in_reach = 0.0;
+
+  void add(const EdgeMeasurement& edge, double reach_px) {
+    const double distance_px = std::abs(edge.offset.distance_px);
+    const double turn_of_edge = 1.0 / (double(edge.length_px) * edge.length_px);
+    length += edge.length_px;
+    squares += edge.length_px * distance_px * distance_px;
+    contrast += edge.contrast;
+    turn += turn_of_edge;
+    if (is_on_outline(edge, reach_px)) turn_in_reach += turn_of_edge;
+    if (distance_px < kOnEllipsePx && std::abs(edge.direction_error_rad) < kOnEllipseRad) {
+      length_on_ellipse += edge.length_px;
+    }
+  }
+  [[nodiscard]] double share_of_turn() const { return turn > 0.0 ? turn_in_reach / turn : 0.0; }
+  [[nodiscard]] double rms_px() const { return length > 0.0 ? std::sqrt(squares / length) : 1e9; }
+};
 
 }  // namespace
 
@@ -77,60 +112,67 @@ Verdict EllipseVerifier::judge_shape(const Ellipse& e,
   return column.is_accepted() ? judge_place(e.cy, map.height()) : column;
 }
 
-Verdict EllipseVerifier::judge_promise(const GradientMap& map,
-                                       const Ellipse& guess,
-                                       Polarity polarity) {
-  const int tolerance_px = static_cast<int>(std::lround(deformation_px(guess) + kBasePx));
-  const double support = perimeter_support(map, guess, polarity, 32, tolerance_px, kMinPromise);
-  return at_least(Reason::kTooFewEdges, support, kMinPromise);
-}
-
-// Gauss-Newton steps with Tukey's weights and a narrowing reach.
+// Gauss-Newton steps with a narrowing reach.
 Verdict EllipseVerifier::approach(const GradientMap& map,
                                   const Thresholds& thresholds,
                                   const EvidenceTable& table,
                                   MeasuredEllipse& measured) {
-  Ellipse& e = measured.ellipse;
-  const double widest_px = std::max(3.0, deformation_px(e));
-  const double wanted = std::log(thresholds.min_probability / (1.0 - thresholds.min_probability));
+  const double widest_px = std::max(3.0, deformation_px(measured.ellipse));
+  std::size_t samples = kFewSamples;
   for (const Step& step : kSteps) {
     const double reach_px = std::max(kOnOutlinePx, step.part_of_reach * widest_px);
-    measure(map, step.samples, reach_px, measured);
-    const Verdict promise = at_least(Reason::kTooFewEdges, measured.support, kMinPromise);
-    if (!promise.is_accepted()) return promise;
-    const Verdict enough =
-        at_least(Reason::kTooFewEdges, double(probe_.hits().size()), static_cast<double>(kMinHits));
-    if (!enough.is_accepted()) return enough;
-    if (thresholds.min_probability < 1.0) {
-      const double reachable = table.log_odds(measured.features) + step.max_growth;
-      if (reachable < wanted) {
-        return at_least(
-            Reason::kUnlikely, table.probability(measured.features), thresholds.min_probability);
-      }
+    samples = std::max(samples, step.samples);
+    measure(map, samples, reach_px, measured);
+    while (samples < kSamples && measured.inside_fraction * double(samples) < kFewInside) {
+      samples *= 2;
+      measure(map, samples, reach_px, measured);
     }
-    GeometricFit fit(e);
-    for (const EdgeHit& hit : probe_.hits()) {
-      const double weight = hit.weight * tukey_weight(hit.offset.distance_px, 1.5 * reach_px);
-      if (weight > 0.0) fit.add(hit.offset, weight);
-    }
-    const auto better = fit.solve();
+    const Verdict prospect = judge_prospect(step.max_growth, thresholds, table, measured);
+    if (!prospect.is_accepted()) return prospect;
+    const auto better = nearer_to_edges(measured.ellipse, reach_px);
     if (!better) return {Reason::kNoEllipse};
     const Verdict shape = judge_shape(*better, map, thresholds);
     if (!shape.is_accepted()) return shape;
-    e = *better;
+    measured.ellipse = *better;
   }
   return {};
+}
+
+// Whether a candidate can reach the wanted probability yet.
+Verdict EllipseVerifier::judge_prospect(double max_growth,
+                                        const Thresholds& thresholds,
+                                        const EvidenceTable& table,
+                                        const MeasuredEllipse& measured) const {
+  const Verdict promise = at_least(Reason::kTooFewEdges, measured.support, kMinPromise);
+  if (!promise.is_accepted()) return promise;
+  const auto edges = static_cast<double>(measurer_.edges().size());
+  const Verdict enough = at_least(Reason::kTooFewEdges, edges, kMinEdges);
+  if (!enough.is_accepted()) return enough;
+  const double wanted = thresholds.min_probability;
+  const double reachable = table.log_odds(measured.features) + max_growth;
+  if (wanted == 1.0 || reachable >= std::log(wanted / (1.0 - wanted))) return {};
+  return at_least(Reason::kUnlikely, table.probability(measured.features), wanted);
+}
+
+// Least squares with Tukey's weights.
+std::optional<Ellipse> EllipseVerifier::nearer_to_edges(const Ellipse& e, double reach_px) const {
+  GeometricFit fit(e);
+  for (const EdgeMeasurement& edge : measurer_.edges()) {
+    const double weight = edge.length_px * tukey_weight(edge.offset.distance_px, 1.5 * reach_px);
+    if (weight > 0.0) fit.add(edge.offset, weight);
+  }
+  return fit.solve();
 }
 
 // Along a polygon's side the gradient keeps its direction while the outline's normal turns: the
 // direction error falls by a radian per radian of turn. Along an ellipse it stays. A line through
 // the errors in a window of the turn tells the two apart.
 double EllipseVerifier::straight_share() {
-  const std::span<const EdgeHit> hits = probe_.hits();
-  const std::size_t n = hits.size();
+  const std::span<const EdgeMeasurement> edges = measurer_.edges();
+  const std::size_t n = edges.size();
   angles_.resize(2 * n);
   for (std::size_t i = 0; i < n; ++i) {
-    const double angle = std::atan2(hits[i].normal.y(), hits[i].normal.x());
+    const double angle = std::atan2(edges[i].normal.y(), edges[i].normal.x());
     angles_[i] = i == 0 ? angle : angles_[i - 1] + std::remainder(angle - angles_[i - 1], kTwoPi);
   }
   for (std::size_t i = 0; i < n; ++i) angles_[n + i] = angles_[i] + kTwoPi;
@@ -141,7 +183,7 @@ double EllipseVerifier::straight_share() {
   double sum = 0.0, x1 = 0.0, x2 = 0.0, y1 = 0.0, xy = 0.0;
   const auto add = [&](std::size_t i, double sign) {
     const double x = angles_[i] - angles_[n / 2];
-    const double y = hits[i % n].direction_error_rad;
+    const double y = edges[i % n].direction_error_rad;
     sum += sign;
     x1 += sign * x;
     x2 += sign * x * x;
@@ -153,7 +195,7 @@ double EllipseVerifier::straight_share() {
     while (angles_[first] < angles_[i] - kTurnWindow) add(first++, -1.0);
     const double determinant = sum * x2 - x1 * x1;
     if (sum < 4.0 || determinant < 1e-6) continue;
-    const double weight = hits[i % n].weight;
+    const double weight = edges[i % n].length_px;
     judged += weight;
     if (sum * xy - x1 * y1 < kStraightSlope * determinant) straight += weight;
   }
@@ -162,44 +204,37 @@ double EllipseVerifier::straight_share() {
 
 // @param reach_px  Edges this near are on the outline.
 void EllipseVerifier::measure(const GradientMap& map,
-                              int samples,
+                              std::size_t samples,
                               double reach_px,
                               MeasuredEllipse& measured) {
   const Ellipse& e = measured.ellipse;
   const int tolerance_px = static_cast<int>(std::lround(std::max(reach_px, deformation_px(e))));
-  const PerimeterEvidence found = probe_.probe(map, e, measured.polarity, samples, tolerance_px);
-  const std::span<const EdgeHit> hits = probe_.hits();
-  double turn = 0.0;
-  double turn_on_outline = 0.0;
-  double squares = 0.0;
-  double length = 0.0;
-  values_.clear();
-  for (const EdgeHit& hit : hits) {
-    const double distance = hit.offset.distance_px;
-    turn += turn_of(hit);
-    squares += hit.weight * distance * distance;
-    length += hit.weight;
-    if (std::abs(distance) > reach_px) continue;
-    turn_on_outline += turn_of(hit);
-    values_.push_back(std::abs(hit.direction_error_rad));
+  const OutlineSupport found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
+  const std::span<const EdgeMeasurement> edges = measurer_.edges();
+  Sums sums;
+  direction_errors_.clear();
+  for (const EdgeMeasurement& edge : edges) {
+    sums.add(edge, reach_px);
+    if (!is_on_outline(edge, reach_px)) continue;
+    direction_errors_.push_back(std::abs(edge.direction_error_rad));
   }
   measured.inside_fraction = found.inside_fraction;
   measured.support = found.support;
-  measured.on_ellipse = found.support > 0.0 ? std::min(1.0, found.levels[2] / found.support) : 0.0;
+  measured.on_ellipse = sums.length > 0.0 ? sums.length_on_ellipse / sums.length : 0.0;
   const auto set = [&](Feature feature, double value) {
     measured.features[static_cast<std::size_t>(feature)] = value;
   };
   const double radius = radius_of(e);
-  const double deviation = length > 0.0 ? std::sqrt(squares / length) / radius : 1.0;
-  const double turn_support = turn > 0.0 ? found.turn_support * turn_on_outline / turn : 0.0;
-  const double longest = hits.empty() ? 1.0 : longest_gap(hits, samples);
+  const double turn_support = found.turn_support * sums.share_of_turn();
+  const double error = direction_errors_.empty() ? 0.5 : median(direction_errors_);
+  const double signal_to_noise = sums.contrast / (double(edges.size()) * map.noise() + 1e-9);
   set(Feature::kTurnSupport, turn_support);
-  set(Feature::kDirectionError, std::log(0.01 + (values_.empty() ? 0.5 : median(values_))));
-  set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest)));
+  set(Feature::kDirectionError, std::log(0.01 + error));
+  set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest_gap(edges, samples))));
   set(Feature::kLength, std::log1p(found.inside_px));
-  set(Feature::kDeviation, std::log(0.002 + std::min(1.0, deviation)));
+  set(Feature::kDeviation, std::log(0.002 + std::min(1.0, sums.rms_px() / radius)));
   set(Feature::kRadius, std::log(radius));
-  set(Feature::kContrast, std::log(std::clamp(found.signal_to_noise, 1.0, 100.0)));
+  set(Feature::kContrast, std::log(std::clamp(signal_to_noise, 1.0, 100.0)));
   set(Feature::kStraight, 0.0);
 }
 
@@ -214,7 +249,7 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   Verdict verdict = approach(map, thresholds, table, measured);
   if (!verdict.is_accepted()) return verdict;
   measure(map, samples_for(measured.ellipse), kOnOutlinePx, measured);
-  if (probe_.hits().size() < kMinHits) return {Reason::kTooFewEdges};
+  if (measurer_.edges().size() < static_cast<std::size_t>(kMinEdges)) return {Reason::kTooFewEdges};
   measured.features[static_cast<std::size_t>(Feature::kStraight)] = straight_share();
   measured.probability = table.probability(measured.features);
   verdict = at_least(Reason::kUnlikely, measured.probability, thresholds.min_probability);

@@ -1,11 +1,12 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <optional>
 #include <vector>
 
 #include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/gradient_map.hpp"
-#include "core/edges/perimeter.hpp"
 #include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
@@ -33,11 +34,6 @@ class EllipseVerifier {
                                            const GradientMap& map,
                                            const Thresholds& thresholds);
 
-  /// A quick look: whether enough edges are near the guess.
-  [[nodiscard]] static Verdict judge_promise(const GradientMap& map,
-                                             const Ellipse& guess,
-                                             Polarity polarity);
-
   /// @param measured      Written where edges were found along the outline.
   /// @return Why it is rejected.
   [[nodiscard]] Verdict verify(const GradientMap& map,
@@ -55,11 +51,19 @@ class EllipseVerifier {
                                  const Thresholds& thresholds,
                                  const EvidenceTable& table,
                                  MeasuredEllipse& measured);
-  void measure(const GradientMap& map, int samples, double reach_px, MeasuredEllipse& measured);
+  [[nodiscard]] Verdict judge_prospect(double max_growth,
+                                       const Thresholds& thresholds,
+                                       const EvidenceTable& table,
+                                       const MeasuredEllipse& measured) const;
+  [[nodiscard]] std::optional<Ellipse> nearer_to_edges(const Ellipse& e, double reach_px) const;
+  void measure(const GradientMap& map,
+               std::size_t samples,
+               double reach_px,
+               MeasuredEllipse& measured);
   [[nodiscard]] double straight_share();
 
-  PerimeterProbe probe_;
-  std::vector<double> values_;
+  EdgeMeasurer measurer_;
+  std::vector<double> direction_errors_;
   std::vector<double> angles_;
 };
 

@@ -31,7 +31,7 @@ void RingCorrector::correct(const ImageView& luma,
     const Ellipse& maximum = maxima_[i];
     if (maximum.semi_minor > kMaxPx) continue;
     const auto edge =
-        refined_on_picture(luma, maximum, polarities[i], min_gradient, kMaxRefinementSamples, lens);
+        refined_on_picture(luma, maximum, polarities[i], min_gradient, kRefinementSamples, lens);
     const auto next = edge ? next_edge(luma, min_gradient, polarities, lens, i) : std::nullopt;
     if (!next || next->support < kMinSupport) continue;
     if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
@@ -51,7 +51,7 @@ std::optional<RefinedEllipse> RingCorrector::next_edge(const ImageView& luma,
   const Ellipse& edge = maxima_[i];
   const Polarity other = opposite(polarities[i]);
   const auto look_at = [&](const Ellipse& guess) {
-    return refined_on_picture(luma, guess, other, min_gradient, kMaxRefinementSamples, lens);
+    return refined_on_picture(luma, guess, other, min_gradient, kRefinementSamples, lens);
   };
   const Ellipse* closest = nullptr;
   for (std::size_t k = 0; k < maxima_.size(); ++k) {

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinContrast = 0.3;     // of the expected one
 constexpr double kMaximumOfStep = 48.0;  // of GradientMap's gradient, per grey level
 constexpr double kMinSupport = 0.5;      // share of the perimeter with a gradient maximum
-constexpr int kPlaces = 48;              // half of what the detector takes: each frame pays
+constexpr std::size_t kSamples = 48;     // half of what the detector takes: each frame pays
 constexpr double kThinRingPx = 6.0;
 constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
 constexpr double kReachOfNextEdgePx = 2.0;  // its blur
@@ -45,7 +45,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        *predicted,
                                        polarity_of(circle.is_bright_outside),
                                        kMaximumOfStep * min_contrast,
-                                       kPlaces,
+                                       kSamples,
                                        view.lens);
   if (!edge || edge->support < kMinSupport) return std::nullopt;
   return FittedEllipse{edge->ellipse, edge->uncertainty};

@@ -10,9 +10,9 @@
 
 #include "core/detection/arcs/arcs.hpp"
 #include "core/edges/chains.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/edge_refinement.hpp"
 #include "core/edges/gradient_map.hpp"
-#include "core/edges/perimeter.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/scene/random.hpp"
 #include "tests/support/picture.hpp"
@@ -23,7 +23,6 @@ namespace {
 using support::Picture;
 using support::plain_ring;
 using support::rendered;
-
 
 Picture random_picture(int width, int height, std::uint64_t seed) {
   Picture picture(width, height);
@@ -252,25 +251,24 @@ TEST(MomentFit, AddsMomentsAndTellsTheResidual) {
   EXPECT_NEAR(fit->rms_px, 0.5, 0.06);  // a standard deviation of .5 along the radius
 }
 
-TEST(PerimeterProbe, CountsWhatIsThereAndOnTheRightSide) {
+TEST(EdgeMeasurer, CountsWhatIsThereAndOnTheRightSide) {
   const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
   const Traced traced(rendered(disc(), e, 200, 160));
-  PerimeterProbe probe;
-  const PerimeterEvidence found = probe.probe(traced.map, e, Polarity::kDarkInside, 128, 2);
+  EdgeMeasurer measurer;
+  const OutlineSupport found = measurer.measure(traced.map, e, Polarity::kDarkInside, 128, 2);
   EXPECT_GT(found.support, 0.99);
   EXPECT_GT(found.turn_support, 0.99);
   EXPECT_EQ(found.inside_fraction, 1.0);
-  EXPECT_GT(found.levels[0], 0.95);
-  EXPECT_EQ(probe.probe(traced.map, e, Polarity::kBrightInside, 128, 2).support, 0.0);
+  EXPECT_EQ(measurer.measure(traced.map, e, Polarity::kBrightInside, 128, 2).support, 0.0);
   const Ellipse other = translated(e, 0.0, 9.0);
-  EXPECT_LT(probe.probe(traced.map, other, Polarity::kDarkInside, 128, 2).support, 0.3);
+  EXPECT_LT(measurer.measure(traced.map, other, Polarity::kDarkInside, 128, 2).support, 0.3);
 }
 
-TEST(PerimeterProbe, CountsInsideThePictureOnly) {
+TEST(EdgeMeasurer, CountsInsideThePictureOnly) {
   const Ellipse e{0.0, 80.0, 50.0, 40.0, 0.0};
   const Traced traced(rendered(disc(), e, 200, 160));
-  PerimeterProbe probe;
-  const PerimeterEvidence found = probe.probe(traced.map, e, Polarity::kDarkInside, 128, 2);
+  EdgeMeasurer measurer;
+  const OutlineSupport found = measurer.measure(traced.map, e, Polarity::kDarkInside, 128, 2);
   EXPECT_NEAR(found.inside_fraction, 0.46, 0.05);
   EXPECT_GT(found.support, 0.95);
 }

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/edge_measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ellipse {
+namespace {
+
+constexpr float kMinSquaredCosine = 0.75F;  // 30 degrees
+constexpr int kReachOnPicture = 2;          // pixels to both sides
+constexpr float kVertexError = 0.017F;      // of an edge in focus without noise [px]
+constexpr auto kShift = static_cast<float>(kMaximumShift);
+
+// A gradient maximum beside a sample, on the row or column of pixels that is closest to the normal.
+struct FoundMaximum {
+  Eigen::Vector2f gradient;
+  float along_px;  // from the sample's pixel
+  float sharpness;
+};
+
+// Whether a gradient points along a direction.
+bool agrees(const Gradient& g, const Eigen::Vector2f& direction) {
+  const float gx = g.x;
+  const float gy = g.y;
+  const float along = gx * direction.x() + gy * direction.y();
+  return along > 0.0F && along * along >= kMinSquaredCosine * (gx * gx + gy * gy);
+}
+
+// @param offset  Of the maximum's pixel from the sample's.
+FoundMaximum maximum_at(const Gradient* here, std::ptrdiff_t step, std::ptrdiff_t offset) {
+  const SubpixelMaximum vertex = subpixel_maximum(here, static_cast<int>(step));
+  return {{here->x, here->y}, static_cast<float>(offset) + vertex.offset_px, vertex.sharpness};
+}
+
+// The variance of a parabola's vertex -b / 2c, with b = h(1) - h(-1) and c = h(-1) - 2 h(0) + h(1)
+// of values that share noise, is (var b / 4 + offset^2 var c) / c^2 by propagation of errors. The
+// kernels of GradientMap correlate neighbours by .4 along their difference and .8 along their
+// smoothing, and the next but one by -.4 and .4. Offsets within a pixel have a mean square of 1/12.
+// A noisy maximum is picked where noise makes it sharper: by var c in the square.
+float vertex_variance(float noise, float cosine, float curvature) {
+  const float along = cosine * cosine;
+  const float var_c = 0.4F + 1.6F * along;
+  const float variance = 0.3F + 0.4F * along + var_c / 12.0F;
+  const float squared = curvature * curvature - noise * noise * var_c;
+  return along * noise * noise * variance / std::max(1e-9F, squared);
+}
+
+EdgeMeasurement measured(const OutlineSamples& outline,
+                         std::size_t k,
+                         float sign,
+                         const FoundMaximum& maximum) {
+  const Eigen::Vector2f normal = outline.normal(k);
+  Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
+  const int axis = outline.is_flat(k) ? 0 : 1;
+  from_sample[axis] += maximum.along_px;
+  const auto [gx, gy] = std::pair(maximum.gradient.x(), maximum.gradient.y());
+  const float contrast = std::sqrt(gx * gx + gy * gy);
+  const float sine = sign * (gy * normal.x() - gx * normal.y()) / contrast;
+  // Beside its foot the outline falls back behind its tangent.
+  const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
+  const float curvature = outline.curvature(k);
+  const float distance = from_sample.dot(normal) + curvature * (0.5F * aside * aside + kShift);
+  return {static_cast<int>(k),
+          outline.point(k) + from_sample + kShift * curvature * normal,
+          normal,
+          {outline.anomaly(k), outline.px_per_unit(k), distance},
+          0.0F,
+          sine * (1.0F + sine * sine / 6.0F),  // below 30 degrees within .003
+          contrast,
+          outline.length_px(k),
+          outline.px_per_ideal(k)};
+}
+
+// The rectangle of pixels around whose places a search has room, from an outline's origin.
+class Room {
+ public:
+  Room(int width, int height, int margin, const Eigen::Vector2i& origin)
+      : left_(margin - origin.x()),
+        top_(margin - origin.y()),
+        width_(static_cast<unsigned>(std::max(0, width - 2 * margin))),
+        height_(static_cast<unsigned>(std::max(0, height - 2 * margin))) {}
+
+  [[nodiscard]] bool has(const Eigen::Vector2i& pixel) const {
+    return static_cast<unsigned>(pixel.x() - left_) < width_ &&
+           static_cast<unsigned>(pixel.y() - top_) < height_;
+  }
+
+ private:
+  int left_;
+  int top_;
+  unsigned width_;
+  unsigned height_;
+};
+
+// Looks in a map for the nearest chained gradient maximum, first on one side, then on the other.
+class MapSearch {
+ public:
+  MapSearch(const GradientMap& map, const Eigen::Vector2i& origin, int reach)
+      : room(map.width(), map.height(), GradientMap::kBorder + reach, origin),
+        noise(static_cast<float>(map.noise())),
+        reach_px(reach),
+        maxima_(map.maxima()),
+        gradients_(map.gradients()),
+        stride_(map.stride()),
+        origin_(origin.y() * map.stride() + origin.x()) {}
+
+  [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
+                                                 bool is_flat,
+                                                 const Eigen::Vector2f& to_bright) const {
+    const std::ptrdiff_t step = is_flat ? 1 : stride_;
+    const std::ptrdiff_t at = origin_ + std::ptrdiff_t(pixel.y()) * stride_ + pixel.x();
+    for (std::ptrdiff_t k = 0; k <= 2 * reach_px; ++k) {
+      const std::ptrdiff_t offset = (k & 1) != 0 ? (k + 1) / 2 : -(k / 2);
+      const std::ptrdiff_t beside = at + offset * step;
+      if ((maxima_[beside] & maximum::kChained) == 0) continue;
+      if (agrees(gradients_[beside], to_bright))
+        return maximum_at(gradients_ + beside, step, offset);
+    }
+    return std::nullopt;
+  }
+
+  Room room;
+  float noise;
+  int reach_px;
+
+ private:
+  const std::uint8_t* maxima_;
+  const Gradient* gradients_;
+  std::ptrdiff_t stride_;
+  std::ptrdiff_t origin_;
+};
+
+// Looks on the picture for the highest gradient maximum.
+class PictureSearch {
+ public:
+  PictureSearch(const ImageView& luma, const Eigen::Vector2i& origin, double min_gradient)
+      : room(luma.width, luma.height, kReachOnPicture + 1 + GradientMap::kBorder, origin),
+        luma_(luma),
+        origin_(origin),
+        min_gradient_(static_cast<float>(min_gradient)) {}
+
+  [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
+                                                 bool is_flat,
+                                                 const Eigen::Vector2f& to_bright) const {
+    constexpr int kFirst = -kReachOnPicture - 1;
+    const int x = pixel.x() + origin_.x() + (is_flat ? kFirst : 0);
+    const int y = pixel.y() + origin_.y() + (is_flat ? 0 : kFirst);
+    std::array<Gradient, 2 * kReachOnPicture + 3> line;
+    gradients_along(luma_, x, y, is_flat, line);
+    const auto height_of = [&](const Gradient& g) {
+      return static_cast<float>(g.x) * to_bright.x() + static_cast<float>(g.y) * to_bright.y();
+    };
+    const auto top = std::max_element(
+        line.begin() + 1, line.end() - 1, [&](const Gradient& a, const Gradient& b) {
+          return height_of(a) < height_of(b);
+        });
+    if (height_of(*top) < min_gradient_ || !agrees(*top, to_bright)) return std::nullopt;
+    const FoundMaximum found = maximum_at(&*top, 1, (top - line.begin()) + kFirst);
+    return found.sharpness > 0.0F ? std::optional(found) : std::nullopt;
+  }
+
+  Room room;
+  float noise = 0.0F;
+  int reach_px = kReachOnPicture;
+
+ private:
+  ImageView luma_;
+  Eigen::Vector2i origin_;
+  float min_gradient_;
+};
+
+}  // namespace
+
+// One outline is as sharp all around: the mean tells better than the noisy curvature of each edge.
+// No edge lies beyond the reach, so that even a chance one has a standard deviation.
+void EdgeMeasurer::tell_sigmas(float noise, float sharpness, float reach_px) {
+  const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
+  for (std::size_t i = 0; i < count_; ++i) {
+    EdgeMeasurement& edge = edges_[i];
+    const float cosine = edge.normal.lpNorm<Eigen::Infinity>();
+    const float variance = vertex_variance(noise, cosine, edge.contrast * sharpness);
+    edge.sigma_px = std::sqrt(std::min(of_chance, variance + kVertexError * kVertexError));
+  }
+}
+
+template <class Search>
+OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
+                                           Polarity polarity,
+                                           const Search& search) {
+  const auto sign = static_cast<float>(polarity);  // dark inside: the gradient points outwards
+  count_ = 0;
+  origin_ = outline.origin().cast<double>();
+  float total = 0.0F;
+  float inside = 0.0F;
+  float inside_turn = 0.0F;
+  float matched = 0.0F;
+  float matched_turn = 0.0F;
+  float sharpness = 0.0F;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const float length = outline.length_px(k);
+    total += length;
+    const Eigen::Vector2i pixel = outline.nearest(k);
+    if (!search.room.has(pixel)) continue;
+    inside += length;
+    inside_turn += outline.turn(k);
+    const auto maximum = search.find(pixel, outline.is_flat(k), sign * outline.normal(k));
+    if (!maximum) continue;
+    matched += length;
+    matched_turn += outline.turn(k);
+    edges_[count_++] = measured(outline, k, sign, *maximum);
+    sharpness += maximum->sharpness;
+  }
+  if (!(inside > 0.0F)) return {};
+  const auto edges = static_cast<float>(std::max<std::size_t>(1, count_));
+  tell_sigmas(search.noise, sharpness / edges, static_cast<float>(search.reach_px));
+  return {inside, inside / total, matched / inside, matched_turn / inside_turn};
+}
+
+OutlineSupport EdgeMeasurer::measure(const GradientMap& map,
+                                     const Ellipse& e,
+                                     Polarity polarity,
+                                     std::size_t samples,
+                                     int reach_px) {
+  const OutlineSamples outline(e, samples, map.lens());
+  return measure_along(outline, polarity, MapSearch(map, outline.origin(), reach_px));
+}
+
+OutlineSupport EdgeMeasurer::measure(const ImageView& luma,
+                                     const LensView& lens,
+                                     const Ellipse& e,
+                                     Polarity polarity,
+                                     std::size_t samples,
+                                     double min_gradient) {
+  const OutlineSamples outline(e, samples, lens);
+  return measure_along(outline, polarity, PictureSearch(luma, outline.origin(), min_gradient));
+}
+
+}  // namespace ellipse

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/edge_measurement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/edges/chains.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+using support::Picture;
+using support::plain_ring;
+using support::rendered;
+
+constexpr Ellipse kTruth{160.3, 120.6, 90.0, 65.0, 0.3};
+
+Picture picture_of_disc(double blur_px, double noise, std::uint64_t seed) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  scene.pad.paint_level = 60.0;
+  scene.ground.level = 160.0;
+  scene.sensor.blur_px = blur_px;
+  scene.sensor.read_noise = noise;
+  scene.seed = seed;
+  return rendered(scene, kTruth, 320, 240);
+}
+
+// RMS of the errors over their standard deviations, around a disc.
+double errors_over_sigma(double blur_px, double noise) {
+  double squares = 0.0;
+  double count = 0.0;
+  EdgeMeasurer measurer;
+  GradientMap map;
+  ChainTracer chains;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Picture picture = picture_of_disc(blur_px, noise, seed);
+    map.compute(picture.view());
+    chains.trace(map);
+    (void)measurer.measure(map, kTruth, Polarity::kDarkInside, 256, 2);
+    for (const EdgeMeasurement& edge : measurer.edges()) {
+      const double error = edge.offset.distance_px / edge.sigma_px;
+      squares += error * error;
+      count += 1.0;
+    }
+  }
+  EXPECT_GT(count, 8 * 200.0) << blur_px << ' ' << noise;
+  return std::sqrt(squares / count);
+}
+
+TEST(EdgeMeasurer, TellsItsStandardDeviation) {
+  for (const double noise : {1.0, 2.0, 4.0, 8.0, 14.0}) {
+    for (const double blur : {0.6, 1.0, 1.5}) {
+      EXPECT_NEAR(errors_over_sigma(blur, noise), 1.01, 0.11) << blur << ' ' << noise;
+    }
+    // Edges so soft that noise makes several maxima of one.
+    EXPECT_NEAR(errors_over_sigma(2.5, noise), noise < 8.0 ? 1.0 : 1.2, 0.12) << noise;
+  }
+}
+
+}  // namespace
+}  // namespace ellipse
