@@ -55,9 +55,10 @@ EdgeMeasurement measured(const OutlineSamples& outline,
   Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
   const int axis = outline.is_flat(k) ? 0 : 1;
   from_sample[axis] += maximum.along_px;
-  const auto [gx, gy] = std::pair(maximum.gradient.x(), maximum.gradient.y());
-  const float contrast = std::sqrt(gx * gx + gy * gy);
-  const float sine = sign * (gy * normal.x() - gx * normal.y()) / contrast;
+  const Eigen::Vector2f& gradient = maximum.gradient;
+  const float contrast = gradient.norm();
+  const float across = gradient.y() * normal.x() - gradient.x() * normal.y();
+  const float sine = sign * across / contrast;
   // Beside its foot the outline falls back behind its tangent.
   const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
   const float curvature = outline.curvature(k);
@@ -97,39 +98,37 @@ class Room {
 // Looks in a map for the nearest chained gradient maximum, first on one side, then on the other.
 class MapSearch {
  public:
-  MapSearch(const GradientMap& map, const Eigen::Vector2i& origin, int reach)
-      : room(map.width(), map.height(), GradientMap::kBorder + reach, origin),
-        noise(static_cast<float>(map.noise())),
-        reach_px(reach),
+  MapSearch(const GradientMap& map, const Eigen::Vector2i& origin, int reach_px)
+      : room(map.width(), map.height(), GradientMap::kBorder + reach_px, origin),
         maxima_(map.maxima()),
         gradients_(map.gradients()),
         stride_(map.stride()),
-        origin_(origin.y() * map.stride() + origin.x()) {}
+        origin_(origin.y() * map.stride() + origin.x()),
+        reach_(reach_px) {}
 
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
                                                  bool is_flat,
                                                  const Eigen::Vector2f& to_bright) const {
     const std::ptrdiff_t step = is_flat ? 1 : stride_;
     const std::ptrdiff_t at = origin_ + std::ptrdiff_t(pixel.y()) * stride_ + pixel.x();
-    for (std::ptrdiff_t k = 0; k <= 2 * reach_px; ++k) {
+    for (std::ptrdiff_t k = 0; k <= 2 * reach_; ++k) {
       const std::ptrdiff_t offset = (k & 1) != 0 ? (k + 1) / 2 : -(k / 2);
       const std::ptrdiff_t beside = at + offset * step;
       if ((maxima_[beside] & maximum::kChained) == 0) continue;
-      if (agrees(gradients_[beside], to_bright))
-        return maximum_at(gradients_ + beside, step, offset);
+      if (!agrees(gradients_[beside], to_bright)) continue;
+      return maximum_at(gradients_ + beside, step, offset);
     }
     return std::nullopt;
   }
 
   Room room;
-  float noise;
-  int reach_px;
 
  private:
   const std::uint8_t* maxima_;
   const Gradient* gradients_;
   std::ptrdiff_t stride_;
   std::ptrdiff_t origin_;
+  std::ptrdiff_t reach_;
 };
 
 // Looks on the picture for the highest gradient maximum.
@@ -162,8 +161,6 @@ class PictureSearch {
   }
 
   Room room;
-  float noise = 0.0F;
-  int reach_px = kReachOnPicture;
 
  private:
   ImageView luma_;
@@ -175,12 +172,12 @@ class PictureSearch {
 
 // One outline is as sharp all around: the mean tells better than the noisy curvature of each edge.
 // No edge lies beyond the reach, so that even a chance one has a standard deviation.
-void EdgeMeasurer::tell_sigmas(float noise, float sharpness, float reach_px) {
+void EdgeMeasurer::tell_sigmas(float noise, float reach_px) {
   const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
     const float cosine = edge.normal.lpNorm<Eigen::Infinity>();
-    const float variance = vertex_variance(noise, cosine, edge.contrast * sharpness);
+    const float variance = vertex_variance(noise, cosine, edge.contrast * mean_sharpness_);
     edge.sigma_px = std::sqrt(std::min(of_chance, variance + kVertexError * kVertexError));
   }
 }
@@ -197,7 +194,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
   float inside_turn = 0.0F;
   float matched = 0.0F;
   float matched_turn = 0.0F;
-  float sharpness = 0.0F;
+  float sharpness = 0.0F;  // sum
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const float length = outline.length_px(k);
     total += length;
@@ -213,8 +210,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     sharpness += maximum->sharpness;
   }
   if (!(inside > 0.0F)) return {};
-  const auto edges = static_cast<float>(std::max<std::size_t>(1, count_));
-  tell_sigmas(search.noise, sharpness / edges, static_cast<float>(search.reach_px));
+  mean_sharpness_ = sharpness / static_cast<float>(std::max<std::size_t>(1, count_));
   return {inside, inside / total, matched / inside, matched_turn / inside_turn};
 }
 
@@ -224,7 +220,10 @@ OutlineSupport EdgeMeasurer::measure(const GradientMap& map,
                                      std::size_t samples,
                                      int reach_px) {
   const OutlineSamples outline(e, samples, map.lens());
-  return measure_along(outline, polarity, MapSearch(map, outline.origin(), reach_px));
+  const MapSearch search(map, outline.origin(), reach_px);
+  const OutlineSupport support = measure_along(outline, polarity, search);
+  tell_sigmas(static_cast<float>(map.noise()), static_cast<float>(reach_px));
+  return support;
 }
 
 OutlineSupport EdgeMeasurer::measure(const ImageView& luma,

@@ -20,7 +20,7 @@ struct EdgeMeasurement {
   Eigen::Vector2f point;             ///< The edge itself, from the outline's origin [px].
   Eigen::Vector2f normal;            ///< Of the outline there, outwards.
   PerimeterOffset offset;            ///< Of the edge; the anomaly is the sample's.
-  float sigma_px = 0.0F;             ///< Standard deviation of the offset.
+  float sigma_px = 0.0F;             ///< Standard deviation of the offset; 0 where not told.
   float direction_error_rad = 0.0F;  ///< From the normal to the gradient.
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
   float length_px = 0.0F;            ///< Of the outline that it stands for.
@@ -68,7 +68,7 @@ class EdgeMeasurer {
   [[nodiscard]] Eigen::Vector2d origin() const { return origin_; }
 
  private:
-  void tell_sigmas(float noise, float sharpness, float reach_px);
+  void tell_sigmas(float noise, float reach_px);
   template <class Search>
   OutlineSupport measure_along(const OutlineSamples& outline,
                                Polarity polarity,
@@ -76,6 +76,7 @@ class EdgeMeasurer {
 
   std::array<EdgeMeasurement, OutlineSamples::kMaxSamples> edges_;
   std::size_t count_ = 0;
+  float mean_sharpness_ = 0.0F;  // of the last call, see SubpixelMaximum
   Eigen::Vector2d origin_{0.0, 0.0};
 };
 
