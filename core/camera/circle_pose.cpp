@@ -63,6 +63,33 @@ struct InnerMisfit {
   int degrees = 0;
 };
 
+// An inner edge beside what a solution predicts for the radius that fits it best.
+struct RadiusFit {
+  RingChange residual;
+  RingMatrix weights;  // of the four parameters that are left
+};
+
+std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
+                                    const Matrix3d& view,
+                                    const RingChange& measured,
+                                    const RingMatrix& information,
+                                    double radius) {
+  constexpr double kStep = 1e-3;  // of the radius, for its derivative
+  constexpr int kSteps = 2;
+  RadiusFit fit;
+  for (int step = 0; step <= kSteps; ++step) {
+    const auto here = ring_change(view, project_circle(predicted, radius));
+    const auto there = ring_change(view, project_circle(predicted, (1.0 + kStep) * radius));
+    if (!here || !there) return std::nullopt;
+    const RingChange by_radius = (*there - *here) / kStep;
+    fit.residual = measured - *here;
+    const RingChange weighted = information * by_radius;
+    radius *= 1.0 + std::clamp(weighted.dot(fit.residual) / weighted.dot(by_radius), -0.5, 0.5);
+    fit.weights = information - weighted * weighted.transpose() / weighted.dot(by_radius);
+  }
+  return fit;
+}
+
 // Compares one inner edge with what both solutions predict for a circle of its radius, which is
 // fitted: four of its five parameters are left to tell the solutions apart.
 void add_misfit(const Camera& camera,
@@ -84,28 +111,15 @@ void add_misfit(const Camera& camera,
   const RingMatrix information = covariance.inverse();
 
   const double ratio = size_px / std::sqrt(outer_ellipse->semi_major * outer_ellipse->semi_minor);
-  std::array<RingChange, 2> residuals;
-  RingMatrix weights = information;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    constexpr double kStep = 1e-3;  // of the radius, for its derivative
-    constexpr int kSteps = 2;
-    const Matrix3d predicted = image_from_pad(camera, poses[k]);
-    double radius = ratio;
-    for (int step = 0; step <= kSteps; ++step) {
-      const auto here = ring_change(view, project_circle(predicted, radius));
-      const auto there = ring_change(view, project_circle(predicted, (1.0 + kStep) * radius));
-      if (!here || !there) return;
-      const RingChange by_radius = (*there - *here) / kStep;
-      residuals[k] = *measured - *here;
-      const RingChange weighted = information * by_radius;
-      radius *= 1.0 + std::clamp(weighted.dot(residuals[k]) / weighted.dot(by_radius), -0.5, 0.5);
-      weights = information - weighted * weighted.transpose() / weighted.dot(by_radius);
-    }
-  }
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    misfit.chi_squared[k] += residuals[k].dot(weights * residuals[k]);
-  }
-  const RingChange apart = residuals[1] - residuals[0];
+  const auto first =
+      fit_radius(image_from_pad(camera, poses[0]), view, *measured, information, ratio);
+  const auto second =
+      fit_radius(image_from_pad(camera, poses[1]), view, *measured, information, ratio);
+  if (!first || !second) return;
+  const RingMatrix& weights = second->weights;
+  misfit.chi_squared[0] += first->residual.dot(weights * first->residual);
+  misfit.chi_squared[1] += second->residual.dot(weights * second->residual);
+  const RingChange apart = second->residual - first->residual;
   misfit.separation += apart.dot(weights * apart);
   misfit.degrees += 4;
 }

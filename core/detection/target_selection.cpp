@@ -9,32 +9,13 @@
 namespace ellipse {
 namespace {
 
-// A circle's centre and its ring's centres part under perspective, and small fits are uncertain.
-constexpr double kConcentricRelative = 0.1;
-constexpr double kConcentricPx = 2.0;
-constexpr double kFlatnessTolerance = 0.15;
-
 // Two fits to one edge, from its two sides, differ by less than this.
-constexpr double kSameEdgeRelative = 0.01;
-constexpr double kSameEdgePx = 1.5;
+constexpr Tolerance kOneEdge{1.5, 0.01};
 
 // From frame to frame.
 constexpr double kMaxGrowth = 2.0;
 
 constexpr double kMinShareOfBestScore = 0.25;
-
-bool are_concentric(const Ellipse& a, const Ellipse& b) {
-  const double largest = std::max(a.semi_major, b.semi_major);
-  const double apart = (a.center() - b.center()).norm();
-  const double flatness = std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major);
-  return apart <= kConcentricRelative * largest + kConcentricPx && flatness <= kFlatnessTolerance;
-}
-
-bool are_one_edge(const Ellipse& a, const Ellipse& b) {
-  const double tolerance = kSameEdgePx + kSameEdgeRelative * a.semi_major;
-  return std::abs(a.semi_major - b.semi_major) <= tolerance &&
-         std::abs(a.semi_minor - b.semi_minor) <= tolerance;
-}
 
 Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
   const double apart = (candidate.center() - last.center()).norm();
@@ -50,7 +31,7 @@ Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
 // Beside another member of the same set, both with enough of the set's best score: only the better
 // one is accepted.
 Verdict judge_beside(const Detection& member, const Detection& other) {
-  const bool is_edge = are_one_edge(member.ellipse, other.ellipse);
+  const bool is_edge = is_same(other.ellipse, member.ellipse, kOneEdge);
   const double own = is_edge ? member.score : 2.0 * member.ellipse.semi_major;
   const double others = is_edge ? other.score : 2.0 * other.ellipse.semi_major;
   if (own > others) return {};
@@ -72,7 +53,7 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
   ConcentricSet set;
   for (const Detection& other : detections) {
     if (!are_concentric(ellipse, other.ellipse)) continue;
-    set.has_two_edges = set.has_two_edges || !are_one_edge(ellipse, other.ellipse);
+    set.has_two_edges = set.has_two_edges || !is_same(other.ellipse, ellipse, kOneEdge);
     set.probability = std::max(set.probability, other.probability);
     set.score += other.score;
     set.best_score = std::max(set.best_score, other.score);
@@ -80,21 +61,26 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
   return set;
 }
 
-std::optional<Detection> select_target(std::span<const Detection> detections,
-                                       const std::optional<Ellipse>& last_target,
-                                       DetectionTrace* trace) {
-  const auto reject = [&](const Detection& detection, const Verdict& verdict) {
-    if (trace != nullptr) trace->revise(detection.candidate, verdict);
-  };
-  const auto judge_place = [&](const Detection& detection) {
-    return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
-  };
+namespace {
+
+Verdict judge_place(const Detection& detection, const std::optional<Ellipse>& last_target) {
+  return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
+}
+
+void reject(const Detection& detection, const Verdict& verdict, DetectionTrace* trace) {
+  if (trace != nullptr) trace->revise(detection.candidate, verdict);
+}
+
+// The first member of the best set; nullptr where nothing is in the right place.
+const Detection* seed_of_best_set(std::span<const Detection> detections,
+                                  const std::optional<Ellipse>& last_target,
+                                  DetectionTrace* trace) {
   const Detection* seed = nullptr;
   ConcentricSet best;
   for (const Detection& detection : detections) {
-    const Verdict place = judge_place(detection);
+    const Verdict place = judge_place(detection, last_target);
     if (!place.is_accepted()) {
-      reject(detection, place);
+      reject(detection, place, trace);
       continue;
     }
     const ConcentricSet set = set_around(detection.ellipse, detections);
@@ -103,23 +89,32 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
       best = set;
     }
   }
-  if (seed == nullptr) return std::nullopt;
+  return seed;
+}
 
+}  // namespace
+
+std::optional<Detection> select_target(std::span<const Detection> detections,
+                                       const std::optional<Ellipse>& last_target,
+                                       DetectionTrace* trace) {
+  const Detection* seed = seed_of_best_set(detections, last_target, trace);
+  if (seed == nullptr) return std::nullopt;
+  const ConcentricSet best = set_around(seed->ellipse, detections);
   const Detection* target = nullptr;
   for (const Detection& member : detections) {
-    if (!judge_place(member).is_accepted()) continue;
+    if (!judge_place(member, last_target).is_accepted()) continue;
     if (!are_concentric(seed->ellipse, member.ellipse)) {
-      if (trace != nullptr) reject(member, judge_set(set_around(member.ellipse, detections), best));
+      reject(member, judge_set(set_around(member.ellipse, detections), best), trace);
       continue;
     }
     const double least = kMinShareOfBestScore * best.best_score;
     Verdict verdict = at_least(Reason::kWeakInSet, member.score, least);
     if (verdict.is_accepted() && target != nullptr) verdict = judge_beside(member, *target);
     if (verdict.is_accepted()) {
-      if (target != nullptr) reject(*target, judge_beside(*target, member));
+      if (target != nullptr) reject(*target, judge_beside(*target, member), trace);
       target = &member;
     } else {
-      reject(member, verdict);
+      reject(member, verdict, trace);
     }
   }
   if (target == nullptr) target = seed;

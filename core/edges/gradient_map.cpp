@@ -84,6 +84,20 @@ struct Levels {
   Int high;
 };
 
+// The direction of a gradient in eighths of a turn. `is_flat`: -1 where it lies along the row.
+ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_flat) {
+  const Int larger = ax > ay ? ax : ay;
+  const Int smaller = ax > ay ? ay : ax;
+  // tan(22.5 degrees) = 0.414; 1/2 - 1/16 - 1/64 = 0.422
+  const Int diagonal = static_cast<Int>((larger >> 1) - (larger >> 4) - (larger >> 6));
+  const Int is_diagonal = static_cast<Int>(smaller > diagonal ? -1 : 0);
+  const Int is_left = static_cast<Int>(gx < 0 ? -1 : 0);
+  const Int is_down = static_cast<Int>(gy > 0 ? -1 : 0);
+  const Int slanted = static_cast<Int>(((is_left & 6) ^ (is_down & 2)) + 1);
+  const Int straight = static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
+  return static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
+}
+
 // Also lists the blocks that have gradient maxima, as distances from the first pixel; returns how
 // many.
 ELLIPSE_INLINE int mark_maxima_body(
@@ -111,17 +125,7 @@ ELLIPSE_INLINE int mark_maxima_body(
       const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient lies along the row
       const Int before = static_cast<Int>((m[i - 1] & is_flat) | (up[i] & ~is_flat));
       const Int after = static_cast<Int>((m[i + 1] & is_flat) | (down[i] & ~is_flat));
-      const Int larger = ax > ay ? ax : ay;
-      const Int smaller = ax > ay ? ay : ax;
-      // tan(22.5 degrees) = 0.414; 1/2 - 1/16 - 1/64 = 0.422
-      const Int diagonal = static_cast<Int>((larger >> 1) - (larger >> 4) - (larger >> 6));
-      const Int is_diagonal = static_cast<Int>(smaller > diagonal ? -1 : 0);
-      const Int is_left = static_cast<Int>(gx[i] < 0 ? -1 : 0);
-      const Int is_down = static_cast<Int>(gy[i] > 0 ? -1 : 0);
-      const Int slanted = static_cast<Int>(((is_left & 6) ^ (is_down & 2)) + 1);
-      const Int straight =
-          static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
-      const Int octant = static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
+      const Int octant = octant_of(gx[i], gy[i], ax, ay, is_flat);
       const Int is_maximum = static_cast<Int>((m[i] > low ? -1 : 0) & (m[i] >= before ? -1 : 0) &
                                               (m[i] > after ? -1 : 0));
       const Int seed = static_cast<Int>((m[i] > high ? -1 : 0) & maximum::kSeed);

@@ -54,6 +54,14 @@ struct Crossing {
   float offset = 0.0F;                  // from that pixel [px]
   float slope = 0.0F;                   // of the distance from the perimeter, along the line,
   float bend = 0.0F;                    // and half its second derivative
+
+  void read(std::uint8_t (&levels)[kLanes]) const {
+    const std::uint8_t* next = pixel - kBefore * along;
+    for (std::uint8_t& level : levels) {
+      level = *next;
+      next += along;
+    }
+  }
 };
 
 // The sums of a sector's lines, lane by lane.
@@ -69,11 +77,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
                              LaneSums& sums) {
   constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
   alignas(16) std::uint8_t levels[kLanes];
-  const std::uint8_t* pixel = crossing.pixel - kBefore * crossing.along;
-  for (std::uint8_t& level : levels) {
-    level = *pixel;
-    pixel += crossing.along;
-  }
+  crossing.read(levels);
   for (int lane = 0; lane < kLanes; ++lane) {
     const float t = static_cast<float>(lane - kBefore) - crossing.offset;
     const float distance = t * (crossing.slope + crossing.bend * t);
@@ -207,8 +211,7 @@ class Band {
     const std::ptrdiff_t step = axis == 0 ? 1 : luma_.stride;
     const double c = 1.0 / conic_(other, other);
     const double slant = -conic_(0, 1) * c;
-    const double stretch = conic_.determinant();
-    const double determinant = stretch * c;
+    const double determinant = conic_.determinant() * c;
     for (int line = forth > 0 ? low : high; line >= low && line <= high; line += forth * stride_) {
       Eigen::Vector2d at;
       at[axis] = line - center_[axis];
@@ -217,19 +220,29 @@ class Band {
       const double crossing = center_[other] + at[other];
       if (!(crossing >= kBefore && crossing < size[other] - kLanes + kBefore)) continue;
       const int nearest = static_cast<int>(std::floor(crossing + 0.5));
-      const Eigen::Vector2d gradient = conic_ * at;
-      const double inverse = 1.0 / gradient.norm();
-      const Eigen::Vector2d outwards = inverse * gradient;
-      const double curvature = stretch * inverse * inverse * inverse;
-      sectors_[count_].outwards += outwards;
-      sectors_[count_].curvature += curvature;
-      accumulator_.add({luma_.data + nearest * along + line * step,
-                        along,
-                        static_cast<float>(crossing - nearest),
-                        static_cast<float>(outwards[other]),
-                        static_cast<float>(0.5 * curvature * outwards[axis] * outwards[axis])});
-      if (++sectors_[count_].lines >= lines_of_sector_) close_sector();
+      add_crossing(luma_.data + nearest * along + line * step, along, crossing - nearest, at);
     }
+  }
+
+  // @param at  The crossing, from the centre.
+  void add_crossing(const std::uint8_t* pixel,
+                    std::ptrdiff_t along,
+                    double offset,
+                    const Eigen::Vector2d& at) {
+    const int axis = along == 1 ? 1 : 0;  // from line to line
+    const Eigen::Vector2d gradient = conic_ * at;
+    const double inverse = 1.0 / gradient.norm();
+    const Eigen::Vector2d outwards = inverse * gradient;
+    const double curvature = conic_.determinant() * inverse * inverse * inverse;
+    Sector& sector = sectors_[count_];
+    sector.outwards += outwards;
+    sector.curvature += curvature;
+    accumulator_.add({pixel,
+                      along,
+                      static_cast<float>(offset),
+                      static_cast<float>(outwards[1 - axis]),
+                      static_cast<float>(0.5 * curvature * outwards[axis] * outwards[axis])});
+    if (++sector.lines >= lines_of_sector_) close_sector();
   }
 
   void close_sector() {
@@ -334,6 +347,43 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
               shared.values[3] / values[1]};
 }
 
+// Edges that are not quite elliptical scatter more than their pixels' noise lets them.
+double scatter_of(std::span<const Edge> edges) {
+  std::array<double, kMaxSectors> distances;
+  for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = std::abs(edges[i].offset_px);
+  const auto end = distances.begin() + static_cast<std::ptrdiff_t>(edges.size());
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
+  std::nth_element(distances.begin(), middle, end);
+  return kSigmaOfMedian * *middle;
+}
+
+// One step of the ellipse. Returns half the width of the blurred step between the levels [px].
+std::optional<double> fit_edges(const Band& band,
+                                std::span<const Edge> edges,
+                                FittedEllipse& refined) {
+  const double scatter = scatter_of(edges);
+  const double reach = std::max(kTukeyReachPx, kTukeyOfSigma * scatter);
+  GeometricFit fit(refined.ellipse);
+  double narrower = 0.0;
+  double weights = 0.0;
+  for (const Edge& edge : edges) {
+    const double weight = tukey_weight(edge.offset_px, reach) / (edge.variance + scatter * scatter);
+    narrower += weight * edge.narrower;
+    weights += weight;
+    const Sector& sector = *edge.sector;
+    const Eigen::Vector2d outwards = sector.outwards.normalized();
+    const double drawn_in_px = 0.5 * kLensVariance * sector.curvature / sector.lines;
+    if (weight > 0.0) {
+      fit.add(band.place(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
+    }
+  }
+  refined.uncertainty = {image_from_pad(refined.ellipse), fit.information()};
+  const auto better = fit.solve();
+  if (!better) return std::nullopt;
+  refined.ellipse = *better;
+  return kUsualStepPx * std::exp(-narrower / weights);
+}
+
 }  // namespace
 
 std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
@@ -343,53 +393,25 @@ std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
                                                      double min_contrast) {
   if (!(inside_px >= kMinPhotometricBandPx)) return std::nullopt;
   const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
-  Ellipse refined = e;
-  RingUncertainty uncertainty{};
+  FittedEllipse refined{e, {}};
   Pass pass{kFewLines, true, kUsualStepPx};
   for (int i = 0; i < 2; ++i) {
-    const Band band(luma, refined, inside_px, pass);
+    const Band band(luma, refined.ellipse, inside_px, pass);
     const auto sectors = band.sectors();
     std::array<Edge, kMaxSectors> edges;
-    std::array<double, kMaxSectors> distances;
     std::size_t count = 0;
     for (std::size_t k = 0; k < sectors.size(); ++k) {
       const auto edge = edge_of(sectors, k, brighter_outside, min_contrast);
-      if (!edge) continue;
-      distances[count] = std::abs(edge->offset_px);
-      edges[count++] = *edge;
+      if (edge) edges[count++] = *edge;
     }
     if (count < kMinSectors || count < kMinShare * static_cast<double>(sectors.size())) {
       return std::nullopt;
     }
-    // Edges that are not quite elliptical scatter more than their pixels' noise lets them.
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(
-        distances.begin(), middle, distances.begin() + static_cast<std::ptrdiff_t>(count));
-    const double scatter = kSigmaOfMedian * *middle;
-    const double reach = std::max(kTukeyReachPx, kTukeyOfSigma * scatter);
-    GeometricFit fit(refined);
-    double narrower = 0.0;
-    double weights = 0.0;
-    for (const Edge& edge : std::span(edges).first(count)) {
-      const double weight =
-          tukey_weight(edge.offset_px, reach) / (edge.variance + scatter * scatter);
-      narrower += weight * edge.narrower;
-      weights += weight;
-      const Sector& sector = *edge.sector;
-      const Eigen::Vector2d outwards = sector.outwards.normalized();
-      const double drawn_in_px = 0.5 * kLensVariance * sector.curvature / sector.lines;
-      if (weight > 0.0) {
-        fit.add(band.place(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
-      }
-    }
-    uncertainty = {image_from_pad(refined), fit.information()};
-    const auto better = fit.solve();
-    if (!better) return std::nullopt;
-    refined = *better;
-    const double step_px = kUsualStepPx * std::exp(-narrower / weights);
-    pass = {kMaxLines, false, std::clamp(step_px, kMinStepPx, kMaxStepPx)};
+    const auto step_px = fit_edges(band, std::span(edges).first(count), refined);
+    if (!step_px) return std::nullopt;
+    pass = {kMaxLines, false, std::clamp(*step_px, kMinStepPx, kMaxStepPx)};
   }
-  return FittedEllipse{refined, uncertainty};
+  return refined;
 }
 
 }  // namespace ellipse

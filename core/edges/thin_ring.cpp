@@ -142,8 +142,7 @@ bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio) {
   const double larger = std::max(a.semi_major, b.semi_major);
   const double ratio = std::min(a.semi_major, b.semi_major) / larger;
   if (ratio < 0.25 || ratio > largest_ratio) return false;
-  return (a.center() - b.center()).norm() < 0.06 * larger + 1.5 &&
-         std::abs(a.semi_minor / a.semi_major - b.semi_minor / b.semi_major) < 0.1;
+  return are_concentric(a, b);
 }
 
 }  // namespace ellipse

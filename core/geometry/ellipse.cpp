@@ -130,6 +130,18 @@ double max_difference_px(const Ellipse& a, const Ellipse& b) {
                    std::abs(a.semi_minor - b.semi_minor)});
 }
 
+bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolerance) {
+  return max_difference_px(e, reference) <= tolerance.of(reference);
+}
+
+bool are_concentric(const Ellipse& a, const Ellipse& b) {
+  constexpr Tolerance kCentre{2.0, 0.1};
+  constexpr double kAspect = 0.15;
+  const Ellipse& larger = a.semi_major > b.semi_major ? a : b;
+  const double aspect = a.semi_minor / a.semi_major - b.semi_minor / b.semi_major;
+  return (a.center() - b.center()).norm() <= kCentre.of(larger) && std::abs(aspect) <= kAspect;
+}
+
 double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
   const double half_a = half_extent(a).y();
   const double half_b = half_extent(b).y();

@@ -100,6 +100,21 @@ struct Interval {
 /// The largest difference among centre coordinates and semi-axes [px].
 [[nodiscard]] double max_difference_px(const Ellipse& a, const Ellipse& b);
 
+/// A distance that grows with the size of what is compared.
+struct Tolerance {
+  double px = 0.0;
+  double relative = 0.0;  ///< Of the semi-major axis.
+
+  [[nodiscard]] constexpr double of(const Ellipse& e) const { return px + relative * e.semi_major; }
+};
+
+/// Whether no centre coordinate and no semi-axis differs by more than the tolerance of `reference`.
+[[nodiscard]] bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolerance);
+
+/// Whether two ellipses may be images of concentric circles: perspective parts their centres, and
+/// small fits are uncertain.
+[[nodiscard]] bool are_concentric(const Ellipse& a, const Ellipse& b);
+
 /// Intersection over union of two ellipses, counted inside a frame only; 0 where both miss it.
 [[nodiscard]] double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height);
 

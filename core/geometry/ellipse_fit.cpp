@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/geometry/ellipse_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -239,34 +238,15 @@ void GeometricFit::add(const PerimeterOffset& offset, double weight) {
   const double px = offset.px_per_unit;
   const double x = offset.anomaly.x();
   const double y = offset.anomaly.y();
-  const std::array<double, 5> row = {px * x, px * y, px, px * (x * x - y * y), px * 2.0 * x * y};
-  std::size_t term = 0;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const double weighted = weight * row[i];
-    for (std::size_t k = i; k < row.size(); ++k) normal_[term++] += weighted * row[k];
-    right_side_[i] += weighted * offset.distance_px;
-  }
-  ++points_;
-}
-
-RingMatrix GeometricFit::information() const {
-  RingMatrix normal;
-  std::size_t term = 0;
-  for (int i = 0; i < 5; ++i) {
-    for (int k = i; k < 5; ++k) normal(k, i) = normal(i, k) = normal_[term++];
-  }
-  return normal;
+  const LeastSquares<5>::Vector row{x, y, 1.0, x * x - y * y, 2.0 * x * y};
+  equations_.add(px * row, offset.distance_px, weight);
 }
 
 std::optional<Ellipse> GeometricFit::solve() const {
-  if (points_ < kMinPoints) return std::nullopt;
-  RingMatrix normal = information();
-  normal.diagonal() *= 1.0 + 1e-9;
-  using Vector5d = Eigen::Matrix<double, 5, 1>;
-  const Eigen::LDLT<RingMatrix> factors(normal);
-  Vector5d step = factors.solve(Vector5d::Map(right_side_.data()));
-  if (factors.info() != Eigen::Success || !step.allFinite()) return std::nullopt;
-  step *= std::min(1.0, kLongestStep / step.norm());
+  if (equations_.samples() < kMinPoints) return std::nullopt;
+  const auto solution = equations_.solve();
+  if (!solution) return std::nullopt;
+  const LeastSquares<5>::Vector step = std::min(1.0, kLongestStep / solution->norm()) * *solution;
   Eigen::Matrix2d change;
   change << 1.0 + step(2) + step(3), step(4), step(4), 1.0 + step(2) - step(3);
   const Eigen::Matrix2d axes = rotation_ * axes_.asDiagonal();

@@ -2,12 +2,12 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 
 #include "core/geometry/ellipse.hpp"
 #include "core/geometry/homography.hpp"
+#include "core/geometry/least_squares.hpp"
 
 namespace ellipse {
 
@@ -66,12 +66,6 @@ struct PerimeterOffset {
   double distance_px = 0.0;  ///< From the perimeter, above 0 outside; as sampson_distance().
 };
 
-/// Tukey's biweight [BeatonTukey1974]: 1 for no distance, 0 from `reach` on.
-[[nodiscard]] inline double tukey_weight(double distance, double reach) {
-  const double r = distance / reach;
-  return std::abs(r) < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
-}
-
 /// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
 /// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
 /// not.
@@ -95,16 +89,14 @@ class GeometricFit {
 
   /// Sum of the weighted squares: for weights of 1 over the variance of the points' distances, the
   /// inverse covariance of T, S and E (see HomographyChange) in the view image_from_pad(start).
-  [[nodiscard]] RingMatrix information() const;
+  [[nodiscard]] RingMatrix information() const { return equations_.information(); }
 
  private:
   Eigen::Vector2d center_;
   Eigen::Matrix2d rotation_;  // M = rotation x axes
   Eigen::Vector2d axes_;      // semi-major, semi-minor
   Eigen::Vector2d inverse_axes_;
-  std::array<double, 15> normal_{};  // the upper triangle, row by row
-  std::array<double, 5> right_side_{};
-  int points_ = 0;
+  LeastSquares<5> equations_;
 };
 
 /// An ellipse and how well it is known.

@@ -12,6 +12,7 @@
 #include "core/detection/detection_trace.hpp"
 #include "core/detection/detectors.hpp"
 #include "examples/evaluate/measures.hpp"
+#include "examples/evaluate/text.hpp"
 
 namespace evaluate {
 namespace {
@@ -22,28 +23,21 @@ using ellipse::kFeatures;
 
 constexpr double kRightIou = 0.85;
 constexpr double kWrongIou = 0.6;
-constexpr double kConcentricPart = 0.12;    // of the semi-major axis, between centres
-constexpr double kConcentricAspect = 0.15;  // between axis ratios
-constexpr int kRounds = 2;                  // after the first fit
-constexpr int kHardest = 5;                 // wrong candidates of a frame
-constexpr double kFewCandidates = 100.0;    // of a source, which weighs less then
+constexpr int kRounds = 2;                // after the first fit
+constexpr int kHardest = 5;               // wrong candidates of a frame
+constexpr double kFewCandidates = 100.0;  // of a source, which weighs less then
+constexpr ellipse::Tolerance kSameEllipse{1.0, 0.05};
 constexpr double kRidge = 1e-5;
 constexpr int kMaxNewtonSteps = 40;
 
 enum class Label { kRight, kWrong, kUnclear };
-
-bool are_concentric(const ellipse::Ellipse& a, const ellipse::Ellipse& truth) {
-  const double aspect = a.semi_minor / a.semi_major - truth.semi_minor / truth.semi_major;
-  return (a.center() - truth.center()).norm() < kConcentricPart * truth.semi_major &&
-         std::abs(aspect) < kConcentricAspect;
-}
 
 Label label_of(const ellipse::Ellipse& e, const Truth& truth, const FrameSize& size) {
   double best = 0.0;
   bool is_concentric = false;
   for (const TrueEllipse& each : ellipses_of(truth)) {
     best = std::max(best, iou_of(e, each.ellipse, size));
-    is_concentric = is_concentric || are_concentric(e, each.ellipse);
+    is_concentric = is_concentric || ellipse::are_concentric(e, each.ellipse);
   }
   if (best >= kRightIou) return Label::kRight;
   return best < kWrongIou && !is_concentric ? Label::kWrong : Label::kUnclear;
@@ -184,7 +178,8 @@ void EvidenceFitter::add(const Frame& frame, const Sequence& sequence, std::size
     if (candidate.probability == 0.0) continue;
     const Label label = label_of(*candidate.ellipse, frame.truth, size);
     if (label == Label::kUnclear) continue;
-    candidates_.push_back({source, frames_, candidate.features, label == Label::kRight});
+    candidates_.push_back(
+        {source, frames_, *candidate.ellipse, candidate.features, label == Label::kRight});
   }
   ++frames_;
 }
@@ -210,6 +205,77 @@ EvidenceTable EvidenceFitter::fit(const std::vector<std::string>& sources) const
 
 EvidenceTable EvidenceFitter::fit_all() const {
   return fit(sources_);
+}
+
+std::vector<const LabelledCandidate*> EvidenceFitter::distinct(std::size_t source,
+                                                               const EvidenceTable& table) const {
+  std::vector<const LabelledCandidate*> sorted;
+  for (const LabelledCandidate& candidate : candidates_) {
+    if (candidate.source == source) sorted.push_back(&candidate);
+  }
+  std::ranges::stable_sort(sorted, [&](const auto* a, const auto* b) {
+    if (a->frame != b->frame) return a->frame < b->frame;
+    return table.log_odds(a->features) > table.log_odds(b->features);
+  });
+  std::vector<const LabelledCandidate*> kept;
+  for (const LabelledCandidate* candidate : sorted) {
+    const bool is_known = std::any_of(kept.rbegin(), kept.rend(), [&](const auto* other) {
+      return other->frame == candidate->frame &&
+             is_same(candidate->ellipse, other->ellipse, kSameEllipse);
+    });
+    if (!is_known) kept.push_back(candidate);
+  }
+  return kept;
+}
+
+Calibration EvidenceFitter::left_out_calibration(const SourceGroups& groups) const {
+  Calibration calibration;
+  double sources = 0.0;
+  for (std::size_t source = 0; source < sources_.size(); ++source) {
+    std::vector<std::string> others;
+    std::ranges::copy_if(sources_, std::back_inserter(others), [&](const std::string& other) {
+      return groups.group_of(other) != groups.group_of(sources_[source]);
+    });
+    if (others.empty()) continue;
+    const EvidenceTable table = fit(others);
+    const auto candidates = distinct(source, table);
+    if (candidates.empty()) continue;
+    sources += 1.0;
+    const double weight = 1.0 / static_cast<double>(candidates.size());
+    for (const LabelledCandidate* candidate : candidates) {
+      const double p = table.probability(candidate->features);
+      auto& bin = calibration.bins[std::min<std::size_t>(9, static_cast<std::size_t>(10.0 * p))];
+      ++bin.candidates;
+      bin.weight += weight;
+      bin.probability += weight * p;
+      if (candidate->is_right) bin.right += weight;
+      calibration.log_loss -= weight * std::log(std::max(1e-9, candidate->is_right ? p : 1.0 - p));
+    }
+  }
+  for (CalibrationBin& bin : calibration.bins) {
+    if (!(bin.weight > 0.0)) continue;
+    bin.probability /= bin.weight;
+    bin.right /= bin.weight;
+  }
+  calibration.log_loss /= std::max(1.0, sources);
+  return calibration;
+}
+
+Table calibration_table(const Calibration& calibration) {
+  Table table;
+  table.title = "Left out: candidates by the probability that they were told";
+  table.header = {"told", "candidates", "mean told", "right"};
+  for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
+    const CalibrationBin& bin = calibration.bins[i];
+    const auto tenth = static_cast<double>(i) / 10.0;
+    table.rows.push_back({number(tenth, 1) + " to " + number(tenth + 0.1, 1),
+                          std::to_string(bin.candidates),
+                          bin.candidates > 0 ? number(bin.probability, 3) : "-",
+                          bin.candidates > 0 ? number(bin.right, 3) : "-"});
+  }
+  table.note = "Each source weighs the same. Log loss: " + number(calibration.log_loss, 4) +
+               ". Candidates between right and wrong do not count.";
+  return table;
 }
 
 Choice EvidenceFitter::choose(const std::vector<std::string>& sources) {

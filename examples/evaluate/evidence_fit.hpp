@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -8,6 +9,8 @@
 #include "core/detection/evidence.hpp"
 #include "examples/evaluate/chooser.hpp"
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/source_groups.hpp"
+#include "examples/evaluate/tables.hpp"
 
 namespace evaluate {
 
@@ -15,8 +18,23 @@ namespace evaluate {
 struct LabelledCandidate {
   std::size_t source = 0;
   std::size_t frame = 0;
+  ellipse::Ellipse ellipse;
   ellipse::Features features{};
   bool is_right = false;
+};
+
+/// Candidates that were told about the same probability.
+struct CalibrationBin {
+  int candidates = 0;
+  double weight = 0.0;       ///< Each source weighs 1 in all.
+  double probability = 0.0;  ///< Mean of what they were told, weighted.
+  double right = 0.0;        ///< Share of them that are right, weighted.
+};
+
+/// Whether probabilities are what they say.
+struct Calibration {
+  std::array<CalibrationBin, 10> bins;  ///< By tenths.
+  double log_loss = 0.0;                ///< Mean of -ln of what the truth was told, weighted.
 };
 
 /// Fits the table by which the detector `arcs` decides, by logistic regression on labelled frames.
@@ -41,12 +59,18 @@ class EvidenceFitter : public Chooser {
   /// From all sources.
   [[nodiscard]] ellipse::EvidenceTable fit_all() const;
 
+  /// Judges the candidates of each group by the table of the others. Of candidates of a frame that
+  /// are the same ellipse the most probable one counts.
+  [[nodiscard]] Calibration left_out_calibration(const SourceGroups& groups) const;
+
   /// Each names a frame that was left out, and why.
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   void add(const Frame& frame, const Sequence& sequence, std::size_t source);
   [[nodiscard]] ellipse::EvidenceTable fit(const std::vector<std::string>& sources) const;
+  [[nodiscard]] std::vector<const LabelledCandidate*> distinct(
+      std::size_t source, const ellipse::EvidenceTable& table) const;
 
   ellipse::TrackerSettings settings_;
   std::vector<std::string> sources_;
@@ -54,5 +78,7 @@ class EvidenceFitter : public Chooser {
   std::size_t frames_ = 0;
   std::vector<std::string> problems_;
 };
+
+[[nodiscard]] Table calibration_table(const Calibration& calibration);
 
 }  // namespace evaluate

@@ -216,17 +216,23 @@ class Program {
     const ellipse::TrackerSettings settings = settings_of(method, settings_);
     ProgressBar progress(2 * frames_of(sequences_));  // choosing, then judging
     const auto next = [&](const Frame& frame) { return advance(progress, frame); };
-    const auto judge = [&](auto&& chooser) {
+    const auto judge = [&](auto& chooser) {
       note_missing(chooser.problems());
-      return interrupted ? std::vector<LeftOut>()
-                         : leave_one_out(sequences_, groups, chooser, settings, rule_, next);
+      const auto results = interrupted
+                               ? std::vector<LeftOut>()
+                               : leave_one_out(sequences_, groups, chooser, settings, rule_, next);
+      if (results.empty()) return;
+      print(std::cout, left_out_table(method, results));
+      print(std::cout, in_sample_table(method, results));
     };
-    const auto results = options_.fit_evidence
-                             ? judge(EvidenceFitter(settings, sequences_, next))
-                             : judge(GridChooser(grid, settings, sequences_, rule_, next));
-    if (results.empty()) return;
-    print(std::cout, left_out_table(method, results));
-    print(std::cout, in_sample_table(method, results));
+    if (!options_.fit_evidence) {
+      GridChooser chooser(grid, settings, sequences_, rule_, next);
+      judge(chooser);
+      return;
+    }
+    EvidenceFitter fitter(settings, sequences_, next);
+    judge(fitter);
+    if (!interrupted) print(std::cout, calibration_table(fitter.left_out_calibration(groups)));
   }
 
   void fit_evidence() {

@@ -108,6 +108,27 @@ TEST(EvidenceFit, HelpsOnFootageThatTheBuiltInTableFindsHard) {
   EXPECT_GE(after, before + 5);
 }
 
+TEST(EvidenceFit, TellsWhetherProbabilitiesAreWhatTheySayOnSourcesThatItHasNotSeen) {
+  std::vector<Sequence> sequences = frames_to_fit();
+  for (Sequence sequence : wild_frames("wild-frames:50-70")) {
+    sequence.dataset = "eyes and pads";
+    sequences.push_back(sequence);
+  }
+  const EvidenceFitter fitter({}, sequences, go_on);
+  const Calibration calibration = fitter.left_out_calibration(SourceGroups());
+  const CalibrationBin& low = calibration.bins.front();
+  const CalibrationBin& high = calibration.bins.back();
+  EXPECT_GT(low.candidates, 100);
+  EXPECT_GT(high.candidates, 20);
+  EXPECT_LT(low.right, 0.1);
+  EXPECT_GT(high.right, low.right + 0.4);
+  EXPECT_LT(low.probability, 0.1);
+  EXPECT_GT(high.probability, 0.9);
+  EXPECT_GT(calibration.log_loss, 0.0);
+  EXPECT_LT(calibration.log_loss, 0.3);
+  EXPECT_EQ(calibration_table(calibration).rows.size(), 10U);
+}
+
 TEST(EvidenceFit, WantsBothKinds) {
   const EvidenceFitter none({}, make_clutter({1}, {1.0, 1.0}), go_on);
   EXPECT_THROW((void)none.fit_all(), std::invalid_argument);

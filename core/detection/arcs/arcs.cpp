@@ -210,23 +210,29 @@ void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t 
   }
 }
 
-// Cuts where the direction retreats from its furthest.
-void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
-  if (end < begin + kMinLength) return;
+// By how much a direction has to turn back, so that it is not noise [rad].
+double ArcSplitter::min_retreat(double noise,
+                                std::size_t begin,
+                                std::size_t end,
+                                std::size_t half_width) const {
   float strength = 0.0F;
   for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
   const double length = static_cast<double>(end - begin);
   // The mean of |x| + |y| is 1.27 times that of the norm.
   const double angle_noise = 1.27 * noise * length / strength;
-  const std::size_t half_width = std::min(kSmoothing, (end - begin) / 4);
   // Gradients of neighbours share their pixels: three of them are as good as one.
   const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
-  const auto retreat =
-      static_cast<float>(std::max(kMinRetreat, kRetreatOverNoise * angle_noise * smoothed));
+  return std::max(kMinRetreat, kRetreatOverNoise * angle_noise * smoothed);
+}
+
+// Cuts where the direction retreats from its furthest.
+void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
+  if (end < begin + kMinLength) return;
+  const std::size_t half_width = std::min(kSmoothing, (end - begin) / 4);
+  const auto retreat = static_cast<float>(min_retreat(noise, begin, end, half_width));
   smooth_angles(begin, end, half_width);
 
-  std::size_t lowest_at = begin;
-  std::size_t highest_at = begin;
+  std::size_t lowest_at = begin, highest_at = begin;
   float lowest = smooth_[begin];
   float highest = lowest;
   int direction = 0;

@@ -51,6 +51,10 @@ class ArcSplitter {
   };
 
   void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
+  [[nodiscard]] double min_retreat(double noise,
+                                   std::size_t begin,
+                                   std::size_t end,
+                                   std::size_t half_width) const;
   void split_smooth_part(double noise, std::size_t begin, std::size_t end);
   void smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width);
   void unwrap(std::size_t begin, std::size_t end);

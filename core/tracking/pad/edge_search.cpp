@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/tracking/pad/visible_part.hpp"
 
@@ -41,6 +42,13 @@ struct Profile {
   float first = 0.0F;      // steps from the middle one to the first one
   float step_px = 0.0F;    // along the normal
   float middle_px = 0.0F;  // from where the edge is expected to the middle one
+
+  void read(const std::uint8_t* pixel, std::ptrdiff_t stride) {
+    sums[0] = 0.0F;
+    for (std::size_t i = 0; i < count; ++i, pixel += stride) {
+      sums[i + 1] = sums[i] + static_cast<float>(*pixel);
+    }
+  }
 };
 
 // Where the difference of the boxes before and behind is highest.
@@ -215,6 +223,31 @@ void EdgeSearch::look(const ImageView& luma,
   }
 }
 
+namespace {
+
+// Where a normal's row or column of pixels, whichever is closer to it, crosses the edge.
+struct Crossing {
+  int axis;         // along which pixels are read
+  int line;         // the row or column
+  double place_px;  // on it
+  double slope;     // of the distance from the edge
+};
+
+std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma) {
+  const Eigen::Vector2d& normal = view.normal;
+  const int axis = std::abs(normal.x()) > std::abs(normal.y()) ? 0 : 1;
+  const int other = 1 - axis;
+  const double slope = normal[axis];
+  const Eigen::Array2i size(luma.width, luma.height);
+  const double line = std::floor(view.point[other] + 0.5);
+  if (!(line >= 0.0 && line < size[other])) return std::nullopt;
+  const double crossing = view.point[axis] + normal[other] / slope * (view.point[other] - line);
+  if (!(crossing >= 0.0 && crossing <= size[axis] - 1.0)) return std::nullopt;
+  return Crossing{axis, static_cast<int>(line), crossing, slope};
+}
+
+}  // namespace
+
 // Differences of box averages across the edge, from dark to bright above 0. Read along the row or
 // column of pixels that is closest to the normal: no pixel has to be interpolated.
 void EdgeSearch::look_along(const ImageView& luma,
@@ -223,17 +256,11 @@ void EdgeSearch::look_along(const ImageView& luma,
                             EdgeSample& sample) const {
   sample.count = 0;
   sample.is_visible = false;
-  const Eigen::Vector2d& normal = sample.view.normal;
-  const int axis = std::abs(normal.x()) > std::abs(normal.y()) ? 0 : 1;
-  const int other = 1 - axis;
-  const double slope = normal[axis];
-  const Eigen::Array2i size(luma.width, luma.height);
-  const Eigen::Vector2d& point = sample.view.point;
-  const double line = std::floor(point[other] + 0.5);
-  if (!(line >= 0.0 && line < size[other])) return;
-  const double crossing = point[axis] + normal[other] / slope * (point[other] - line);
-  if (!(crossing >= 0.0 && crossing <= size[axis] - 1.0)) return;
+  const auto found = crossing_of(sample.view, luma);
+  if (!found) return;
+  const auto& [axis, line, crossing, slope] = *found;
   const int middle = static_cast<int>(std::floor(crossing + 0.5));
+  const int end = axis == 0 ? luma.width : luma.height;
 
   const double reach = reach_px / std::abs(slope);
   const int step = std::max(1, static_cast<int>(std::ceil(reach / kMaxSteps)));
@@ -242,8 +269,8 @@ void EdgeSearch::look_along(const ImageView& luma,
   const double gap_px = narrowest_ * sample.view.px_per_unit;
   const int box = static_cast<int>(std::clamp(0.6 * gap_px / step_px, 1.0, double(kMaxBox)));
   const bool is_forth = slope > 0.0;
-  const int before = (is_forth ? middle : size[axis] - 1 - middle) / step;
-  const int behind = (is_forth ? size[axis] - 1 - middle : middle) / step;
+  const int before = (is_forth ? middle : end - 1 - middle) / step;
+  const int behind = (is_forth ? end - 1 - middle : middle) / step;
   const int first = -std::min(steps + box, before);
   const int last = std::min(steps + box, behind);
   sample.is_visible = first <= -box && last >= box;
@@ -251,19 +278,15 @@ void EdgeSearch::look_along(const ImageView& luma,
 
   const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
   const std::ptrdiff_t stride = (is_forth ? step : -step) * along;
-  const std::uint8_t* pixel = luma.data + middle * along +
-                              static_cast<int>(line) * (axis == 0 ? luma.stride : 1) +
-                              first * stride;
+  const std::uint8_t* pixel =
+      luma.data + middle * along + line * (axis == 0 ? luma.stride : 1) + first * stride;
   Profile profile;
   profile.count = static_cast<std::size_t>(last - first) + 1;
   profile.box = static_cast<std::size_t>(box);
   profile.first = static_cast<float>(first);
   profile.step_px = static_cast<float>(step_px);
   profile.middle_px = static_cast<float>(slope * (middle - crossing));
-  profile.sums[0] = 0.0F;
-  for (std::size_t i = 0; i < profile.count; ++i, pixel += stride) {
-    profile.sums[i + 1] = profile.sums[i] + static_cast<float>(*pixel);
-  }
+  profile.read(pixel, stride);
   const double least = std::max(kMinContrast, kContrastShare * gain * sample.contrast);
   keep_edges(profile, static_cast<float>(least), reach_px, sample);
 }

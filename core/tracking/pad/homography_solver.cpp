@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/pad/homography_solver.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/least_squares.hpp"
 
 namespace ellipse {
 const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px) {
@@ -30,24 +28,18 @@ std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> s
                                                    int iterations) {
   HomographyEstimate estimate{start, {}};
   for (int step = 0; step < iterations; ++step) {
-    HomographyCovariance& normal = estimate.information;
-    normal = prior.information;
-    HomographyChange right = prior.information * prior.mean;
+    LeastSquares<8> equations(prior.mean, prior.information);
     for (const EdgeSample& sample : samples) {
       const double predicted = sample.predicted_px(estimate.change);
       const EdgeCandidate* edge = nearest_candidate(sample, predicted);
       if (edge == nullptr) continue;
       const double weight =
           tukey_weight(edge->distance_px - predicted, reach_px) / (sigma_px * sigma_px);
-      if (!(weight > 0.0)) continue;
-      const HomographyChange& row = sample.view.row;
-      for (int i = 0; i < 8; ++i) normal.col(i) += weight * row(i) * row;
-      right += weight * edge->distance_px * row;
+      if (weight > 0.0) equations.add(sample.view.row, edge->distance_px, weight);
     }
-    const Eigen::LLT<HomographyCovariance, Eigen::Lower> factors(normal);
-    if (factors.info() != Eigen::Success) return std::nullopt;
-    estimate.change = factors.solve(right);
-    if (!estimate.change.allFinite()) return std::nullopt;
+    const auto change = equations.solve();
+    if (!change) return std::nullopt;
+    estimate = {*change, equations.information()};
   }
   return estimate;
 }

@@ -136,8 +136,8 @@ void LineLearner::split(std::span<const std::int32_t> pixels, const PadModel& mo
 }
 
 void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& model) {
-  Eigen::Vector2d from = place_of(pixels.front());
-  Eigen::Vector2d to = place_of(pixels.back());
+  const Eigen::Vector2d from = place_of(pixels.front());
+  const Eigen::Vector2d to = place_of(pixels.back());
   const double length = (to - from).norm();
   if (length < kMinLength) return;
   const Eigen::Vector2d middle = 0.5 * (from + to);
@@ -149,14 +149,23 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   }
   if (middle.norm() > kMaxRadius) return;
 
-  // The line through the gradient maxima, finer than pixels, by total least squares; and the mean
-  // gradient.
+  const auto corner = std::min(pixels.size() / 4, static_cast<std::size_t>(kShortened / kPixel));
+  const PadLine line = line_through(pixels.subspan(corner, pixels.size() - 2 * corner), from, to);
+  if (line.contrast < kContrastShare * model.circles.front().contrast) return;
+  if (lines_.size() == kRoom) keep_longest();
+  lines_.push_back(line);
+}
+
+// Through the gradient maxima, finer than pixels, by total least squares; its contrast is that of
+// the mean gradient.
+PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
+                                  const Eigen::Vector2d& from,
+                                  const Eigen::Vector2d& to) const {
+  const Eigen::Vector2d middle = 0.5 * (from + to);
   Eigen::Vector2d sum(0.0, 0.0);
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   Eigen::Vector2d gradient(0.0, 0.0);
-  const auto corner = std::min(pixels.size() / 4, static_cast<std::size_t>(kShortened / kPixel));
-  const auto straight = pixels.subspan(corner, pixels.size() - 2 * corner);
-  for (const std::int32_t pixel : straight) {
+  for (const std::int32_t pixel : pixels) {
     const Gradient* here = map_.gradients() + pixel;
     const bool is_flat = std::abs(here->x) > std::abs(here->y);
     const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : map_.stride());
@@ -166,7 +175,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
     squares += place * place.transpose();
     gradient += Eigen::Vector2d(here->x, here->y);
   }
-  const auto count = static_cast<double>(straight.size());
+  const auto count = static_cast<double>(pixels.size());
   const Eigen::Vector2d mean = sum / count;
   squares -= sum * mean.transpose();
   const double turn = 0.5 * std::atan2(2.0 * squares(0, 1), squares(0, 0) - squares(1, 1));
@@ -179,13 +188,11 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
     line.to_bright = -line.to_bright;
     contrast = -contrast;
   }
-  const double reach = 0.5 * length - kShortened;
+  const double reach = 0.5 * (to - from).norm() - kShortened;
   line.from = middle + mean - (reach + along.dot(mean)) * along;
   line.to = middle + mean + (reach - along.dot(mean)) * along;
   line.contrast = contrast / count / kGradientOfStep;
-  if (line.contrast < kContrastShare * model.circles.front().contrast) return;
-  if (lines_.size() == kRoom) keep_longest();
-  lines_.push_back(line);
+  return line;
 }
 
 }  // namespace ellipse

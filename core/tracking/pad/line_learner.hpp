@@ -44,6 +44,9 @@ class LineLearner {
 
   void forget_maxima_at_border();
   void split(std::span<const std::int32_t> pixels, const PadModel& model);
+  [[nodiscard]] PadLine line_through(std::span<const std::int32_t> pixels,
+                                     const Eigen::Vector2d& from,
+                                     const Eigen::Vector2d& to) const;
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
   void keep_longest();
   [[nodiscard]] static Eigen::Vector2d place_of(int column, int row);

@@ -20,8 +20,7 @@ constexpr std::size_t kSamples = 48;     // half of what the detector takes: eac
 constexpr double kThinRingPx = 6.0;
 constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
 constexpr double kReachOfNextEdgePx = 2.0;  // its blur
-constexpr double kNearPx = 1.0;
-constexpr double kNearRelative = 0.03;
+constexpr Tolerance kNear{1.0, 0.03};       // from the outline that is followed
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
@@ -96,9 +95,7 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
   }
   if (!exact) exact = on_outer_maxima(luma, view, model, ring_px, min_contrast);
   if (!exact) return std::nullopt;
-  const bool is_near =
-      max_difference_px(exact->ellipse, *outer) <= kNearPx + kNearRelative * outer->semi_major;
-  return is_near ? exact : std::nullopt;
+  return is_same(exact->ellipse, *outer, kNear) ? exact : std::nullopt;
 }
 
 std::optional<FittedEllipse> refined_circle(const ImageView& luma,

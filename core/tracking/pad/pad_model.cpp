@@ -48,6 +48,7 @@ class RadialProfile {
   }
 
   // Outside less inside, in the median over the angles; 0 where too little is seen.
+  [[nodiscard]] double strength(int i) const { return std::abs(step(i)); }
   [[nodiscard]] double step(int i) const {
     double sum = 0.0;
     for (int j = 1; j <= half_width_; ++j) {
@@ -108,39 +109,46 @@ class RadialProfile {
   std::array<double, kRadii> medians_;
 };
 
+bool is_peak(const RadialProfile& profile, int i) {
+  bool is_highest = true;
+  for (int j = 1; j <= kApart && is_highest; ++j) {
+    is_highest = profile.strength(i) > profile.strength(i - j) &&
+                 profile.strength(i) >= profile.strength(i + j);
+  }
+  return is_highest;
+}
+
+// The step next to the detected edge: the other edge of a thin ring may be as strong.
+std::optional<int> outer_circle(const RadialProfile& profile) {
+  const int one = index_of(1.0);
+  double strongest = 0.0;
+  for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
+    strongest = std::max(strongest, profile.strength(i));
+  }
+  if (strongest < kMinContrast) return std::nullopt;
+  const auto is_outer = [&](int i) {
+    return profile.strength(i) >= kOuterContrast * strongest && is_peak(profile, i);
+  };
+  for (int off = 0; off <= kOuterSlack; ++off) {
+    if (is_outer(one + off)) return one + off;
+    if (is_outer(one - off)) return one - off;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<PadModel> learn_circles(const ImageView& luma,
                                       const PadView& view,
                                       double ring_ratio) {
   const RadialProfile profile(luma, view);
-  const auto strength = [&](int i) { return std::abs(profile.step(i)); };
-  const auto is_peak = [&](int i) {
-    bool is_highest = true;
-    for (int j = 1; j <= kApart && is_highest; ++j) {
-      is_highest = strength(i) > strength(i - j) && strength(i) >= strength(i + j);
-    }
-    return is_highest;
-  };
-  const int one = index_of(1.0);
-  double strongest = 0.0;
-  for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
-    strongest = std::max(strongest, strength(i));
-  }
-  if (strongest < kMinContrast) return std::nullopt;
-  // The other edge of a thin ring may be as strong.
-  const auto is_outer = [&](int i) {
-    return strength(i) >= kOuterContrast * strongest && is_peak(i);
-  };
-  int outer = one;
-  for (int off = 0; off <= kOuterSlack && !is_outer(outer); ++off) {
-    outer = is_outer(one + off) ? one + off : one - off;
-  }
-  if (!is_outer(outer)) return std::nullopt;
-
+  const std::optional<int> found = outer_circle(profile);
+  if (!found) return std::nullopt;
+  const int outer = *found;
   PadModel model;
   const auto add = [&](int i) {
-    model.circles.push_back({radius_at(i) / radius_at(outer), profile.step(i) > 0.0, strength(i)});
+    model.circles.push_back(
+        {radius_at(i) / radius_at(outer), profile.step(i) > 0.0, profile.strength(i)});
   };
   add(outer);
   if (ring_ratio > 0.0) {
@@ -149,8 +157,8 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
   }
   const int last = index_of(model.circles.back().radius * radius_at(outer));
   for (int i = last - kApart; i >= kApart && model.circles.size() < kMaxCircles; --i) {
-    const bool is_strong = strength(i) >= kInnerContrast * strength(outer);
-    if (is_strong && is_peak(i) && profile.agreement(i) >= kMinAgreement) add(i);
+    const bool is_strong = profile.strength(i) >= kInnerContrast * profile.strength(outer);
+    if (is_strong && is_peak(profile, i) && profile.agreement(i) >= kMinAgreement) add(i);
   }
   return model;
 }

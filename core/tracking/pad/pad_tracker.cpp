@@ -40,10 +40,13 @@ constexpr double kWideCoverage = 0.6;
 constexpr double kWeakestCircle = 0.5;
 constexpr int kMinMatched = 10;
 constexpr double kLockCoverage = 0.7;
-constexpr int kMaxMisses = 12;
+constexpr double kLongestMiss = 12.0;  // thirtieths of a second
 constexpr int kHypotheses = 40;
 constexpr int kLockSteps = 3;
-constexpr double kLearningShare = 0.2;  // of what a frame tells of the radii
+constexpr double kSlowing = 0.8;    // of a motion that is not seen
+constexpr double kGainShare = 0.3;  // of what a frame tells of the contrast
+constexpr double kMinGain = 0.3;
+constexpr double kLearningShare = 0.2;  // the same of the radii
 constexpr double kMinVisibleToLearn = 0.4;
 constexpr double kMinRadiusToLearnPx = 24.0;
 constexpr double kGrowthToLearn = 1.4;
@@ -72,6 +75,11 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
   double sum = 0.0;
   for (const EdgeSample& sample : samples) sum += std::pow(sample.predicted_px(change), 2);
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
+// Of what one thirtieth of a second tells this share counts: of what more of them tell together,
+double share_in(double share_of_one, double frames) {
+  return 1.0 - std::pow(1.0 - share_of_one, frames);
 }
 
 double tolerance_px(double radius_px) {
@@ -123,7 +131,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   line_learner_.start();
   gain_ = 1.0;
   innovation_ratio_ = 1.0;
-  misses_ = 0;
+  missed_ = 0.0;
   learned_radius_px_ = 0.0;
   motion_ = {};
   motion_.pose.diagonal() << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6, 1e-4, 1e-4;
@@ -220,7 +228,26 @@ std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& windo
   if (samples.size() < kMinMatched) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
   const double fit_px = std::max(3.0, 0.06 * radius_px());
+  const HomographyChange best = best_hypothesis(samples, prior, reach_px, fit_px);
+  auto estimate = solve_homography(samples, prior, best, 2.0 * fit_px, kEdgeSigmaPx, 2);
+  if (estimate)
+    estimate = solve_homography(samples, prior, estimate->change, fit_px, kEdgeSigmaPx, 2);
+  if (!estimate) return std::nullopt;
+  auto attempt = finish(window, start, prior, estimate->change, std::max(4.0, 0.03 * radius_px()));
+  if (attempt) {
+    attempt = finish(window, start, prior, attempt->estimate.change, kFineReachPx);
+  }
+  const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
+                       attempt->support.weakest >= kWeakestCircle &&
+                       attempt->support.matched >= kMinMatched;
+  return is_good ? attempt : std::nullopt;
+}
 
+// Of all edges in reach at once, and of four of them with any of their candidates each.
+HomographyChange PadTracker::best_hypothesis(std::span<const EdgeSample> samples,
+                                             const HomographyPrior& prior,
+                                             double reach_px,
+                                             double fit_px) {
   HomographyChange best = HomographyChange::Zero();
   double most = explained(samples, best, fit_px);
   const auto consider = [&](const std::optional<HomographyEstimate>& estimate) {
@@ -250,18 +277,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& windo
     }
     consider(solve_homography(few, prior, best, 3.0 * reach_px, 2.0 * kEdgeSigmaPx, 1));
   }
-  auto estimate = solve_homography(samples, prior, best, 2.0 * fit_px, kEdgeSigmaPx, 2);
-  if (estimate)
-    estimate = solve_homography(samples, prior, estimate->change, fit_px, kEdgeSigmaPx, 2);
-  if (!estimate) return std::nullopt;
-  auto attempt = finish(window, start, prior, estimate->change, std::max(4.0, 0.03 * radius_px()));
-  if (attempt) {
-    attempt = finish(window, start, prior, attempt->estimate.change, kFineReachPx);
-  }
-  const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
-                       attempt->support.weakest >= kWeakestCircle &&
-                       attempt->support.matched >= kMinMatched;
-  return is_good ? attempt : std::nullopt;
+  return best;
 }
 
 std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double frames) {
@@ -272,36 +288,20 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   inner_count_ = 0;
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
-  HomographyFilter before = predicted(frames, 1.0 + 0.5 * misses_);
+  HomographyFilter before = predicted(frames, 1.0 + 0.5 * missed_);
   auto attempt = look_near(window, prediction, before.pose);
   if (!attempt) {
     before = predicted(frames, 400.0);
     const double reach_px = std::max(8.0, 0.16 * radius_px());
     attempt = look_wide(window, prediction, before.pose, reach_px);
-    if (!attempt) {
-      const auto coarse = coarse_search(window.luma, model_, view_in(window, prediction));
-      if (coarse) {
-        HomographyCovariance loose = HomographyCovariance::Zero();
-        loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
-        attempt = look_wide(
-            window, shifted(*coarse, window.origin_px), loose, std::max(8.0, 0.12 * radius_px()));
-        if (attempt) {
-          // The whole change, from the prediction.
-          const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
-          attempt->estimate.change = change_of(between / std::cbrt(between.determinant()));
-          before.pose += loose;
-          before.homography_velocity += loose;
-          before.velocity_variance += loose;
-        }
-      }
-    }
   }
+  if (!attempt) attempt = look_coarsely(window, prediction, before);
   if (!attempt) {
-    miss(prediction, before);
+    miss(prediction, before, frames);
     return is_locked_ ? told(nullptr) : std::nullopt;
   }
   const Eigen::Matrix3d last_view = view_;
-  accept(*attempt, before);
+  accept(*attempt, before, frames);
   refine(window, attempt->visible);
   if (window.camera) measure_inner_edges(window);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
@@ -309,7 +309,27 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   return told(&*attempt);
 }
 
-void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before) {
+// In the surroundings, on a coarse picture. What is known of the motion is worth less afterwards.
+std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& window,
+                                                             const Eigen::Matrix3d& prediction,
+                                                             HomographyFilter& before) {
+  const auto coarse = coarse_search(window.luma, model_, view_in(window, prediction));
+  if (!coarse) return std::nullopt;
+  HomographyCovariance loose = HomographyCovariance::Zero();
+  loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
+  auto attempt = look_wide(
+      window, shifted(*coarse, window.origin_px), loose, std::max(8.0, 0.12 * radius_px()));
+  if (!attempt) return std::nullopt;
+  // The whole change, from the prediction.
+  const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
+  attempt->estimate.change = change_of(between / std::cbrt(between.determinant()));
+  before.pose += loose;
+  before.homography_velocity += loose;
+  before.velocity_variance += loose;
+  return attempt;
+}
+
+void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, double frames) {
   motion_ = before.corrected(attempt.estimate);
   if (model_.lines.empty()) motion_.leave_turn_open();  // rings look the same from all sides
   // How far the edges moved, over how far they were expected to.
@@ -326,11 +346,13 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before) 
                                    kMinInnovationRatio,
                                    kMaxInnovationRatio);
   }
-  gain_ += 0.3 * (std::clamp(attempt.support.gain, 0.3, 3.0) - gain_);
+  const double gain = std::clamp(attempt.support.gain, kMinGain, 1.0 / kMinGain);
+  gain_ += share_in(kGainShare, frames) * (gain - gain_);
   judge_lines(attempt.last);
-  if (attempt.visible >= kMinVisibleToLearn) learn_radii(attempt.last, kLearningShare);
+  if (attempt.visible >= kMinVisibleToLearn)
+    learn_radii(attempt.last, share_in(kLearningShare, frames));
   view_ = attempt.view;
-  misses_ = 0;
+  missed_ = 0.0;
 }
 
 // The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
@@ -423,11 +445,14 @@ void PadTracker::judge_lines(const HomographyChange& change) {
   });
 }
 
-void PadTracker::miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before) {
+void PadTracker::miss(const Eigen::Matrix3d& prediction,
+                      const HomographyFilter& before,
+                      double frames) {
   view_ = prediction;
   motion_ = before;
-  motion_.velocity *= 0.8;
-  if (++misses_ > kMaxMisses) is_locked_ = false;
+  motion_.velocity *= std::pow(kSlowing, frames);
+  missed_ += frames;
+  if (missed_ > kLongestMiss) is_locked_ = false;
 }
 
 std::optional<EdgeTrack> PadTracker::told(const Attempt* attempt) const {

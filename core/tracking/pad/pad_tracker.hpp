@@ -91,6 +91,13 @@ class PadTracker {
                                                  const Eigen::Matrix3d& start,
                                                  const HomographyCovariance& covariance,
                                                  double reach_px);
+  [[nodiscard]] static HomographyChange best_hypothesis(std::span<const EdgeSample> samples,
+                                                        const HomographyPrior& prior,
+                                                        double reach_px,
+                                                        double fit_px);
+  [[nodiscard]] std::optional<Attempt> look_coarsely(const LumaWindow& window,
+                                                     const Eigen::Matrix3d& prediction,
+                                                     HomographyFilter& before);
   [[nodiscard]] std::optional<Attempt> finish(const LumaWindow& window,
                                               const Eigen::Matrix3d& start,
                                               const HomographyPrior& prior,
@@ -99,14 +106,14 @@ class PadTracker {
   [[nodiscard]] Attempt attempt_of(const Eigen::Matrix3d& view,
                                    const HomographyEstimate& estimate,
                                    const HomographyChange& last) const;
-  void accept(const Attempt& attempt, const HomographyFilter& before);
+  void accept(const Attempt& attempt, const HomographyFilter& before, double frames);
   void refine(const LumaWindow& window, double visible);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
   void learn_radii(const HomographyChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const HomographyChange& change);
-  void miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before);
+  void miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double frames);
   [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
@@ -125,8 +132,8 @@ class PadTracker {
   LensView lens_;
   double innovation_ratio_ = 1.0;  // of the motion, against its noise
   double gain_ = 1.0;              // of the picture's contrast over the model's
-  int misses_ = 0;
-  double last_coverage_ = 0.0;  // near the prediction
+  double missed_ = 0.0;            // time since it was seen [1/30 s]
+  double last_coverage_ = 0.0;     // near the prediction
   bool is_locked_ = false;
 };
 
