@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <optional>
 #include <span>
 
 #include "core/camera/lens_view.hpp"
@@ -42,6 +43,20 @@ class Detector {
   /// No content of the picture throws. Deterministic. One object serves one thread at a time.
   [[nodiscard]] virtual std::span<const Detection> detect(const ImageView& luma,
                                                           const Thresholds& thresholds) = 0;
+
+  /// Whether Detection::probability means something, so that min_probability acts.
+  [[nodiscard]] virtual bool tells_probability() const { return false; }
+
+  /// Log odds that an outline of this picture is an ellipse, by the evidence that detect() decides
+  /// by; nullopt where a detector does not say. Cheaper than detect(): nothing else is looked for.
+  ///
+  /// @param e           The outline, as Detection::ellipse.
+  /// @param thresholds  Of edges and overlaps; the limits of size and probability do not count.
+  [[nodiscard]] virtual std::optional<double> log_odds_of(const ImageView& /*luma*/,
+                                                          const Ellipse& /*e*/,
+                                                          const Thresholds& /*thresholds*/) {
+    return std::nullopt;
+  }
 
   /// The detector's own thresholds where nothing is known of the target.
   [[nodiscard]] virtual Overlaps detecting_overlaps() const = 0;

@@ -55,7 +55,7 @@ double EvidenceTable::log_odds(const Features& features) const {
 }
 
 double EvidenceTable::probability(const Features& features) const {
-  return 1.0 / (1.0 + std::exp(-log_odds(features)));
+  return probability_of(log_odds(features));
 }
 
 EvidenceTable read_evidence(const std::filesystem::path& file) {

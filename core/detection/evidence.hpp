@@ -1,12 +1,23 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
 #include <span>
 
 namespace ellipse {
+
+/// ln(p / (1 - p)); infinite for 0 and 1.
+[[nodiscard]] inline double log_odds(double probability) {
+  return std::log(probability / (1.0 - probability));
+}
+
+/// The inverse.
+[[nodiscard]] inline double probability_of(double log_odds) {
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
 
 /// What is measured along a candidate's outline. Each is a number that grows or falls with the
 /// odds of an ellipse.

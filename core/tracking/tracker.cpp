@@ -2,6 +2,8 @@
 #include "core/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/detection/detection_trace.hpp"
@@ -12,14 +14,17 @@
 namespace ellipse {
 namespace {
 
-constexpr int kLookInterval = 8;          // frames between the detector's looks while following
-constexpr int kNextLook = 2;              // the same, after one that did not find the target
-constexpr int kMaxTrust = 4;              // one for each look that finds the target, and
-constexpr int kLossOfTrust = 2;           // for each that does not; below 0 it is given up
-constexpr double kEnoughToBeFound = 0.5;  // of the perimeter in view, for the detector to find it
-constexpr double kCoarsePx = 20.0;        // full minor axis at a coarse scale, for the same
-constexpr double kEnoughToLock = 0.45;    // the same, to follow what was found
-constexpr double kEnoughAlone = 0.6;      // the same, of an edge without another, to report it
+constexpr double kFrame_s = 1.0 / 30.0;     // the clock's unit
+constexpr double kLook_s = 8.0 * kFrame_s;  // between the detector's looks while following,
+constexpr double kJudge_s = 0.15;           // and between judgements of a sure outline
+constexpr double kSure = 3.0;               // log odds
+constexpr double kGivenUp = -3.0;           // log odds
+constexpr double kReturn_s = 0.4;           // in which a target that was lost keeps its number
+constexpr double kLessMatched = 0.1;        // of the outline, than when it was judged last
+constexpr double kEnoughToJudge = 0.5;      // of the perimeter in view
+constexpr double kJudgedExpansion = 2.0;    // of the region, as TrackerSettings::roi_expansion
+constexpr int kCoarsestScale = 4;           // of the detector
+constexpr double kEnoughToLock = 0.45;      // of the perimeter in view, to follow what was found
 constexpr double kFartherOut = 1.1;
 constexpr double kMuchBetter = 1.5;       // in score, to leave one target for another
 constexpr double kMinPredicted = 0.5;     // of the perimeter in view, to report what is not seen
@@ -34,20 +39,13 @@ bool is_better(const ConcentricSet& chosen, const ConcentricSet& followed) {
 
 // An edge of the same target, farther out: an inner edge was followed.
 bool is_outside_of(const Ellipse& chosen, const Ellipse& followed) {
-  return (chosen.center() - followed.center()).norm() < 0.15 * chosen.semi_major &&
-         chosen.semi_major > kFartherOut * followed.semi_major;
+  return are_concentric(chosen, followed) && chosen.semi_major > kFartherOut * followed.semi_major;
 }
 
 // Of a target that is too large for the detector the inner edges are all that it finds.
 bool lies_in(const Ellipse& inner, const Ellipse& outer) {
   return (inner.center() - outer.center()).norm() + inner.semi_minor < outer.semi_major &&
          inner.semi_major < outer.semi_major;
-}
-
-// Whether the detector, looking at this scale, should find what is followed.
-bool can_be_found(const Target& followed, int scale) {
-  const bool is_too_coarse = scale > 1 && 2.0 * followed.ellipse.semi_minor < kCoarsePx * scale;
-  return followed.visible_fraction >= kEnoughToBeFound && !is_too_coarse;
 }
 
 bool has_same_camera(const TrackerSettings& a, const TrackerSettings& b) {
@@ -85,11 +83,8 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   take_in(frame, scope);
   const double elapsed = clock_.advance_to(pts_ns);
   if (searchable_.empty()) return std::nullopt;
-  std::optional<Target> target;
-  if (pad_tracker_->is_locked()) target = follow_edges(frame, elapsed);
-  const bool is_visible = target && target->state == TargetState::kTracked;
-  const int next_look = settings_.wants_candidates ? 1 : next_look_;
-  if (!is_visible || ++frames_since_look_ >= next_look) target = look_at_all(frame, target);
+  const bool follows = settings_.tracking == TrackingMode::kEdges;
+  std::optional<Target> target = follows ? follow(frame, elapsed * kFrame_s) : search_target(frame);
   if (target) target->pts_ns = pts_ns;
   prepare_next_frame(target);
   if (target && lens_) locate(*target);
@@ -142,65 +137,123 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   Target target;
   target.ellipse = track->ellipse;
   target.state = track->is_visible ? TargetState::kTracked : TargetState::kPredicted;
-  target.id = last_id_;
+  target.id = id_;
   target.contour_overlap = track->coverage;
   target.ellipse_overlap = track->outline;
-  target.probability = last_probability_;
   target.visible_fraction = visible;
   target.search_region = search_region_;
   if (lens_) target.uncertainty = pad_tracker_->uncertainty();
+  if (track->is_visible) judge_outline(window, target);
   return target;
 }
 
-// What is followed may have been the wrong thing, or there may be something better by now: the
-// detector is asked what it would choose.
-std::optional<Target> Tracker::look_at_all(const PixelView& frame,
-                                           const std::optional<Target>& followed) {
-  std::optional<Target> chosen = search_target(frame);
-  if (settings_.tracking != TrackingMode::kEdges) return chosen;
-  frames_since_look_ = 0;
-  next_look_ = kLookInterval;
-  const bool is_followed = followed && followed->state == TargetState::kTracked;
-  if (is_followed) {
-    const ConcentricSet old_set = set_around(followed->ellipse, candidates_);
-    const bool is_found = old_set.score > 0.0;
-    if (is_found) trust_ = std::min(trust_ + 1, kMaxTrust);
-    const bool is_beyond =
-        !settings_.limits.admit_axes_of(followed->ellipse) ||
-        2.0 * followed->ellipse.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
-    const bool is_own_inside = is_beyond && chosen && lies_in(chosen->ellipse, followed->ellipse);
-    const bool is_new = chosen && !is_own_inside &&
-                        (is_outside_of(chosen->ellipse, followed->ellipse) ||
-                         is_better(set_around(chosen->ellipse, candidates_), old_set));
-    if (!is_new) {
-      if (is_found || is_beyond || !can_be_found(*followed, scale_)) return followed;
-      next_look_ = kNextLook;
-      trust_ -= kLossOfTrust;
-      if (trust_ >= 0) return followed;
-      pad_tracker_->release();
-      return std::nullopt;
-    }
+// The states in turn: see TrackerState. The detector searches while nothing is surely followed, and
+// now and then, because something better may have come into view.
+std::optional<Target> Tracker::follow(const PixelView& frame, double elapsed_s) {
+  since_judged_s_ += elapsed_s;
+  since_look_s_ += elapsed_s;
+  absence_s_ += elapsed_s;
+  std::optional<Target> target;
+  if (pad_tracker_->is_locked()) target = follow_edges(frame, elapsed_s / kFrame_s);
+  const bool is_visible = target && target->state == TargetState::kTracked;
+  const bool is_time = settings_.wants_candidates || since_look_s_ >= kLook_s;
+  if (!is_visible || !is_believed() || is_time) target = challenge(frame, target);
+  if (odds_.value() < kGivenUp) pad_tracker_->release();
+  if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
+  if (target) hypothesis_ = target->ellipse;
+  if (!target) {
+    state_ = TrackerState::kSearching;
+  } else if (!is_believed()) {
+    state_ = TrackerState::kConfirming;
+    target.reset();
+  } else {
+    const bool is_predicted = target->state == TargetState::kPredicted;
+    state_ = is_predicted ? TrackerState::kCoasting : TrackerState::kFollowing;
+    target->probability = probability_of(odds_.value());
+    absence_s_ = 0.0;
   }
+  return target;
+}
+
+bool Tracker::is_believed() const {
+  const bool has_limit = detector_->tells_probability();
+  const double wanted = has_limit ? log_odds(settings_.limits.min_probability) : 0.0;
+  return odds_.value() >= std::min(wanted, TargetOdds::kMax);
+}
+
+// The detector judges the outline that is followed: at once where the odds are open or less of it
+// is matched than before, else now and then. The less is in view, the less a picture tells: what
+// was in view for the most part is not judged by less than that.
+void Tracker::judge_outline(const LumaWindow& window, const Target& target) {
+  const auto seen = distorted(window.lens, target.ellipse);
+  most_visible_ = std::max(most_visible_, target.visible_fraction);
+  if (!seen || target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return;
+  const bool is_sure =
+      odds_.value() >= kSure && target.ellipse_overlap >= judged_overlap_ - kLessMatched;
+  if (is_sure && since_judged_s_ < kJudge_s) return;
+  judged_overlap_ = target.ellipse_overlap;
+  const Rect around = intersect(
+      calculate_roi(
+          *seen, kJudgedExpansion, kCoarsestScale, frame_bounds_.width, frame_bounds_.height),
+      search_region_);
+  const Eigen::Vector2d origin(around.x, around.y);
+  detector_->set_lens(window.lens.part(origin));
+  const ImageView luma = window.luma.region(
+      {around.x - search_region_.x, around.y - search_region_.y, around.width, around.height});
+  const Ellipse there = translated(target.ellipse, -origin.x(), -origin.y());
+  Thresholds thresholds = settings_.limits;
+  thresholds.contour_overlap = detector_->tracking_overlaps().contour;
+  thresholds.ellipse_overlap = detector_->tracking_overlaps().ellipse;
+  const auto judged = detector_->log_odds_of(luma, there, thresholds);
+  if (judged) take_evidence(*judged);
+}
+
+void Tracker::take_evidence(double log_odds) {
+  odds_.add(log_odds, since_judged_s_);
+  since_judged_s_ = 0.0;
+}
+
+// The detector is asked what it would choose.
+std::optional<Target> Tracker::challenge(const PixelView& frame,
+                                         const std::optional<Target>& followed) {
+  const std::optional<Target> chosen = search_target(frame);
+  since_look_s_ = 0.0;
   if (!chosen) return followed;
-  Target target = *chosen;
-  if (is_followed && !is_outside_of(target.ellipse, followed->ellipse)) target.id = last_id_ + 1;
-  lock_edges(frame, target);
-  trust_ = 0;  // it must be confirmed at once
-  next_look_ = 1;
-  if (!had_target_ && is_doubtful(target)) {
-    if (pad_tracker_->is_locked()) {
-      last_id_ = target.id;
-      last_probability_ = target.probability;
-    }
-    return std::nullopt;
-  }
-  return target;
+  const bool is_followed = followed && followed->state == TargetState::kTracked;
+  if (is_followed && !is_better_than(*followed, *chosen)) return followed;
+  return acquire(frame, *chosen);
 }
 
-// Half an outline by itself may be anything: edges that can be followed have to confirm it.
-bool Tracker::is_doubtful(const Target& target) const {
-  return target.visible_fraction < kEnoughAlone &&
-         !set_around(target.ellipse, candidates_).has_two_edges;
+// Whether something else is a better target: an edge of the same one farther out, or another set.
+bool Tracker::is_better_than(const Target& followed, const Target& chosen) const {
+  if (is_too_large(followed.ellipse) && lies_in(chosen.ellipse, followed.ellipse)) return false;
+  return is_outside_of(chosen.ellipse, followed.ellipse) ||
+         is_better(set_around(chosen.ellipse, candidates_),
+                   set_around(followed.ellipse, candidates_));
+}
+
+// Of such a target the inner edges are all that the detector finds.
+bool Tracker::is_too_large(const Ellipse& e) const {
+  return !settings_.limits.admit_axes_of(e) ||
+         2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
+}
+
+std::optional<Target> Tracker::acquire(const PixelView& frame, Target target) {
+  const auto is_near = [&](const Ellipse& e) {
+    return (e.center() - target.ellipse.center()).norm() < target.ellipse.semi_major;
+  };
+  if (hypothesis_ && is_near(*hypothesis_)) {
+    take_evidence(log_odds(target.probability));
+  } else {
+    odds_.start(log_odds(target.probability), absence_s_);
+    since_judged_s_ = 0.0;
+    id_ = absence_s_ < kReturn_s && is_near(last_ellipse_) ? last_id_ : last_id_ + 1;
+  }
+  target.id = id_;
+  judged_overlap_ = 0.0;
+  most_visible_ = 0.0;
+  lock_edges(frame, target);
+  return target;
 }
 
 // A part of an ellipse may be part of anything: it is not followed.
@@ -275,7 +328,6 @@ void Tracker::prepare_next_frame(const std::optional<Target>& target) {
   if (target) {
     last_id_ = target->id;
     last_ellipse_ = target->ellipse;
-    last_probability_ = target->probability;
   }
   is_tracking_ = had_target_ && settings_.tracking == TrackingMode::kRedetect;
   roi_ = {};
@@ -315,6 +367,9 @@ void Tracker::make_lens() {
 void Tracker::reset() {
   is_tracking_ = false;
   had_target_ = false;
+  state_ = TrackerState::kSearching;
+  hypothesis_.reset();
+  absence_s_ = std::numeric_limits<double>::infinity();
   scale_ = 1;
   roi_ = {};
   search_region_ = {};

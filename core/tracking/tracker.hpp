@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "core/image/scale.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/settings.hpp"
+#include "core/tracking/target_odds.hpp"
 
 namespace ellipse {
 
@@ -34,7 +36,8 @@ struct Target {
   /// [Keipour2021] Eq. (2). Where edges are followed: share of the outer edge in view that was
   /// matched.
   double ellipse_overlap = 0.0;
-  /// That it is an ellipse, by the detector when it last chose it; 1 where it does not say.
+  /// That it is an ellipse: where edges are followed, by all frames so far (TargetOdds); else by
+  /// the detector in this frame, 1 where it does not say.
   double probability = 1.0;
   double visible_fraction = 0.0;  ///< Share of the perimeter inside the frame.
   int scale = 1;                  ///< Frame scale that it was found at.
@@ -43,6 +46,14 @@ struct Target {
   std::optional<RingUncertainty> uncertainty =
       {};                               ///< Of the ellipse, while its edges are followed.
   std::optional<TargetPose> pose = {};  ///< Where a camera is known.
+};
+
+/// What the tracker is doing, where edges are followed. See docs/architecture.md.
+enum class TrackerState {
+  kSearching,   ///< Nothing is known: the detector searches.
+  kConfirming,  ///< Something is followed that the odds are not for yet, or no more: no report.
+  kFollowing,   ///< The target is followed, and reported.
+  kCoasting,    ///< The target is not seen in this frame; its motion is continued and reported.
 };
 
 /// What of one frame is searched, and how finely.
@@ -88,6 +99,9 @@ class Tracker {
   /// where a frame is searched twice, the second time is. nullptr = no more. Borrowed.
   void set_trace(DetectionTrace* trace);
 
+  /// After the last frame; kSearching where edges are not followed.
+  [[nodiscard]] TrackerState state() const { return state_; }
+
   /// Where the last frame was searched [px].
   [[nodiscard]] const Rect& search_region() const { return search_region_; }
 
@@ -95,10 +109,16 @@ class Tracker {
   [[nodiscard]] LensView lens() const;
 
  private:
+  [[nodiscard]] std::optional<Target> follow(const PixelView& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> follow_edges(const PixelView& frame, double elapsed);
-  [[nodiscard]] std::optional<Target> look_at_all(const PixelView& frame,
-                                                  const std::optional<Target>& followed);
-  [[nodiscard]] bool is_doubtful(const Target& target) const;
+  void judge_outline(const LumaWindow& window, const Target& target);
+  [[nodiscard]] bool is_too_large(const Ellipse& e) const;
+  void take_evidence(double log_odds);
+  [[nodiscard]] bool is_believed() const;
+  [[nodiscard]] std::optional<Target> challenge(const PixelView& frame,
+                                                const std::optional<Target>& followed);
+  [[nodiscard]] bool is_better_than(const Target& followed, const Target& chosen) const;
+  [[nodiscard]] std::optional<Target> acquire(const PixelView& frame, Target target);
   void lock_edges(const PixelView& frame, const Target& target);
   [[nodiscard]] std::optional<Target> search_target(const PixelView& frame);
   [[nodiscard]] std::optional<Target> detect_target(const PixelView& frame, bool is_tracking);
@@ -126,16 +146,21 @@ class Tracker {
   Rect frame_bounds_;
   Rect searchable_;  // of this frame
   Ellipse last_ellipse_;
-  double last_probability_ = 1.0;
-  std::uint64_t last_id_ = 0;
+  std::uint64_t last_id_ = 0;  // of a target that was reported
+  std::uint64_t id_ = 0;       // of what is followed, once it is reported
   int scale_ = 1;
   int finest_scale_ = 1;
-  int frames_since_look_ = 0;  // of the detector, while following by edges
-  int next_look_ = 1;
-  int trust_ = 0;  // in what is followed, from the detector's looks
+  std::optional<Ellipse> hypothesis_;  // of the last frame, reported or not
+  TrackerState state_ = TrackerState::kSearching;
+  TargetOdds odds_;  // of what is followed
+  double since_judged_s_ = 0.0;
+  double most_visible_ = 0.0;    // of the perimeter of what is followed, so far
+  double judged_overlap_ = 0.0;  // share of the outline that was matched then
+  double absence_s_ = std::numeric_limits<double>::infinity();  // of a target that is reported
+  double since_look_s_ = 0.0;  // of the detector, while following by edges
   bool is_lens_stale_ = true;
   bool is_tracking_ = false;
-  bool had_target_ = false;
+  bool had_target_ = false;         // a hypothesis, reported or not
   bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
 };
 

@@ -32,14 +32,14 @@ struct Source {
 };
 
 constexpr Source kSources[] = {
-    {"airlab-mbzirc", {630, 1}, {630, 1}},
-    {"airlab-deformed", {172, 2}, {173, 1}},
-    {"airlab-gascola", {454, 0}, {454, 1}},
-    {"pupil-infrared", {1062, 7}, {1020, 2}},
-    {"pupil-blinks", {255, 6}, {258, 0}},
+    {"airlab-mbzirc", {631, 0}, {630, 1}},
+    {"airlab-deformed", {174, 0}, {173, 1}},
+    {"airlab-gascola", {455, 0}, {454, 1}},
+    {"pupil-infrared", {1088, 11}, {1022, 2}},
+    {"pupil-blinks", {261, 2}, {258, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {138, 3}, {139, 2}},
+    {"octagon-negative", {141, 0}, {139, 2}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 

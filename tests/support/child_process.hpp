@@ -139,6 +139,7 @@ class ChildProcess {
                                   char* const* environment,
                                   int failure) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::signal(SIGHUP, SIG_DFL);  // under nohup it would be ignored
     if (setup.session == Session::kOwnGroup) setpgid(0, 0);
     if (setup.session == Session::kTerminal) {
       setsid();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/detection/detection_trace.hpp"
 #include "core/detection/target_selection.hpp"
@@ -22,22 +23,30 @@ constexpr std::size_t kMinClosedChain = 24;  // pixels
 constexpr std::size_t kChainPoints = 64;     // of a chain's fit
 constexpr double kClosingChord = 0.35;       // of a chain's length
 constexpr int kMaxPairs = 50;
-constexpr double kConvexSlackPx = 2.0;  // by which one arc may lie outside the other, and
-constexpr double kConvexSlack = 0.1;    // of their distance
-constexpr double kSame = 0.05;          // of the axes
+constexpr double kConvexSlackPx = 2.0;       // by which one arc may lie outside the other, and
+constexpr double kConvexSlack = 0.1;         // of their distance
+constexpr double kSame = 0.05;               // of the semi-major axis
+constexpr Tolerance kSameOutline{2.0, 0.1};  // of an outline that is judged
+constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis: half of it is enough as well
 constexpr double kMuchLonger = 1.4;
 constexpr double kOnEllipsePx = 2.5;
 constexpr double kNoDoubt = 3.0;            // log odds
 constexpr double kSteeperAtHalfSize = 0.4;  // gradients at full size over those at half
+
+constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
+                               .ellipse_overlap = 0.0,
+                               .min_axis_px = kAxisRangePx.min,
+                               .max_axis_px = kAxisRangePx.max,
+                               .max_axis_ratio = kAxisRatioRange.max,
+                               .min_contour_size = 0,
+                               .min_probability = 0.0};
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
 }
 
 bool are_same(const Ellipse& a, const Ellipse& b, double px) {
-  return std::abs(a.cx - b.cx) + std::abs(a.cy - b.cy) < 2.0 * kSame * b.semi_minor + px &&
-         std::abs(a.semi_major - b.semi_major) < kSame * b.semi_major + px &&
-         std::abs(a.semi_minor - b.semi_minor) < kSame * b.semi_minor + px;
+  return is_same(a, b, {px, kSame});
 }
 
 // Whether all of b is on the inner side of a's edge: what lies on one convex curve does.
@@ -52,14 +61,6 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   return true;
 }
 
-double log_odds(double probability) {
-  return std::log(probability / std::max(1e-12, 1.0 - probability));
-}
-
-double probability_of(double odds) {
-  return 1.0 / (1.0 + std::exp(-odds));
-}
-
 }  // namespace
 
 std::span<const Detection> ArcDetector::detect(const ImageView& luma,
@@ -72,6 +73,30 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
   ring_corrector_.correct(luma, min_gradient_, polarities_, lens_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
+}
+
+// On the smallest picture that shows it well, by the polarity that explains it better.
+std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
+                                               const Ellipse& e,
+                                               const Thresholds& thresholds) {
+  int scale = 1;
+  while (scale < kScales[1] && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
+  GradientMap& map = map_at(scale);
+  map.compute(scaler_.reduce(luma, scale), {thresholds.edge_low, thresholds.edge_high});
+  map.set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
+  chains_.trace(map);
+  Thresholds overlaps = kNoLimits;
+  overlaps.contour_overlap = thresholds.contour_overlap;
+  overlaps.ellipse_overlap = thresholds.ellipse_overlap;
+  const Ellipse guess = to_region(e, {}, scale);
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Polarity polarity : {Polarity::kDarkInside, Polarity::kBrightInside}) {
+    MeasuredEllipse measured;
+    const Verdict verdict = verifier_.verify(map, guess, polarity, overlaps, evidence_, measured);
+    if (!verdict.is_accepted() || !is_same(measured.ellipse, guess, kSameOutline)) continue;
+    best = std::max(best, log_odds(measured.probability));
+  }
+  return best;
 }
 
 void ArcDetector::search_scales(const ImageView& luma, const Thresholds& thresholds) {

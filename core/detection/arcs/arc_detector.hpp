@@ -39,6 +39,10 @@ class ArcDetector final : public Detector {
 
   [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
                                                   const Thresholds& thresholds) override;
+  [[nodiscard]] bool tells_probability() const override { return true; }
+  [[nodiscard]] std::optional<double> log_odds_of(const ImageView& luma,
+                                                  const Ellipse& e,
+                                                  const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {}; }
 

@@ -32,7 +32,7 @@ constexpr int kMinPartPx = 16;
 
 constexpr std::size_t kMaxDetections = 256;
 
-constexpr double kSameFitPx = 0.75;
+constexpr Tolerance kSameFit{.px = 0.75};
 
 constexpr int kContourSteps = 2;
 constexpr int kEdgeSteps = 2;
@@ -159,7 +159,7 @@ Detection scored(const Ellipse& e, double contour_overlap, const ImageView& thic
 
 bool is_known(const Ellipse& e, std::span<const Detection> known) {
   return std::any_of(known.begin(), known.end(), [&](const Detection& other) {
-    return max_difference_px(e, other.ellipse) <= kSameFitPx;
+    return is_same(e, other.ellipse, kSameFit);
   });
 }
 
@@ -324,6 +324,18 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   take_to_ideal_plane();
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
+}
+
+std::optional<double> ContourDetector::log_odds_of(const ImageView& luma,
+                                                   const Ellipse& e,
+                                                   const Thresholds& thresholds) {
+  const auto seen = distorted(lens_, e);
+  if (luma.empty() || !seen) return std::nullopt;
+  detect_edges(luma, thresholds);
+  cv::dilate(edges_, thick_edges_, cv::Mat());
+  const double overlap = perimeter_support(*seen, view_of(thick_edges_)).ellipse_overlap();
+  const auto odds_of = [](double share) { return log_odds(std::clamp(share, 0.001, 0.999)); };
+  return odds_of(overlap) - odds_of(thresholds.ellipse_overlap);
 }
 
 // The paper knows of no lens: an ellipse is one of the picture.

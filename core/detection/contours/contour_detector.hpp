@@ -19,6 +19,10 @@ class ContourDetector final : public Detector {
  public:
   [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
                                                   const Thresholds& thresholds) override;
+  /// EllipseOverlap against its threshold: the difference of their log odds.
+  [[nodiscard]] std::optional<double> log_odds_of(const ImageView& luma,
+                                                  const Ellipse& e,
+                                                  const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
 

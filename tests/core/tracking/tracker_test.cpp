@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -330,6 +331,72 @@ TEST(FollowingTracker, FollowsFromTheSecondFrameOn) {
     EXPECT_EQ(target->id, 1U);
     EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), 0.3) << frame;
   }
+}
+
+TEST(FollowingTracker, TellsItsState) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  EXPECT_FALSE(tracker.process(film.empty().view(), 0));
+  EXPECT_EQ(tracker.state(), TrackerState::kSearching);
+  for (int frame = 1; frame < 5; ++frame) {
+    EXPECT_TRUE(tracker.process(film.at(frame).view(), frame * kFrameNs));
+    EXPECT_EQ(tracker.state(), TrackerState::kFollowing) << frame;
+  }
+  tracker.reset();
+  EXPECT_EQ(tracker.state(), TrackerState::kSearching);
+}
+
+// Half a disc alone may be anything; the more of it comes into view, the surer it is.
+TEST(FollowingTracker, ConfirmsOverFrames) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  TrackerSettings settings;
+  settings.limits.min_probability = 0.98;
+  Tracker tracker(settings);
+  int confirming = 0;
+  int frame = 0;
+  std::optional<Target> target;
+  for (; frame < 60 && !target; ++frame) {
+    const Ellipse disc{-10.0 + frame, 110.0, 40.0, 32.0, 0.3};
+    target = tracker.process(rendered(scene, disc).view(), frame * kFrameNs);
+    confirming += tracker.state() == TrackerState::kConfirming ? 1 : 0;
+  }
+  ASSERT_TRUE(target);
+  EXPECT_GT(confirming, 0);
+  EXPECT_EQ(target->id, 1U);
+  EXPECT_GE(target->probability, 0.98);
+}
+
+// A hexagon in the place of a disc has most of its edges within reach of the disc's.
+TEST(FollowingTracker, GivesUpWhatIsNoEllipseAnyMore) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  const Film film(scene);
+  const Ellipse disc = Film::truth_at(0);
+  Tracker tracker;
+  for (int frame = 0; frame < 30; ++frame) {
+    ASSERT_TRUE(tracker.process(film.at(0).view(), frame * kFrameNs)) << frame;
+  }
+  Picture hexagon = film.empty();
+  const Picture paint = film.at(0);
+  const Eigen::Matrix3d to_disc = image_from_pad(disc).inverse();
+  for (int y = 0; y < hexagon.height; ++y) {
+    for (int x = 0; x < hexagon.width; ++x) {
+      const Eigen::Vector2d at = (to_disc * Eigen::Vector3d(x, y, 1.0)).hnormalized();
+      bool is_inside = true;
+      for (int side = 0; side < 6; ++side) {
+        const double angle = side * std::numbers::pi / 3.0;
+        is_inside &= at.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) < 0.93;
+      }
+      if (is_inside) hexagon.at(x, y) = paint.pixels[std::size_t(110 * paint.width + 120)];
+    }
+  }
+  int reports = 0;
+  for (int frame = 30; frame < 60; ++frame) {
+    reports += tracker.process(hexagon.view(), frame * kFrameNs) ? 1 : 0;
+  }
+  RecordProperty("reports", reports);
+  EXPECT_LE(reports, 3);
 }
 
 TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {

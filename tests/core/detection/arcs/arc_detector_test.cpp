@@ -54,6 +54,21 @@ TEST(ArcDetector, FindsRingsOfEitherPolarity) {
   EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
 }
 
+TEST(ArcDetector, JudgesAnOutlineAtAnySizeWithoutALookElsewhere) {
+  for (const double radius : {9.0, 30.0, 70.0, 100.0}) {
+    SCOPED_TRACE(radius);
+    const Ellipse truth{160.2, 119.7, radius, 0.7 * radius, 0.6};
+    const Picture picture = rendered(plain_ring(), truth);
+    ArcDetector detector;
+    EXPECT_GT(detector.log_odds_of(picture.view(), truth, {}).value(), 2.0);
+    EXPECT_GT(detector.log_odds_of(picture.view(), translated(truth, 1.0, 0.5), {}).value(), 2.0);
+    const Ellipse beside = translated(truth, 0.6 * radius, 0.0);
+    EXPECT_LT(detector.log_odds_of(picture.view(), beside, {}).value(), -1.0);
+  }
+  ArcDetector detector;
+  EXPECT_LT(detector.log_odds_of({}, {10.0, 10.0, 5.0, 4.0, 0.0}, {}).value(), -5.0);
+}
+
 TEST(ArcDetector, FindsWhatIsPartlyHidden) {
   const Ellipse truth{160.2, 119.7, 70.0, 55.0, 0.6};
   Scene scene = plain_ring();

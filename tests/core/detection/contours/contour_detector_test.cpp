@@ -114,6 +114,16 @@ TEST_P(ContourTypes, FCutWithBranches) {
 
 INSTANTIATE_TEST_SUITE_P(Radii, ContourTypes, testing::Values(12.0, 40.0, 120.0));
 
+TEST(ContourDetector, JudgesAnOutlineByItsOverlap) {
+  const Ellipse truth{160.2, 119.7, 70.0, 45.0, 0.6};
+  const Picture picture = rendered(plain_ring(), truth);
+  ContourDetector detector;
+  EXPECT_GT(detector.log_odds_of(picture.view(), truth, tracking()).value(), 2.0);
+  const Ellipse beside = translated(truth, 30.0, 0.0);
+  EXPECT_LT(detector.log_odds_of(picture.view(), beside, tracking()).value(), 0.0);
+  EXPECT_FALSE(detector.log_odds_of({}, truth, tracking()));
+}
+
 TEST(ContourDetector, FindsTheOuterEdgeExactly) {
   const Ellipse truth{160.37, 119.81, 60.0, 45.0, 0.9};
   ContourDetector detector;

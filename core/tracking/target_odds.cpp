@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/target_odds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ellipse {
+namespace {
+
+// Measured or chosen in docs/provenance.md, "Evidence over time".
+constexpr double kMemory_s = 0.3;
+constexpr double kPrior = -1.0;    // log odds: few pictures show a target
+constexpr double kReturn_s = 2.0;  // in which a target that was lost comes back
+
+constexpr double kMaxOfFrame = 5.0;  // it is no surer than its calibration
+
+double of_frame(double log_odds) {
+  return std::clamp(log_odds, -kMaxOfFrame, kMaxOfFrame);
+}
+
+}  // namespace
+
+void TargetOdds::start(double log_odds, double absence_s) {
+  last_ = of_frame(log_odds);
+  const double prior = kPrior * (1.0 - std::exp(-absence_s / kReturn_s));
+  sum_ = std::clamp(last_ + prior, -kMax, kMax);
+}
+
+void TargetOdds::add(double log_odds, double elapsed_s) {
+  const double correlation = std::exp(-elapsed_s / kMemory_s);
+  const double now = of_frame(log_odds);
+  const double news = (now - correlation * last_) / (1.0 + correlation);
+  sum_ = std::clamp(sum_ + news, -kMax, kMax);
+  last_ = now;
+}
+
+}  // namespace ellipse
