@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -9,12 +10,13 @@
 
 namespace ellipse {
 
-/// ln(p / (1 - p)); infinite for 0 and 1.
+/// ln(p / (1 - p)). Finite for 0 and 1 too, so that sums are: -27.6 and 27.6.
 [[nodiscard]] inline double log_odds(double probability) {
-  return std::log(probability / (1.0 - probability));
+  const double p = std::clamp(probability, 1e-12, 1.0 - 1e-12);
+  return std::log(p / (1.0 - p));
 }
 
-/// The inverse.
+/// ln(p / (1 - p)) = log_odds.
 [[nodiscard]] inline double probability_of(double log_odds) {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }

@@ -19,7 +19,7 @@ constexpr double kLook_s = 8.0 * kFrame_s;  // between the detector's looks whil
 constexpr double kJudge_s = 0.15;           // and between judgements of a sure outline
 constexpr double kSure = 3.0;               // log odds
 constexpr double kGivenUp = -3.0;           // log odds
-constexpr double kReturn_s = 0.4;           // in which a target that was lost keeps its number
+constexpr double kKeepsNumber_s = 0.4;      // in which a target that was lost may return
 constexpr double kLessMatched = 0.1;        // of the outline, than when it was judged last
 constexpr double kEnoughToJudge = 0.5;      // of the perimeter in view
 constexpr double kJudgedExpansion = 2.0;    // of the region, as TrackerSettings::roi_expansion
@@ -147,8 +147,8 @@ std::optional<Target> Tracker::follow_edges(const PixelView& frame, double elaps
   return target;
 }
 
-// The states in turn: see TrackerState. The detector searches while nothing is surely followed, and
-// now and then, because something better may have come into view.
+// One frame of the state machine, see TrackerState. The detector searches where nothing is followed
+// that is seen and believed, and now and then, because something better may have come into view.
 std::optional<Target> Tracker::follow(const PixelView& frame, double elapsed_s) {
   since_judged_s_ += elapsed_s;
   since_look_s_ += elapsed_s;
@@ -181,9 +181,9 @@ bool Tracker::is_believed() const {
   return odds_.value() >= std::min(wanted, TargetOdds::kMax);
 }
 
-// The detector judges the outline that is followed: at once where the odds are open or less of it
-// is matched than before, else now and then. The less is in view, the less a picture tells: what
-// was in view for the most part is not judged by less than that.
+// The detector judges the outline that is followed: at once where the odds are open or where less
+// of it is matched than before, else now and then. A short arc tells too little against an outline
+// that was seen whole: below half of the perimeter only outlines are judged that never showed more.
 void Tracker::judge_outline(const LumaWindow& window, const Target& target) {
   const auto seen = distorted(window.lens, target.ellipse);
   most_visible_ = std::max(most_visible_, target.visible_fraction);
@@ -232,7 +232,7 @@ bool Tracker::is_better_than(const Target& followed, const Target& chosen) const
                    set_around(followed.ellipse, candidates_));
 }
 
-// Of such a target the inner edges are all that the detector finds.
+// Of a target that large the detector finds the inner edges only.
 bool Tracker::is_too_large(const Ellipse& e) const {
   return !settings_.limits.admit_axes_of(e) ||
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
@@ -247,7 +247,7 @@ std::optional<Target> Tracker::acquire(const PixelView& frame, Target target) {
   } else {
     odds_.start(log_odds(target.probability), absence_s_);
     since_judged_s_ = 0.0;
-    id_ = absence_s_ < kReturn_s && is_near(last_ellipse_) ? last_id_ : last_id_ + 1;
+    id_ = absence_s_ < kKeepsNumber_s && is_near(last_ellipse_) ? last_id_ : last_id_ + 1;
   }
   target.id = id_;
   judged_overlap_ = 0.0;

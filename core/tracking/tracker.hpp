@@ -51,7 +51,7 @@ struct Target {
 /// What the tracker is doing, where edges are followed. See docs/architecture.md.
 enum class TrackerState {
   kSearching,   ///< Nothing is known: the detector searches.
-  kConfirming,  ///< Something is followed that the odds are not for yet, or no more: no report.
+  kConfirming,  ///< Something is followed, but its odds are below the limit: not reported.
   kFollowing,   ///< The target is followed, and reported.
   kCoasting,    ///< The target is not seen in this frame; its motion is continued and reported.
 };

@@ -57,8 +57,8 @@ GType gst_ellipse_state_get_type(void);
  *   its edges: share of all its edges in view that were matched
  * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; of a target followed by its
  *   edges: share of the outer edge in view that was matched
- * @probability: that it is an ellipse, by the detector when it last chose it, 0 to 1; 1 of a
- *   detector that does not say; 0 of the truth
+ * @probability: that it is a target, 0 to 1: where edges are followed, by all frames so far, else by
+ *   the detector in this frame; 1 of a detector that does not say; 0 of the truth
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale that it was found at, a power of two
  * @roi_x: left edge of the region that was searched, in px

@@ -156,7 +156,7 @@ double in_line(GstBuffer* line, const char* name) {
   return json_object_get_double_member(json_array_get_object_element(targets, 0), name);
 }
 
-TEST(TargetStates, HaveTheProbabilityOfTheirDetection) {
+TEST(TargetStates, HaveTheProbabilityOfAllFramesSoFar) {
   const auto harness = support::harness_of("ellipsetrack name=t ! ellipsejson",
                                            support::caps_of("GRAY8", 320, 240),
                                            "application/x-ndjson");

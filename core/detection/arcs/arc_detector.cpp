@@ -13,7 +13,8 @@
 namespace ellipse {
 namespace {
 
-constexpr int kScales[] = {2, 4, 1};      // in this order
+constexpr int kScales[] = {2, 4, 1};  // in this order
+constexpr int kCoarsest = 4;
 constexpr int kMinSidePx = 24;            // of a picture that is searched
 constexpr double kFitRms = 0.8;           // [px], and
 constexpr double kFitRmsRelative = 0.02;  // of the radius, or of a third of the arc
@@ -27,7 +28,7 @@ constexpr double kConvexSlackPx = 2.0;       // by which one arc may lie outside
 constexpr double kConvexSlack = 0.1;         // of their distance
 constexpr double kSame = 0.05;               // of the semi-major axis
 constexpr Tolerance kSameOutline{2.0, 0.1};  // of an outline that is judged
-constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis: half of it is enough as well
+constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis from which half the size is enough
 constexpr double kMuchLonger = 1.4;
 constexpr double kOnEllipsePx = 2.5;
 constexpr double kNoDoubt = 3.0;            // log odds
@@ -75,12 +76,12 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
   return detections_;
 }
 
-// On the smallest picture that shows it well, by the polarity that explains it better.
+// On the smallest picture that shows the outline well, by the polarity that explains it better.
 std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
   int scale = 1;
-  while (scale < kScales[1] && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
+  while (scale < kCoarsest && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
   GradientMap& map = map_at(scale);
   map.compute(scaler_.reduce(luma, scale), {thresholds.edge_low, thresholds.edge_high});
   map.set_lens(scale > 1 ? lens_.reduced(scale) : lens_);

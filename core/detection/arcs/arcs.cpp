@@ -232,7 +232,8 @@ void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t
   const auto retreat = static_cast<float>(min_retreat(noise, begin, end, half_width));
   smooth_angles(begin, end, half_width);
 
-  std::size_t lowest_at = begin, highest_at = begin;
+  std::size_t lowest_at = begin;
+  std::size_t highest_at = begin;
   float lowest = smooth_[begin];
   float highest = lowest;
   int direction = 0;

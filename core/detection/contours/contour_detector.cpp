@@ -334,8 +334,7 @@ std::optional<double> ContourDetector::log_odds_of(const ImageView& luma,
   detect_edges(luma, thresholds);
   cv::dilate(edges_, thick_edges_, cv::Mat());
   const double overlap = perimeter_support(*seen, view_of(thick_edges_)).ellipse_overlap();
-  const auto odds_of = [](double share) { return log_odds(std::clamp(share, 0.001, 0.999)); };
-  return odds_of(overlap) - odds_of(thresholds.ellipse_overlap);
+  return log_odds(overlap) - log_odds(thresholds.ellipse_overlap);
 }
 
 // The paper knows of no lens: an ellipse is one of the picture.

@@ -46,6 +46,7 @@ constexpr int kLockSteps = 3;
 constexpr double kSlowing = 0.8;    // of a motion that is not seen
 constexpr double kGainShare = 0.3;  // of what a frame tells of the contrast
 constexpr double kMinGain = 0.3;
+constexpr double kMaxGain = 3.0;
 constexpr double kLearningShare = 0.2;  // the same of the radii
 constexpr double kMinVisibleToLearn = 0.4;
 constexpr double kMinRadiusToLearnPx = 24.0;
@@ -77,7 +78,8 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
-// Of what one thirtieth of a second tells this share counts: of what more of them tell together,
+// The share of a measurement that counts after this time, where `share_of_one` of it counts after a
+// thirtieth of a second.
 double share_in(double share_of_one, double frames) {
   return 1.0 - std::pow(1.0 - share_of_one, frames);
 }
@@ -346,7 +348,7 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, 
                                    kMinInnovationRatio,
                                    kMaxInnovationRatio);
   }
-  const double gain = std::clamp(attempt.support.gain, kMinGain, 1.0 / kMinGain);
+  const double gain = std::clamp(attempt.support.gain, kMinGain, kMaxGain);
   gain_ += share_in(kGainShare, frames) * (gain - gain_);
   judge_lines(attempt.last);
   if (attempt.visible >= kMinVisibleToLearn)

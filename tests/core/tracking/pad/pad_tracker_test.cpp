@@ -260,6 +260,19 @@ TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
   EXPECT_FALSE(tracker.is_locked());
 }
 
+TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyRateOfFrames) {
+  PadTracker locked;
+  ASSERT_TRUE(locked.lock(whole(frame_of(kPad)), kPad));
+  const Picture ground = empty_frame();
+  for (const double frames : {0.5, 1.0, 2.0, 4.0}) {
+    PadTracker tracker = locked;
+    double unseen = frames;
+    while (tracker.track(whole(ground), frames)) unseen += frames;
+    EXPECT_GT(unseen, 12.0) << frames;
+    EXPECT_LE(unseen, 12.0 + frames) << frames;
+  }
+}
+
 TEST(PadTracker, FindsAPadAgainThatWasHiddenForAWhile) {
   PadTracker tracker;
   const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
