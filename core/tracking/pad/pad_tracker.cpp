@@ -46,7 +46,6 @@ constexpr int kLockSteps = 3;
 constexpr double kSlowing = 0.8;    // of a motion that is not seen
 constexpr double kGainShare = 0.3;  // of what a frame tells of the contrast
 constexpr double kMinGain = 0.3;
-constexpr double kMaxGain = 3.0;
 constexpr double kLearningShare = 0.2;  // the same of the radii
 constexpr double kMinVisibleToLearn = 0.4;
 constexpr double kMinRadiusToLearnPx = 24.0;
@@ -348,7 +347,7 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, 
                                    kMinInnovationRatio,
                                    kMaxInnovationRatio);
   }
-  const double gain = std::clamp(attempt.support.gain, kMinGain, kMaxGain);
+  const double gain = std::clamp(attempt.support.gain, kMinGain, 1.0 / kMinGain);
   gain_ += share_in(kGainShare, frames) * (gain - gain_);
   judge_lines(attempt.last);
   if (attempt.visible >= kMinVisibleToLearn)
