@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/detection/detection_trace.hpp"
 
@@ -16,6 +17,36 @@ constexpr Tolerance kOneEdge{1.5, 0.01};
 constexpr double kMaxGrowth = 2.0;
 
 constexpr double kMinShareOfBestScore = 0.25;
+
+// To leave one target for another.
+constexpr double kFartherOut = 1.1;
+constexpr double kMuchBetter = 1.5;  // in score
+
+// What is known of the set of all ellipses that are concentric with one.
+struct ConcentricSet {
+  double probability = 0.0;  // the largest; the same of all where a detector does not say
+  bool has_two_edges = false;
+  double score = 0.0;
+  double best_score = 0.0;
+
+  bool operator<(const ConcentricSet& other) const {
+    return std::tie(probability, has_two_edges, score) <
+           std::tie(other.probability, other.has_two_edges, other.score);
+  }
+};
+
+// The set around an ellipse, which need not be one of the detections.
+ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
+  ConcentricSet set;
+  for (const Detection& other : detections) {
+    if (!are_concentric(ellipse, other.ellipse)) continue;
+    set.has_two_edges = set.has_two_edges || !is_same(other.ellipse, ellipse, kOneEdge);
+    set.probability = std::max(set.probability, other.probability);
+    set.score += other.score;
+    set.best_score = std::max(set.best_score, other.score);
+  }
+  return set;
+}
 
 Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
   const double apart = (candidate.center() - last.center()).norm();
@@ -46,22 +77,6 @@ Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
   if (set.has_two_edges != best.has_two_edges) return {Reason::kSingle};
   return {Reason::kWeakerSet, set.score, best.score};
 }
-
-}  // namespace
-
-ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
-  ConcentricSet set;
-  for (const Detection& other : detections) {
-    if (!are_concentric(ellipse, other.ellipse)) continue;
-    set.has_two_edges = set.has_two_edges || !is_same(other.ellipse, ellipse, kOneEdge);
-    set.probability = std::max(set.probability, other.probability);
-    set.score += other.score;
-    set.best_score = std::max(set.best_score, other.score);
-  }
-  return set;
-}
-
-namespace {
 
 Verdict judge_place(const Detection& detection, const std::optional<Ellipse>& last_target) {
   return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
@@ -120,6 +135,19 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
   if (target == nullptr) target = seed;
   if (trace != nullptr) trace->choose(target->candidate);
   return *target;
+}
+
+bool is_better_target(const Ellipse& chosen,
+                      const Ellipse& followed,
+                      std::span<const Detection> detections) {
+  // An edge of the same target, farther out: an inner edge was followed.
+  if (are_concentric(chosen, followed) && chosen.semi_major > kFartherOut * followed.semi_major) {
+    return true;
+  }
+  const ConcentricSet other = set_around(chosen, detections);
+  const ConcentricSet own = set_around(followed, detections);
+  if (!(own < other)) return false;
+  return other.has_two_edges > own.has_two_edges || other.score > kMuchBetter * own.score;
 }
 
 }  // namespace ellipse

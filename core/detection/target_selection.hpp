@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "core/detection/detector.hpp"
 #include "core/geometry/ellipse.hpp"
@@ -26,21 +25,13 @@ namespace ellipse {
                                                      const std::optional<Ellipse>& last_target = {},
                                                      DetectionTrace* trace = nullptr);
 
-/// What is known of the set of all ellipses that are concentric with one.
-struct ConcentricSet {
-  double probability = 0.0;  ///< The largest; the same of all where a detector does not say.
-  bool has_two_edges = false;
-  double score = 0.0;
-  double best_score = 0.0;
-
-  bool operator<(const ConcentricSet& other) const {
-    return std::tie(probability, has_two_edges, score) <
-           std::tie(other.probability, other.has_two_edges, other.score);
-  }
-};
-
-/// The set around an ellipse, which need not be one of the detections.
-[[nodiscard]] ConcentricSet set_around(const Ellipse& ellipse,
-                                       std::span<const Detection> detections);
+/// Whether a target that is followed is left for another: for an edge of the same one farther out,
+/// or for a better set of concentric ellipses.
+///
+/// @param detections  Of the frame that shows both; the one that is followed need not be among
+/// them. Deterministic, thread-safe, allocates nothing; O(N).
+[[nodiscard]] bool is_better_target(const Ellipse& chosen,
+                                    const Ellipse& followed,
+                                    std::span<const Detection> detections);
 
 }  // namespace ellipse

@@ -79,10 +79,4 @@ Ellipse to_region(const Ellipse& in_frame, const Rect& region, int scale) {
   return scaled(translated(in_frame, -region.x, -region.y), 1.0 / scale);
 }
 
-int next_scale(int scale, int max_scale, double size_px, double min_size_px, double max_size_px) {
-  if (size_px > max_size_px && 2 * scale <= max_scale) return 2 * scale;
-  if (size_px < min_size_px && scale > 1) return scale / 2;
-  return scale;
-}
-
 }  // namespace ellipse

@@ -31,10 +31,4 @@ class Scaler {
 /// The inverse of to_frame().
 [[nodiscard]] Ellipse to_region(const Ellipse& in_frame, const Rect& region, int scale);
 
-/// The scale for the next frame, of [Keipour2021] Algorithm 2: twice as coarse (up to max_scale)
-/// where the target's full major axis at the processed scale is above max_size_px, twice as fine
-/// (down to 1) where it is below min_size_px.
-[[nodiscard]] int next_scale(
-    int scale, int max_scale, double size_px, double min_size_px, double max_size_px);
-
 }  // namespace ellipse

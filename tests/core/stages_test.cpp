@@ -215,14 +215,6 @@ TEST(Scale, RegionAndFrameAreInverse) {
   EXPECT_NEAR(to_frame(there, {32, 16, 100, 100}, 4).cy, e.cy, 1e-12);
 }
 
-TEST(Scale, DoublesAndHalvesWithinItsLimits) {
-  EXPECT_EQ(next_scale(1, 100, 200.0, 40.0, 120.0), 2);
-  EXPECT_EQ(next_scale(64, 100, 200.0, 40.0, 120.0), 64);
-  EXPECT_EQ(next_scale(4, 100, 20.0, 40.0, 120.0), 2);
-  EXPECT_EQ(next_scale(1, 100, 20.0, 40.0, 120.0), 1);
-  EXPECT_EQ(next_scale(4, 100, 80.0, 40.0, 120.0), 4);
-}
-
 TEST(Roi, SurroundsTheTargetOnTheGridOfTheScale) {
   const Rect roi = calculate_roi({100.0, 80.0, 20.0, 10.0, 0.0}, 2.0, 4, 640, 360);
   EXPECT_EQ(roi.x % 4, 0);

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "core/detection/contours/contour_detector.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/support/picture.hpp"
+#include "tests/support/scripted_detector.hpp"
 
 namespace ellipse {
 namespace {
@@ -20,45 +20,8 @@ namespace {
 using support::Picture;
 using support::plain_ring;
 using support::rendered;
-
-// Answers as it is told, in pixels of the frame, and remembers what it was asked.
-class ScriptedDetector final : public Detector {
- public:
-  struct Call {
-    int width;
-    int height;
-    Thresholds thresholds;
-  };
-  struct Script {
-    std::vector<std::vector<Detection>> answers;  // the last one goes on
-    std::vector<Call> calls;
-    const Tracker* tracker = nullptr;
-  };
-
-  explicit ScriptedDetector(Script& script) : script_(script) {}
-
-  std::span<const Detection> detect(const ImageView& luma, const Thresholds& thresholds) override {
-    const std::size_t turn = std::min(script_.calls.size(), script_.answers.size() - 1);
-    script_.calls.push_back({luma.width, luma.height, thresholds});
-    answer_ = script_.answers[turn];
-    const Rect& region = script_.tracker->search_region();
-    for (Detection& detection : answer_) {
-      detection.ellipse =
-          to_region(detection.ellipse, region, luma.empty() ? 1 : region.width / luma.width);
-    }
-    return answer_;
-  }
-  Overlaps detecting_overlaps() const override { return {0.95, 0.94}; }
-  Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
-
- private:
-  Script& script_;
-  std::vector<Detection> answer_;
-};
-
-Detection at(double cx, double cy, double semi_major) {
-  return {{cx, cy, semi_major, 0.9 * semi_major, 0.0}, 1.0, 1.0, 100.0};
-}
+using support::ScriptedDetector;
+constexpr auto at = support::detection_at;
 
 TrackerSettings redetecting() {
   TrackerSettings settings;
@@ -68,7 +31,9 @@ TrackerSettings redetecting() {
 
 class ScriptedTracker : public testing::Test {
  protected:
-  void SetUp() override { script_.tracker = &tracker_; }
+  void SetUp() override {
+    script_.region = [this] { return tracker_.search_region(); };
+  }
   std::optional<Target> process() { return tracker_.process(picture_.view(), 0); }
   std::optional<Target> process(const SearchScope& scope) {
     return tracker_.process(picture_.view(), 0, scope);
@@ -80,82 +45,12 @@ class ScriptedTracker : public testing::Test {
   Tracker tracker_{settings_, std::make_unique<ScriptedDetector>(script_)};
 };
 
-TEST_F(ScriptedTracker, DetectsInTheWholeFrameAndTracksInTheRegion) {
-  script_.answers = {{at(100, 100, 30)}, {at(103, 98, 30)}};
-  const auto detected = process();
-  const auto tracked = process();
-  ASSERT_TRUE(detected && tracked);
-  EXPECT_EQ(detected->state, TargetState::kDetected);
-  EXPECT_EQ(tracked->state, TargetState::kTracked);
-  EXPECT_EQ(script_.calls[0].width, 640);
-  EXPECT_EQ(script_.calls[0].thresholds.contour_overlap, 0.95);
-  EXPECT_EQ(script_.calls[0].thresholds.ellipse_overlap, 0.94);
-  // 100 px +- 2 x 30 px, and the last pixel: [40, 161).
-  EXPECT_EQ(script_.calls[1].width, 121);
-  EXPECT_EQ(script_.calls[1].thresholds.contour_overlap, 0.7);
-  EXPECT_EQ(script_.calls[1].thresholds.ellipse_overlap, 0.3);
-  EXPECT_DOUBLE_EQ(tracked->ellipse.cx, 103.0);
-  EXPECT_EQ(tracked->search_region.x, 40);
-}
-
-TEST_F(ScriptedTracker, ALossClearsTheRegionAndEndsTheId) {
-  script_.answers = {{at(100, 100, 30)}, {}, {at(100, 100, 30)}};
+TEST_F(ScriptedTracker, ALossEndsTheId) {
+  script_.answers = {{at(100, 100, 30)}, {at(100, 100, 30)}, {}, {at(100, 100, 30)}};
+  EXPECT_EQ(process()->id, 1U);
   EXPECT_EQ(process()->id, 1U);
   EXPECT_FALSE(process());
-  const auto again = process();
-  EXPECT_EQ(again->id, 2U);
-  EXPECT_EQ(again->state, TargetState::kDetected);
-  EXPECT_EQ(script_.calls[2].width, 640);
-  EXPECT_EQ(script_.calls[2].thresholds.contour_overlap, 0.95);
-}
-
-TEST_F(ScriptedTracker, ScaleDoublesWhileTheTargetIsLarge) {
-  // 260 px across at scale 1, 130 at 2, 65 at 4: above 120 twice.
-  script_.answers = {{at(320, 180, 130)}};
-  EXPECT_EQ(process()->scale, 1);
-  EXPECT_EQ(process()->scale, 2);
-  EXPECT_EQ(process()->scale, 4);
-  EXPECT_EQ(process()->scale, 4);
-  EXPECT_EQ(script_.calls[1].height, 180);
-  EXPECT_EQ(script_.calls[1].thresholds.max_axis_px, 350.0);
-}
-
-TEST_F(ScriptedTracker, ScaleHalvesWhileTheTargetIsSmall) {
-  script_.answers = {{at(320, 180, 70)}, {at(320, 180, 39)}};
-  EXPECT_EQ(process()->scale, 1);
-  EXPECT_EQ(process()->scale, 2);  // 39 px across, below 40
-  EXPECT_EQ(process()->scale, 1);
-  EXPECT_EQ(process()->scale, 1);
-}
-
-TEST_F(ScriptedTracker, ALossAtACoarseScaleIsTriedAgainAtOnce) {
-  script_.answers = {{at(320, 180, 80)}, {}, {at(320, 180, 80)}};
-  process();
-  const auto retried = process();
-  ASSERT_TRUE(retried);
-  ASSERT_EQ(script_.calls.size(), 3U);
-  EXPECT_EQ(script_.calls[1].width, 161);  // 320 +- 160 px, and the last pixel, at scale 2
-  EXPECT_EQ(script_.calls[1].thresholds.contour_overlap, 0.7);
-  EXPECT_EQ(script_.calls[2].width, 322);
-  EXPECT_EQ(script_.calls[2].thresholds.contour_overlap, 0.95);
-  EXPECT_EQ(retried->scale, 1);
-  EXPECT_EQ(retried->id, 1U);
-}
-
-TEST_F(ScriptedTracker, ALossWhereItWasTriedAgainIsALoss) {
-  script_.answers = {{at(320, 180, 80)}, {}};
-  process();
-  EXPECT_FALSE(process());
-  EXPECT_EQ(script_.calls.size(), 3U);
-  EXPECT_FALSE(process());
-  EXPECT_EQ(script_.calls.back().width, 640);
-}
-
-TEST_F(ScriptedTracker, ALossAtScaleOneIsNot) {
-  script_.answers = {{at(320, 180, 30)}, {}};
-  process();
-  EXPECT_FALSE(process());
-  EXPECT_EQ(script_.calls.size(), 2U);
+  EXPECT_EQ(process()->id, 2U);
 }
 
 TEST_F(ScriptedTracker, WithoutTrackingEachFrameStandsAlone) {
@@ -171,15 +66,6 @@ TEST_F(ScriptedTracker, WithoutTrackingEachFrameStandsAlone) {
   }
 }
 
-TEST_F(ScriptedTracker, SettingsOverruleTheDetectorsOwnOverlaps) {
-  settings_.detect_overlaps = {0.5, 0.0};
-  tracker_.configure(settings_);
-  script_.answers = {{}};
-  process();
-  EXPECT_EQ(script_.calls[0].thresholds.contour_overlap, 0.5);
-  EXPECT_EQ(script_.calls[0].thresholds.ellipse_overlap, 0.94);
-}
-
 TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
   script_.answers = {{at(100, 100, 30)}};
   process();
@@ -188,18 +74,6 @@ TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
   EXPECT_EQ(target->state, TargetState::kDetected);
   EXPECT_EQ(target->pts_ns, 5);
   EXPECT_EQ(script_.calls.back().width, 320);
-}
-
-TEST_F(ScriptedTracker, SearchesOnlyInsideTheScope) {
-  const Rect within{80, 60, 200, 100};
-  script_.answers = {{at(100, 100, 30)}};
-  process({within});
-  EXPECT_EQ(tracker_.search_region(), within);
-  // Around the target it would be from 40 to 161, and from 43 to 158.
-  EXPECT_EQ(process({within})->search_region, (Rect{80, 60, 81, 98}));
-  process({{600, 300, 200, 100}});
-  EXPECT_EQ(script_.calls.back().width, 0);  // the target's region is elsewhere
-  EXPECT_EQ(script_.calls.size(), 3U);
 }
 
 TEST_F(ScriptedTracker, WhereNothingIsSearchedTheTargetIsForgotten) {
@@ -212,18 +86,6 @@ TEST_F(ScriptedTracker, WhereNothingIsSearchedTheTargetIsForgotten) {
   EXPECT_EQ(script_.calls.size(), 1U);
   EXPECT_EQ(process()->state, TargetState::kDetected);
   EXPECT_EQ(tracker_.search_region(), (Rect{0, 0, 640, 360}));
-}
-
-TEST_F(ScriptedTracker, TheFinestScaleIsNotGoneBelow) {
-  script_.answers = {{at(320, 180, 60)}, {}};
-  const Rect all{0, 0, 640, 360};
-  EXPECT_EQ(process({all, 4})->scale, 4);
-  EXPECT_EQ(script_.calls[0].width, 160);
-  EXPECT_FALSE(process({all, 4}));
-  EXPECT_EQ(script_.calls.size(), 2U);  // a loss is not tried again
-  process({all, 1});
-  process({all, 1});
-  EXPECT_EQ(script_.calls.back().width, 640);
 }
 
 TEST_F(ScriptedTracker, TheFinestScaleStaysBelowTheCoarsest) {
@@ -241,32 +103,6 @@ TEST(Tracker, RefusesSettingsAndKeepsTheOldOnes) {
   EXPECT_THROW(tracker.configure(bad), std::invalid_argument);
   const Picture picture = rendered(plain_ring(), {160.0, 120.0, 50.0, 40.0, 0.0});
   EXPECT_TRUE(tracker.process(picture.view(), 0));
-}
-
-TEST(Tracker, OffsetsAreCompensatedExactlyBetweenScales) {
-  // Still pictures, so that only scale and region change from frame to frame; several places, so
-  // that the grain of the pixels averages away and what is left is the compensation.
-  Scene scene = plain_ring();
-  scene.sensor.read_noise = 0.0;
-  scene.sensor.blur_px = 2.0;
-  constexpr int kPlaces = 60;
-  std::array<Eigen::Vector2d, 3> mean_error;
-  mean_error.fill({0.0, 0.0});
-  for (int place = 0; place < kPlaces; ++place) {
-    const Ellipse truth{310.37 + 0.71 * place, 171.81 + 0.37 * place, 130.0, 110.0, 0.3 * place};
-    const Picture picture = rendered(scene, truth, 640, 360);
-    Tracker tracker(redetecting());
-    for (int step = 0; step < 3; ++step) {
-      const Target target = tracker.process(picture.view(), step).value();
-      EXPECT_EQ(target.scale, 1 << step);
-      mean_error[static_cast<std::size_t>(step)] +=
-          (target.ellipse.center() - truth.center()) / kPlaces;
-    }
-  }
-  for (const Eigen::Vector2d& error : mean_error) {
-    EXPECT_NEAR(error.x(), 0.0, 0.01);
-    EXPECT_NEAR(error.y(), 0.0, 0.01);
-  }
 }
 
 TEST(Tracker, FollowsALandingFromFarToNear) {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/frame_search.hpp"
+
+#include <utility>
+
+#include "core/detection/detection_trace.hpp"
+#include "core/detection/target_selection.hpp"
+
+namespace ellipse {
+namespace {
+
+double or_own(double setting, double own) {
+  return setting > 0.0 ? setting : own;
+}
+
+}  // namespace
+
+void FrameSearch::configure(const TrackerSettings& settings) {
+  settings_ = settings;
+  detector_->set_evidence(settings.evidence);
+}
+
+void FrameSearch::set_detector(std::unique_ptr<Detector> detector) {
+  detector_ = std::move(detector);
+  detector_->set_trace(trace_);
+  detector_->set_evidence(settings_.evidence);
+}
+
+void FrameSearch::set_trace(DetectionTrace* trace) {
+  trace_ = trace;
+  detector_->set_trace(trace);
+}
+
+Thresholds FrameSearch::detecting_thresholds(int scale) const {
+  return thresholds_at(scale, settings_.detect_overlaps, detector_->detecting_overlaps());
+}
+
+Thresholds FrameSearch::tracking_thresholds(int scale) const {
+  return thresholds_at(scale, settings_.track_overlaps, detector_->tracking_overlaps());
+}
+
+Thresholds FrameSearch::thresholds_at(int scale,
+                                      const Overlaps& wanted,
+                                      const Overlaps& own) const {
+  Thresholds thresholds = settings_.limits.at_scale(scale);
+  thresholds.wants_all = settings_.wants_candidates;
+  thresholds.contour_overlap = or_own(wanted.contour, own.contour);
+  thresholds.ellipse_overlap = or_own(wanted.ellipse, own.ellipse);
+  return thresholds;
+}
+
+std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
+                                               const Rect& region,
+                                               int scale,
+                                               const Thresholds& thresholds,
+                                               const std::optional<Ellipse>& last_target) {
+  const ImageView reduced = scaler_.reduce(read(frame, region), scale);
+  detector_->set_lens(frame.lens.part(Eigen::Vector2d(region.x, region.y)).reduced(scale));
+  const auto detections = detector_->detect(reduced, thresholds);
+  candidates_.assign(detections.begin(), detections.end());
+  for (Detection& candidate : candidates_) {
+    candidate.ellipse = to_frame(candidate.ellipse, region, scale);
+  }
+  const std::optional<Ellipse> last =
+      last_target ? std::optional(to_region(*last_target, region, scale)) : std::nullopt;
+  const std::optional<Detection> selected = select_target(detections, last, trace_);
+  if (trace_ != nullptr) trace_->place_in_frame(region, scale, frame.lens);
+  if (!selected) return std::nullopt;
+
+  const PixelView& pixels = frame.pixels;
+  Target target;
+  target.ellipse = to_frame(selected->ellipse, region, scale);
+  target.state = last_target ? TargetState::kTracked : TargetState::kDetected;
+  target.contour_overlap = selected->contour_overlap;
+  target.ellipse_overlap = selected->ellipse_overlap;
+  target.probability = selected->probability;
+  target.visible_fraction =
+      visible_fraction(frame.lens, target.ellipse, pixels.width, pixels.height);
+  target.scale = scale;
+  target.search_region = region;
+  return target;
+}
+
+ImageView FrameSearch::read(const ScopedFrame& frame, const Rect& region) {
+  region_ = region;
+  return luma_reader_.read(frame.pixels, region);
+}
+
+void FrameSearch::clear() {
+  region_ = {};
+  candidates_.clear();
+}
+
+}  // namespace ellipse

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/outline_judge.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/camera/lens_view.hpp"
+#include "core/tracking/roi.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr double kJudge_s = 0.15;         // between judgements of a sure outline
+constexpr double kSure = 3.0;             // log odds
+constexpr double kLessMatched = 0.1;      // of the outline, than when it was judged last
+constexpr double kEnoughToJudge = 0.5;    // of the perimeter in view
+constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
+constexpr int kCoarsestScale = 4;         // of the detector
+
+// The part of a window that shows an ellipse and its surroundings.
+LumaWindow part_around(const LumaWindow& window, const Ellipse& seen) {
+  const Rect whole{static_cast<int>(window.origin_px.x()),
+                   static_cast<int>(window.origin_px.y()),
+                   window.luma.width,
+                   window.luma.height};
+  const Rect around = intersect(calculate_roi(seen,
+                                              kJudgedExpansion,
+                                              kCoarsestScale,
+                                              static_cast<int>(window.frame_px.x()),
+                                              static_cast<int>(window.frame_px.y())),
+                                whole);
+  LumaWindow part = window;
+  part.luma =
+      window.luma.region({around.x - whole.x, around.y - whole.y, around.width, around.height});
+  part.origin_px = Eigen::Vector2d(around.x, around.y);
+  return part;
+}
+
+}  // namespace
+
+void OutlineJudge::start(double log_odds, double absence_s) {
+  odds_.start(log_odds, absence_s);
+  since_judged_s_ = 0.0;
+  most_visible_ = 0.0;
+  judged_overlap_ = 0.0;
+}
+
+void OutlineJudge::confirm(double log_odds) {
+  add(log_odds);
+  most_visible_ = 0.0;
+  judged_overlap_ = 0.0;
+}
+
+void OutlineJudge::judge(Detector& detector,
+                         const LumaWindow& window,
+                         const Target& target,
+                         const Thresholds& limits) {
+  most_visible_ = std::max(most_visible_, target.visible_fraction);
+  const auto seen = distorted(window.lens, target.ellipse);
+  if (!seen || !is_due(target)) return;
+  judged_overlap_ = target.ellipse_overlap;
+  const LumaWindow part = part_around(window, *seen);
+  const Eigen::Vector2d& origin = part.origin_px;
+  Thresholds thresholds = limits;
+  thresholds.contour_overlap = detector.tracking_overlaps().contour;
+  thresholds.ellipse_overlap = detector.tracking_overlaps().ellipse;
+  detector.set_lens(window.lens.part(origin));
+  const auto judged = detector.log_odds_of(
+      part.luma, translated(target.ellipse, -origin.x(), -origin.y()), thresholds);
+  if (judged) add(*judged);
+}
+
+// A short arc tells too little against an outline that was seen whole: below half of the perimeter
+// only outlines are judged that never showed more.
+bool OutlineJudge::is_due(const Target& target) const {
+  if (target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return false;
+  const bool is_sure =
+      log_odds() >= kSure && target.ellipse_overlap >= judged_overlap_ - kLessMatched;
+  return !is_sure || since_judged_s_ >= kJudge_s;
+}
+
+void OutlineJudge::add(double log_odds) {
+  odds_.add(log_odds, since_judged_s_);
+  since_judged_s_ = 0.0;
+}
+
+}  // namespace ellipse

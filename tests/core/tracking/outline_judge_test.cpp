@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/outline_judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+
+// Says the same of every outline.
+class CountingDetector final : public Detector {
+ public:
+  std::span<const Detection> detect(const ImageView&, const Thresholds&) override { return {}; }
+  std::optional<double> log_odds_of(const ImageView& luma,
+                                    const Ellipse& e,
+                                    const Thresholds&) override {
+    ++calls;
+    size = {0, 0, luma.width, luma.height};
+    outline = e;
+    return answer;
+  }
+  Overlaps detecting_overlaps() const override { return {}; }
+  Overlaps tracking_overlaps() const override { return {}; }
+
+  double answer = 5.0;
+  int calls = 0;
+  Rect size;
+  Ellipse outline;
+};
+
+class OutlineJudgeTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    target_.ellipse = {120.0, 100.0, 20.0, 15.0, 0.0};
+    target_.ellipse_overlap = 1.0;
+    target_.visible_fraction = 1.0;
+  }
+  // Calls of the detector in a second of frames.
+  int calls_in_a_second() {
+    const int before = detector_.calls;
+    for (int frame = 0; frame < 30; ++frame) {
+      judge_.advance(1.0 / 30.0);
+      judge_.judge(detector_, window_, target_, {});
+    }
+    return detector_.calls - before;
+  }
+
+  support::Picture picture_{200, 160};
+  LumaWindow window_{picture_.view(), {40.0, 20.0}, {640.0, 360.0}};
+  Target target_;
+  CountingDetector detector_;
+  OutlineJudge judge_;
+};
+
+TEST_F(OutlineJudgeTest, AsksInEveryFrameUntilItIsSure) {
+  detector_.answer = 0.0;
+  judge_.start(0.0, kNever_s);
+  EXPECT_EQ(calls_in_a_second(), 30);
+  detector_.answer = 5.0;
+  judge_.start(5.0, kNever_s);
+  EXPECT_LT(calls_in_a_second(), 8);
+}
+
+TEST_F(OutlineJudgeTest, AsksAtOnceWhereLessIsMatched) {
+  judge_.start(5.0, kNever_s);
+  judge_.judge(detector_, window_, target_, {});
+  judge_.advance(1.0);
+  judge_.judge(detector_, window_, target_, {});
+  const int before = detector_.calls;
+  judge_.judge(detector_, window_, target_, {});
+  EXPECT_EQ(detector_.calls, before);
+  target_.ellipse_overlap = 0.8;
+  judge_.judge(detector_, window_, target_, {});
+  EXPECT_EQ(detector_.calls, before + 1);
+}
+
+TEST_F(OutlineJudgeTest, AShortArcOfWhatWasSeenWholeTellsNothing) {
+  judge_.start(0.0, kNever_s);
+  judge_.judge(detector_, window_, target_, {});
+  target_.visible_fraction = 0.3;
+  EXPECT_EQ(calls_in_a_second(), 0);
+  judge_.start(0.0, kNever_s);  // another one, which never showed more
+  EXPECT_GT(calls_in_a_second(), 0);
+}
+
+TEST_F(OutlineJudgeTest, ShowsTheOutlineWithItsSurroundingsAlone) {
+  judge_.start(0.0, kNever_s);
+  judge_.judge(detector_, window_, target_, {});
+  // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).
+  EXPECT_EQ(detector_.size.width, 84);
+  EXPECT_DOUBLE_EQ(detector_.outline.cx, 40.0);
+}
+
+TEST_F(OutlineJudgeTest, OddsFallWithTheEvidence) {
+  judge_.start(5.0, kNever_s);
+  detector_.answer = -5.0;
+  (void)calls_in_a_second();
+  EXPECT_EQ(judge_.log_odds(), -TargetOdds::kMax);
+}
+
+}  // namespace
+}  // namespace ellipse
