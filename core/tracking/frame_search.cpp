@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/frame_search.hpp"
 
-#include <utility>
-
 #include "core/detection/detection_trace.hpp"
 #include "core/detection/target_selection.hpp"
 

@@ -90,6 +90,7 @@ std::optional<Target> Tracker::track(const ScopedFrame& frame, double elapsed_s)
                                      ? redetect_tracker_->track_target(frame, *search_, settings_)
                                      : detect(frame);
   if (target) target->id = had_target_ ? last_id_ : last_id_ + 1;
+  state_ = target ? TrackerState::kFollowing : TrackerState::kSearching;
   return target;
 }
 
@@ -107,7 +108,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (wants_look(target)) target = look(frame, target);
-  if (judge_->log_odds() < kGivenUp) pad_tracker_->release();
+  if (judge_->log_odds() < kGivenUp) pad_tracker_->release();  // given up
 
   if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
   if (target) hypothesis_ = target->ellipse;
@@ -118,8 +119,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
   return target;
 }
 
-// Where nothing is seen any more, or it was given up, Searching. Below the odds that are wanted,
-// Confirming. Above them Following, or Coasting while its motion is continued unseen.
+// Each line is the way into a state, from any other.
 TrackerState Tracker::state_after(const std::optional<Target>& target) const {
   if (!target) return TrackerState::kSearching;
   if (judge_->log_odds() < wanted_log_odds()) return TrackerState::kConfirming;

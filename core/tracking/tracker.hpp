@@ -21,9 +21,10 @@ class RedetectTracker;
 struct LumaWindow;
 struct ScopedFrame;
 
-/// What the tracker is doing, where edges are followed. See docs/architecture.md.
+/// What the tracker is doing. See docs/architecture.md. Where edges are not followed it is
+/// searching in a frame without a target and following in one with a target.
 enum class TrackerState {
-  kSearching,   ///< Nothing is known: the detector searches.
+  kSearching,   ///< No target is known: the detector searches.
   kConfirming,  ///< Something is followed, but its odds are below the limit: not reported.
   kFollowing,   ///< The target is followed, and reported.
   kCoasting,    ///< The target is not seen in this frame; its motion is continued and reported.
@@ -72,7 +73,7 @@ class Tracker {
   /// where a frame is searched twice, the second time is. nullptr = no more. Borrowed.
   void set_trace(DetectionTrace* trace);
 
-  /// After the last frame; kSearching where edges are not followed.
+  /// After the last frame.
   [[nodiscard]] TrackerState state() const { return state_; }
 
   /// Where the last frame was searched [px].

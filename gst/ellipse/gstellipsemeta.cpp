@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "core/geometry/ellipse.hpp"
 #include "core/image/image_view.hpp"
+#include "gst/ellipse/enum_nick.hpp"
 
 GType gst_ellipse_role_get_type(void) {
   static const GEnumValue kValues[] = {
@@ -51,19 +51,6 @@ GType gst_ellipse_meta_api_get_type(void) {
                                  nullptr};
   static const GType kType = gst_meta_api_type_register("GstEllipseMetaAPI", kTags);
   return kType;
-}
-
-// The field is read as the number that it is: it may come from anybody, and be no value of its
-// type.
-template <class Enum>
-static const gchar* nick_of(GType type, const Enum* field) {
-  gint number = 0;
-  static_assert(sizeof(Enum) == sizeof(gint));
-  std::memcpy(&number, field, sizeof number);
-  auto* enum_class = static_cast<GEnumClass*>(g_type_class_ref(type));
-  const GEnumValue* entry = g_enum_get_value(enum_class, number);
-  g_type_class_unref(enum_class);  // static types keep their strings
-  return entry != nullptr ? entry->value_nick : "unknown";
 }
 
 // All fields but the parent.

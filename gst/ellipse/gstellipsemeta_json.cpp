@@ -279,6 +279,15 @@ static void append_time(GString* json, const gchar* name, GstClockTime time) {
   }
 }
 
+static void append_tracker_state(GString* json, const GstEllipseSearchMeta* search) {
+  if (search == nullptr || search->tracker_state == GST_ELLIPSE_TRACKER_STATE_UNKNOWN) {
+    g_string_append(json, ",\"tracker\":null");
+  } else {
+    g_string_append_printf(
+        json, ",\"tracker\":\"%s\"", gst_ellipse_search_meta_get_tracker_state_name(search));
+  }
+}
+
 /**
  * gst_buffer_ellipses_to_json:
  * @buffer: a buffer
@@ -287,8 +296,8 @@ static void append_time(GString* json, const gchar* name, GstClockTime time) {
  * @height: height of the frame in px
  *
  * All that a frame says of ellipses as a JSON object on one line, without a newline: frame, pts_ns,
- * width, height, processing_ns, and the array targets, also where nothing was found. It is what the
- * element ellipsejson writes.
+ * width, height, processing_ns, the state of the tracker, and the array targets, also where nothing
+ * was found. It is what the element ellipsejson writes.
  *
  * Returns: (transfer full): a new string, which `g_free()` frees
  *
@@ -303,6 +312,7 @@ gchar* gst_buffer_ellipses_to_json(GstBuffer* buffer, guint64 frame, guint width
   const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
   append_time(
       json, "processing_ns", search != nullptr ? search->processing_time : GST_CLOCK_TIME_NONE);
+  append_tracker_state(json, search);
   g_string_append(json, ",\"targets\":[");
   gpointer state = nullptr;
   const gchar* separator = "";

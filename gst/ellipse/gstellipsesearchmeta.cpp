@@ -4,6 +4,21 @@
 #include <gst/video/gstvideometa.h>
 #include <gst/video/video.h>
 
+#include "gst/ellipse/enum_nick.hpp"
+
+GType gst_ellipse_tracker_state_get_type(void) {
+  static const GEnumValue kValues[] = {
+      {GST_ELLIPSE_TRACKER_STATE_UNKNOWN, "GST_ELLIPSE_TRACKER_STATE_UNKNOWN", "unknown"},
+      {GST_ELLIPSE_TRACKER_STATE_SEARCHING, "GST_ELLIPSE_TRACKER_STATE_SEARCHING", "searching"},
+      {GST_ELLIPSE_TRACKER_STATE_CONFIRMING, "GST_ELLIPSE_TRACKER_STATE_CONFIRMING", "confirming"},
+      {GST_ELLIPSE_TRACKER_STATE_FOLLOWING, "GST_ELLIPSE_TRACKER_STATE_FOLLOWING", "following"},
+      {GST_ELLIPSE_TRACKER_STATE_COASTING, "GST_ELLIPSE_TRACKER_STATE_COASTING", "coasting"},
+      {0, nullptr, nullptr},
+  };
+  static const GType kType = g_enum_register_static("GstEllipseTrackerState", kValues);
+  return kType;
+}
+
 /**
  * gst_ellipse_search_meta_api_get_type:
  *
@@ -25,7 +40,9 @@ GType gst_ellipse_search_meta_api_get_type(void) {
 }
 
 static gboolean search_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  reinterpret_cast<GstEllipseSearchMeta*>(meta)->processing_time = GST_CLOCK_TIME_NONE;
+  auto* search = reinterpret_cast<GstEllipseSearchMeta*>(meta);
+  search->processing_time = GST_CLOCK_TIME_NONE;
+  search->tracker_state = GST_ELLIPSE_TRACKER_STATE_UNKNOWN;
   return TRUE;
 }
 
@@ -35,7 +52,10 @@ static gboolean search_meta_transform(
       GST_META_TRANSFORM_IS_COPY(type) && !static_cast<const GstMetaTransformCopy*>(data)->region;
   if (!is_whole_copy && !GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
   const auto* source = reinterpret_cast<const GstEllipseSearchMeta*>(meta);
-  return gst_buffer_add_ellipse_search_meta(to, source->processing_time) != nullptr;
+  GstEllipseSearchMeta* copy = gst_buffer_add_ellipse_search_meta(to, source->processing_time);
+  if (copy == nullptr) return FALSE;
+  copy->tracker_state = source->tracker_state;
+  return TRUE;
 }
 
 /**
@@ -62,7 +82,8 @@ const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
  * @buffer: (transfer none): a writable #GstBuffer
  * @processing_time: time spent on the frame, in ns; %GST_CLOCK_TIME_NONE where it is not known
  *
- * Notes on a buffer that its frame was searched.
+ * Notes on a buffer that its frame was searched. What the tracker was doing is still to be filled
+ * in: `GST_ELLIPSE_TRACKER_STATE_UNKNOWN`.
  *
  * Returns: (transfer none): the #GstEllipseSearchMeta, owned by the buffer
  *
@@ -92,4 +113,20 @@ GstEllipseSearchMeta* gst_buffer_get_ellipse_search_meta(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
   return reinterpret_cast<GstEllipseSearchMeta*>(
       gst_buffer_get_meta(buffer, GST_ELLIPSE_SEARCH_META_API_TYPE));
+}
+
+/**
+ * gst_ellipse_search_meta_get_tracker_state_name:
+ * @meta: what is known of a frame's search
+ *
+ * What the tracker was doing, in a word. Thread-safe; allocates nothing.
+ *
+ * Returns: (transfer none): "searching", "confirming", "following" or "coasting"; "unknown" for any
+ *   other number
+ *
+ * Since: 0.1
+ */
+const gchar* gst_ellipse_search_meta_get_tracker_state_name(const GstEllipseSearchMeta* meta) {
+  g_return_val_if_fail(meta != nullptr, nullptr);
+  return nick_of(GST_TYPE_ELLIPSE_TRACKER_STATE, &meta->tracker_state);
 }

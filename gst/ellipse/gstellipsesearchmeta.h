@@ -5,9 +5,35 @@
 G_BEGIN_DECLS
 
 /**
+ * GstEllipseTrackerState:
+ * @GST_ELLIPSE_TRACKER_STATE_UNKNOWN: not told
+ * @GST_ELLIPSE_TRACKER_STATE_SEARCHING: no target is known
+ * @GST_ELLIPSE_TRACKER_STATE_CONFIRMING: something is followed that is not yet, or no longer,
+ * likely enough to be reported
+ * @GST_ELLIPSE_TRACKER_STATE_FOLLOWING: a target is seen and reported
+ * @GST_ELLIPSE_TRACKER_STATE_COASTING: a target is reported but not seen; its motion is continued
+ *
+ * What a tracker was doing in a frame. Where it does not follow edges (tracking=redetect and
+ * tracking=none) it is either searching or following.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  GST_ELLIPSE_TRACKER_STATE_UNKNOWN,
+  GST_ELLIPSE_TRACKER_STATE_SEARCHING,
+  GST_ELLIPSE_TRACKER_STATE_CONFIRMING,
+  GST_ELLIPSE_TRACKER_STATE_FOLLOWING,
+  GST_ELLIPSE_TRACKER_STATE_COASTING,
+} GstEllipseTrackerState;
+
+#define GST_TYPE_ELLIPSE_TRACKER_STATE (gst_ellipse_tracker_state_get_type())
+GType gst_ellipse_tracker_state_get_type(void);
+
+/**
  * GstEllipseSearchMeta:
  * @meta: parent
  * @processing_time: time spent on the frame, in ns
+ * @tracker_state: what the tracker was doing
  *
  * Says that a frame was searched for a target, also where none was found. Lives as long as the
  * #GstEllipseMeta beside it would: an element that keeps those keeps this.
@@ -19,6 +45,7 @@ struct _GstEllipseSearchMeta {
   GstMeta meta;
 
   GstClockTime processing_time;
+  GstEllipseTrackerState tracker_state;
 };
 
 #define GST_ELLIPSE_SEARCH_META_API_TYPE (gst_ellipse_search_meta_api_get_type())
@@ -31,5 +58,7 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
                                                          GstClockTime processing_time);
 
 GstEllipseSearchMeta* gst_buffer_get_ellipse_search_meta(GstBuffer* buffer);
+
+const gchar* gst_ellipse_search_meta_get_tracker_state_name(const GstEllipseSearchMeta* meta);
 
 G_END_DECLS

@@ -23,6 +23,7 @@
 #include <set>
 #include <string>
 
+#include "gst/track/target_meta.hpp"
 #include "gst/track/track_frame.hpp"
 #include "gst/track/video_view.hpp"
 
@@ -169,12 +170,15 @@ static void gst_ellipse_track_get_property(GObject* object,
   GST_OBJECT_LOCK(self);
   const std::optional<GstEllipseMeta> target = self->shared->target;
   const TrackStats stats = self->shared->stats;
+  const ellipse::TrackerState tracker_state = self->shared->tracker_state;
   const TrackProperties properties = self->shared->properties;
   GST_OBJECT_UNLOCK(self);
   if (id == PROP_TARGET) {
     if (target) g_value_take_boxed(value, gst_ellipse_meta_to_structure(&*target));
   } else if (id == PROP_STATS) {
-    g_value_take_boxed(value, stats.to_structure());
+    GstStructure* structure = stats.to_structure();
+    gst_structure_set(structure, "tracker", G_TYPE_STRING, nick_of(tracker_state), nullptr);
+    g_value_take_boxed(value, structure);
   } else {
     properties.get(id - PROP_FIRST_SETTING, value);
   }

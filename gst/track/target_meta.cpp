@@ -5,8 +5,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gst/ellipse/enum_nick.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
 #include "gst/overlay/meta_outline.hpp"
+
+static GstEllipseTrackerState in_metadata(ellipse::TrackerState state) {
+  switch (state) {
+    case ellipse::TrackerState::kSearching:
+      return GST_ELLIPSE_TRACKER_STATE_SEARCHING;
+    case ellipse::TrackerState::kConfirming:
+      return GST_ELLIPSE_TRACKER_STATE_CONFIRMING;
+    case ellipse::TrackerState::kFollowing:
+      return GST_ELLIPSE_TRACKER_STATE_FOLLOWING;
+    case ellipse::TrackerState::kCoasting:
+      return GST_ELLIPSE_TRACKER_STATE_COASTING;
+  }
+  return GST_ELLIPSE_TRACKER_STATE_UNKNOWN;
+}
+
+const gchar* nick_of(ellipse::TrackerState state) {
+  const GstEllipseTrackerState value = in_metadata(state);
+  return nick_of(GST_TYPE_ELLIPSE_TRACKER_STATE, &value);
+}
 
 static GstEllipseMeta* attach(GstBuffer* buffer,
                               GstEllipseRole role,
@@ -126,7 +146,8 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
                                    const TrackProperties& properties,
                                    const GstVideoInfo& info,
                                    GstClockTime processing_time) {
-  gst_buffer_add_ellipse_search_meta(buffer, processing_time);
+  gst_buffer_add_ellipse_search_meta(buffer, processing_time)->tracker_state =
+      in_metadata(tracker.state());
   const GstEllipseMeta* meta = nullptr;
   if (target) {
     meta = attach_target_meta(buffer, *target, tracker.lens(), info, processing_time);

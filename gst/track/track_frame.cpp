@@ -57,16 +57,18 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                             processing_time);
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target = target;
+  const ellipse::TrackerState tracker_state = self->stream->tracker.state();
 
   GST_OBJECT_LOCK(self);
   self->shared->stats.add_analysed(target, processing_time);
+  self->shared->tracker_state = tracker_state;
   self->shared->target.reset();
   if (meta != nullptr) self->shared->target = *meta;
   GST_OBJECT_UNLOCK(self);
 
   if (properties.messages == MESSAGES_EVERY_FRAME ||
       (properties.messages == MESSAGES_ON_CHANGE && has_changed(before, target))) {
-    post_target_message(GST_ELEMENT(self), times, meta);
+    post_target_message(GST_ELEMENT(self), times, meta, nick_of(tracker_state));
   }
   emit_change(self, before, target, meta);
   return meta;
@@ -98,13 +100,15 @@ static void forget_target(GstEllipseTrack* self,
   self->stream->tracker.reset();
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target.reset();
+  const ellipse::TrackerState tracker_state = self->stream->tracker.state();
   GST_OBJECT_LOCK(self);
   self->shared->stats.forget_target();
+  self->shared->tracker_state = tracker_state;
   self->shared->target.reset();
   GST_OBJECT_UNLOCK(self);
   if (!before) return;
   if (properties.messages != MESSAGES_NONE) {
-    post_target_message(GST_ELEMENT(self), times, nullptr);
+    post_target_message(GST_ELEMENT(self), times, nullptr, nick_of(tracker_state));
   }
   emit_change(self, before, std::nullopt, nullptr);
 }

@@ -35,6 +35,7 @@ struct TrackShared {
   TrackStats stats;
   Lateness lateness;
   std::optional<GstEllipseMeta> target;  ///< In the last analysed frame.
+  ellipse::TrackerState tracker_state = ellipse::TrackerState::kSearching;  ///< After it.
   GstClockTime told_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;

@@ -29,11 +29,15 @@ bool has_changed(const std::optional<ellipse::Target>& before,
          (now && (before->id != now->id || before->state != now->state));
 }
 
-void post_target_message(GstElement* element, const FrameTimes& times, const GstEllipseMeta* meta) {
-  post(element,
-       times,
-       meta != nullptr ? gst_ellipse_meta_to_structure(meta)
-                       : gst_structure_new("ellipse", "state", G_TYPE_STRING, "lost", nullptr));
+void post_target_message(GstElement* element,
+                         const FrameTimes& times,
+                         const GstEllipseMeta* meta,
+                         const gchar* tracker_state) {
+  GstStructure* structure =
+      meta != nullptr ? gst_ellipse_meta_to_structure(meta)
+                      : gst_structure_new("ellipse", "state", G_TYPE_STRING, "lost", nullptr);
+  gst_structure_set(structure, "tracker", G_TYPE_STRING, tracker_state, nullptr);
+  post(element, times, structure);
 }
 
 void post_load_message(GstElement* element,

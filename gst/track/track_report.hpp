@@ -25,8 +25,12 @@ struct FrameTimes {
                                const std::optional<ellipse::Target>& now);
 
 /// Posts the element message "ellipse".
-/// @param meta  The target's; nullptr where there is none, whose state is "lost".
-void post_target_message(GstElement* element, const FrameTimes& times, const GstEllipseMeta* meta);
+/// @param meta           The target's; nullptr where there is none, whose state is "lost".
+/// @param tracker_state  See nick_of().
+void post_target_message(GstElement* element,
+                         const FrameTimes& times,
+                         const GstEllipseMeta* meta,
+                         const gchar* tracker_state);
 
 /// Posts the element message "ellipse-load": what is done about analyses that take too long.
 /// @param processing_time  That of the last frame [ns].

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "core/geometry/ellipse.hpp"
@@ -207,13 +208,15 @@ TEST(EllipseMeta, JsonOfAFrameListsAllOfItsEllipses) {
   const auto buffer = empty_buffer();
   add_example(buffer.get());
   gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
-  gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  gst_buffer_add_ellipse_search_meta(buffer.get(), 250)->tracker_state =
+      GST_ELLIPSE_TRACKER_STATE_COASTING;
   gchar* text = gst_buffer_ellipses_to_json(buffer.get(), 17, 320, 240);
   const Owned<JsonParser> parser(json_parser_new());
   ASSERT_TRUE(json_parser_load_from_data(parser.get(), text, -1, nullptr)) << text;
   JsonObject* object = json_node_get_object(json_parser_get_root(parser.get()));
   EXPECT_EQ(json_object_get_int_member(object, "frame"), 17);
   EXPECT_EQ(json_object_get_int_member(object, "processing_ns"), 250);
+  EXPECT_STREQ(json_object_get_string_member(object, "tracker"), "coasting");
   EXPECT_TRUE(json_object_get_null_member(object, "pts_ns"));
   EXPECT_EQ(json_array_get_length(json_object_get_array_member(object, "targets")), 2U);
   g_free(text);
@@ -222,12 +225,15 @@ TEST(EllipseMeta, JsonOfAFrameListsAllOfItsEllipses) {
 TEST(EllipseSearchMeta, LivesAsLongAsTheEllipses) {
   const auto buffer = empty_buffer();
   EXPECT_EQ(gst_buffer_get_ellipse_search_meta(buffer.get()), nullptr);
-  gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  gst_buffer_add_ellipse_search_meta(buffer.get(), 250)->tracker_state =
+      GST_ELLIPSE_TRACKER_STATE_CONFIRMING;
   const Owned<GstBuffer> copy(gst_buffer_copy(buffer.get()));
   const Owned<GstBuffer> part(gst_buffer_copy_region(
       buffer.get(), static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_ALL), 0, 8));
   ASSERT_NE(gst_buffer_get_ellipse_search_meta(copy.get()), nullptr);
   EXPECT_EQ(gst_buffer_get_ellipse_search_meta(copy.get())->processing_time, 250U);
+  EXPECT_EQ(gst_buffer_get_ellipse_search_meta(copy.get())->tracker_state,
+            GST_ELLIPSE_TRACKER_STATE_CONFIRMING);
   EXPECT_EQ(gst_buffer_get_ellipse_search_meta(part.get()), nullptr);
   for (guint i = 0; gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i] != nullptr; ++i) {
     const gchar* tag = gst_meta_api_type_get_tags(GST_ELLIPSE_META_API_TYPE)[i];
@@ -235,6 +241,20 @@ TEST(EllipseSearchMeta, LivesAsLongAsTheEllipses) {
         gst_meta_api_type_has_tag(GST_ELLIPSE_SEARCH_META_API_TYPE, g_quark_from_string(tag)))
         << tag;
   }
+}
+
+TEST(EllipseSearchMeta, NamesTheStateOfTheTracker) {
+  const auto buffer = empty_buffer();
+  GstEllipseSearchMeta* meta = gst_buffer_add_ellipse_search_meta(buffer.get(), 250);
+  const auto name_of = [&](int state) {
+    std::memcpy(&meta->tracker_state, &state, sizeof state);
+    return std::string(gst_ellipse_search_meta_get_tracker_state_name(meta));
+  };
+  EXPECT_EQ(meta->tracker_state, GST_ELLIPSE_TRACKER_STATE_UNKNOWN);
+  EXPECT_EQ(name_of(GST_ELLIPSE_TRACKER_STATE_SEARCHING), "searching");
+  EXPECT_EQ(name_of(GST_ELLIPSE_TRACKER_STATE_FOLLOWING), "following");
+  EXPECT_EQ(name_of(GST_ELLIPSE_TRACKER_STATE_UNKNOWN), "unknown");
+  EXPECT_EQ(name_of(77), "unknown");
 }
 
 TEST(EllipseMeta, NamesRoleAndState) {

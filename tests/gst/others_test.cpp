@@ -35,7 +35,7 @@ TEST(EllipseJson, WritesALineAFrame) {
   }
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "{\"frame\":0,\"pts_ns\":0,\"width\":64,\"height\":48,\"processing_ns\":null,"
-            "\"targets\":[]}");
+            "\"tracker\":null,\"targets\":[]}");
   EXPECT_NE(text.find("{\"frame\":1,\"pts_ns\":40000000,"), std::string::npos);
   EXPECT_NE(text.find("\"cx\":32.2500,\"cy\":24.5000,\"semi_major\":10.0000"), std::string::npos);
   EXPECT_EQ(text.back(), '\n');
@@ -53,6 +53,10 @@ TEST(EllipseJson, TellsAFruitlessSearchFromNone) {
     JsonObject* line = object_of(lines[i]);
     EXPECT_EQ(json_array_get_length(json_object_get_array_member(line, "targets")), 0U) << i;
     EXPECT_EQ(json_object_get_null_member(line, "processing_ns"), i % 2 == 1) << i;
+    EXPECT_EQ(json_object_get_null_member(line, "tracker"), i % 2 == 1) << i;
+    if (i % 2 == 0) {
+      EXPECT_STREQ(json_object_get_string_member(line, "tracker"), "searching") << i;
+    }
   }
 }
 

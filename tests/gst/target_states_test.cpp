@@ -3,9 +3,11 @@
 // What people are told of a target that is seen, half hidden, hidden, gone and back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "gst/ellipse/gstellipsesearchmeta.h"
 #include "tests/gst/tracker_harness.hpp"
 #include "tests/gst/verdicts.hpp"
 
@@ -44,18 +46,21 @@ Picture picture_of(Sight sight, int frame) {
   return support::rendered(scene, pad, 320, 240, static_cast<std::uint64_t>(frame));
 }
 
-// The state and the number of a target, as one of the three ways tells of them.
+// The state and the number of a target, and what the tracker is doing, as one of the three ways
+// tells of them.
 using Told = std::string;
 
-Told told(const char* state, std::uint64_t id) {
-  return id == 0 ? "lost" : state + std::string(" ") + std::to_string(id);
+Told told(const std::string& state, std::uint64_t id, const std::string& tracker) {
+  return (id == 0 ? "lost" : state + " " + std::to_string(id)) + ", " + tracker;
 }
 
 Told by_metadata(GstBuffer* buffer) {
+  const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
+  const char* tracker = gst_ellipse_search_meta_get_tracker_state_name(search);
   const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
-  if (meta == nullptr) return told("", 0);
+  if (meta == nullptr) return told("", 0, tracker);
   const Owned<GstStructure> structure(gst_ellipse_meta_to_structure(meta));
-  return told(gst_structure_get_string(structure.get(), "state"), meta->id);
+  return told(gst_structure_get_string(structure.get(), "state"), meta->id, tracker);
 }
 
 Told by_message(BusTap& bus) {
@@ -64,17 +69,26 @@ Told by_message(BusTap& bus) {
   const GstStructure* structure = gst_message_get_structure(message.get());
   guint64 id = 0;
   gst_structure_get_uint64(structure, "id", &id);
-  const char* state = gst_structure_get_string(structure, "state");
-  return id == 0 ? state : told(state, id);
+  return told(gst_structure_get_string(structure, "state"),
+              id,
+              gst_structure_get_string(structure, "tracker"));
 }
 
 Told by_line(GstBuffer* line) {
   const auto lines = support::parse_ndjson(std::istringstream(support::bytes_of(line)));
-  JsonArray* targets = json_object_get_array_member(object_of(lines.at(0)), "targets");
-  if (json_array_get_length(targets) == 0) return told("", 0);
+  JsonObject* frame = object_of(lines.at(0));
+  const char* tracker = json_object_get_string_member(frame, "tracker");
+  JsonArray* targets = json_object_get_array_member(frame, "targets");
+  if (json_array_get_length(targets) == 0) return told("", 0, tracker);
   JsonObject* target = json_array_get_object_element(targets, 0);
   return told(json_object_get_string_member(target, "state"),
-              static_cast<std::uint64_t>(json_object_get_int_member(target, "id")));
+              static_cast<std::uint64_t>(json_object_get_int_member(target, "id")),
+              tracker);
+}
+
+std::string tracker_in_stats(GstElement* element) {
+  const Owned<GstStructure> stats(support::structure_property(element, "stats"));
+  return gst_structure_get_string(stats.get(), "tracker");
 }
 
 GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
@@ -106,6 +120,7 @@ std::vector<Told> story() {
       const auto line = support::push(harness, std::move(buffer));
       EXPECT_EQ(by_message(bus), on_buffer) << frame;
       EXPECT_EQ(by_line(line.get()), on_buffer) << frame;
+      EXPECT_TRUE(on_buffer.ends_with(", " + tracker_in_stats(element))) << frame;
       story.push_back(on_buffer);
     }
   }
@@ -126,15 +141,64 @@ std::string summary_of(const std::vector<Told>& story) {
 TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
   // Hidden for a moment it keeps its number; gone for longer than it is waited for, it does not.
   EXPECT_EQ(summary_of(story()),
-            "1 x detected 1\n"
-            "19 x tracked 1\n"
-            "10 x predicted 1\n"
-            "10 x tracked 1\n"
-            "4 x lost\n"
-            "16 x tracked 1\n"
-            "20 x lost\n"
-            "1 x detected 2\n"
-            "9 x tracked 2\n");
+            "1 x detected 1, following\n"
+            "19 x tracked 1, following\n"
+            "10 x predicted 1, coasting\n"
+            "10 x tracked 1, following\n"
+            "4 x lost, searching\n"
+            "16 x tracked 1, following\n"
+            "20 x lost, searching\n"
+            "1 x detected 2, following\n"
+            "9 x tracked 2, following\n");
+}
+
+// A disc that comes into view: half of one may be anything.
+TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
+  const auto harness = support::harness_of(
+      "ellipsetrack name=t min-probability=0.98 messages=every-frame ! ellipsejson",
+      support::caps_of("GRAY8", 320, 240),
+      "application/x-ndjson");
+  BusTap bus(support::element_of(harness));
+  ellipse::Scene scene = support::plain_ring();
+  scene.pad.pattern = ellipse::Pattern::kDisc;
+  std::vector<Told> story;
+  for (int frame = 0; frame < 60; ++frame) {
+    auto buffer =
+        support::gray_buffer_of(support::rendered(scene, {-10.0 + frame, 110.0, 40.0, 32.0, 0.3}));
+    GST_BUFFER_PTS(buffer.get()) =
+        gst_util_uint64_scale(static_cast<guint64>(frame), GST_SECOND, 30);
+    story.push_back(by_line(support::push(harness, std::move(buffer)).get()));
+    EXPECT_EQ(by_message(bus), story.back()) << frame;
+  }
+  const auto confirming = std::find(story.begin(), story.end(), "lost, confirming");
+  const auto following = std::find(story.begin(), story.end(), "tracked 1, following");
+  EXPECT_LT(confirming, following);
+  EXPECT_NE(following, story.end());
+}
+
+TEST(TargetStates, AreFollowedOrSearchedForWhereEdgesAreNotFollowed) {
+  for (const std::string tracking : {"redetect", "none"}) {
+    const auto harness = support::harness_of("ellipsetrack name=t ! ellipsejson",
+                                             support::caps_of("GRAY8", 320, 240),
+                                             "application/x-ndjson");
+    gst_util_set_object_arg(G_OBJECT(support::element_of(harness)), "tracking", tracking.c_str());
+    const auto told_of = [&](Sight sight) {
+      auto buffer = support::gray_buffer_of(picture_of(sight, 0));
+      return by_line(support::push(harness, std::move(buffer)).get());
+    };
+    EXPECT_EQ(told_of(Sight::kClear), "detected 1, following") << tracking;
+    EXPECT_EQ(told_of(Sight::kHidden), "lost, searching") << tracking;
+  }
+}
+
+TEST(TargetStates, AreSearchedForAfterAReset) {
+  const auto harness = support::tracker();
+  GstElement* element = support::element_of(harness);
+  (void)support::push(harness, support::gray_buffer_of(picture_of(Sight::kClear, 0)));
+  EXPECT_EQ(tracker_in_stats(element), "following");
+  gst_harness_push_event(harness.get(), gst_event_new_flush_start());
+  gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
+  EXPECT_EQ(tracker_in_stats(element), "searching");
 }
 
 struct Seen {

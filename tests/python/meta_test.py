@@ -61,6 +61,16 @@ class EllipseMeta(unittest.TestCase):
         self.assertEqual((read.get_role_name(), read.get_state_name()), ("target", "tracked"))
         self.assertEqual(read.state.value_nick, "tracked")
 
+    def test_says_what_the_tracker_was_doing(self):
+        buffer = buffer_with()
+        search = GstEllipse.buffer_add_ellipse_search_meta(buffer, 5)
+        self.assertEqual(search.get_tracker_state_name(), "unknown")
+        search.tracker_state = GstEllipse.EllipseTrackerState.CONFIRMING
+        read = GstEllipse.buffer_get_ellipse_search_meta(buffer)
+        self.assertEqual(read.get_tracker_state_name(), "confirming")
+        line = json.loads(GstEllipse.buffer_ellipses_to_json(buffer, 0, 320, 240))
+        self.assertEqual((line["processing_ns"], line["tracker"]), (5, "confirming"))
+
     def test_follows_a_copy_of_the_buffer(self):
         copy = buffer_with(TRUTH, TARGET).copy_deep()
         self.assertEqual([e.id for e in GstEllipse.buffer_list_ellipse_meta(copy)], [1, 2])

@@ -44,6 +44,7 @@ export class Status {
       at("figure-time").textContent = `${(line.processing_ns / 1e6).toFixed(2)} ms`;
     }
     at("figure-rate").textContent = rateText(this.#times);
+    at("figure-tracker").textContent = line.tracker ?? "–";
   }
 
   /** A picture was painted. */

@@ -53,6 +53,19 @@ TEST_F(ScriptedTracker, ALossEndsTheId) {
   EXPECT_EQ(process()->id, 2U);
 }
 
+TEST_F(ScriptedTracker, IsFollowingOrSearchingWhereEdgesAreNotFollowed) {
+  for (const TrackingMode mode : {TrackingMode::kRedetect, TrackingMode::kNone}) {
+    settings_.tracking = mode;
+    tracker_.configure(settings_);
+    script_.calls.clear();
+    script_.answers = {{at(100, 100, 30)}, {}};
+    EXPECT_TRUE(process());
+    EXPECT_EQ(tracker_.state(), TrackerState::kFollowing);
+    EXPECT_FALSE(process());
+    EXPECT_EQ(tracker_.state(), TrackerState::kSearching);
+  }
+}
+
 TEST_F(ScriptedTracker, WithoutTrackingEachFrameStandsAlone) {
   settings_.tracking = TrackingMode::kNone;
   tracker_.configure(settings_);

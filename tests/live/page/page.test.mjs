@@ -97,6 +97,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForFunction((n) => document.querySelector("#screen").dataset.shown > n + 10, first);
     await stateIs(page, "tracked");
     assert.match(await page.textContent("#figure-time"), /^\d+\.\d\d ms$/);
+    assert.equal(await page.textContent("#figure-tracker"), "following");
     await page.waitForFunction(() => document.querySelector("#source-name").textContent === "test:orbit");
     assert.deepEqual(page.troubles, []);
     await page.close();
@@ -134,6 +135,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const slider = setting(page, "max-axis").locator("input[type=range]");
     await slider.fill("200");
     await stateIs(page, "lost");
+    assert.equal(await page.textContent("#figure-tracker"), "searching");
     const properties = await live.program.ask("GET", "/api/properties");
     const { value } = properties.find(({ name }) => name === "max-axis");
     assert.ok(value > 5 && value < 10, `max-axis is ${value}`);
