@@ -8,13 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
-#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/core/persistence.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
+
+#include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
 namespace {
@@ -238,7 +239,7 @@ bool is_one_to_one(const Camera& camera) {
   const Lens lens(camera);
   const Eigen::Vector2d corner(camera.width / 2.0, camera.height / 2.0);
   for (int i = 0; i < kDirections * kSteps; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kDirections;
+    const double angle = kTwoPi * i / kDirections;
     const int step = 1 + i / kDirections;
     const double radius = 0.5 * corner.norm() * step / kSteps;
     const Eigen::Vector2d aside(radius * std::cos(angle), radius * std::sin(angle));

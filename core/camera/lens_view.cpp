@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <limits>
-#include <numbers>
 
 #include "core/geometry/ellipse_fit.hpp"
 
@@ -23,7 +22,7 @@ bool is_shown(const Vector2d& point) {
 // Calls use(i, point) for points at even anomalies around an ellipse.
 template <class Use>
 void for_each_point(const Ellipse& e, std::size_t count, const Use& use) {
-  const double step = 2.0 * std::numbers::pi / static_cast<double>(count);
+  const double step = kTwoPi / static_cast<double>(count);
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd(step).toRotationMatrix();
   Eigen::Matrix2d axes = Eigen::Rotation2Dd(e.angle_rad).toRotationMatrix();
   axes.col(0) *= e.semi_major;

@@ -6,6 +6,7 @@
 #include "core/camera/lens_view.hpp"
 #include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
+#include "core/detection/verdict.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/image/image_view.hpp"
 
@@ -21,6 +22,7 @@ struct Detection {
   double score = 0.0;            ///< Evidence for it; comparable within one detector only.
   double probability = 1.0;      ///< That it is an ellipse; 1 where a detector does not say.
   int candidate = -1;            ///< Its number in a DetectionTrace; -1 without one.
+  Verdict as_target = {};        ///< Why it is not the target, whatever else is there.
 };
 
 /// The two thresholds that say how well an ellipse must fit; [Keipour2021] Table I.

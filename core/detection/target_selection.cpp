@@ -39,7 +39,7 @@ struct ConcentricSet {
 ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
   ConcentricSet set;
   for (const Detection& other : detections) {
-    if (!are_concentric(ellipse, other.ellipse)) continue;
+    if (!other.as_target.is_accepted() || !are_concentric(ellipse, other.ellipse)) continue;
     set.has_two_edges = set.has_two_edges || !is_same(other.ellipse, ellipse, kOneEdge);
     set.probability = std::max(set.probability, other.probability);
     set.score += other.score;
@@ -78,24 +78,26 @@ Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
   return {Reason::kWeakerSet, set.score, best.score};
 }
 
-Verdict judge_place(const Detection& detection, const std::optional<Ellipse>& last_target) {
-  return last_target ? judge_as_same_target(detection.ellipse, *last_target) : Verdict{};
+// By itself.
+Verdict judge_alone(const Detection& detection, const std::optional<Ellipse>& last_target) {
+  if (!detection.as_target.is_accepted() || !last_target) return detection.as_target;
+  return judge_as_same_target(detection.ellipse, *last_target);
 }
 
 void reject(const Detection& detection, const Verdict& verdict, DetectionTrace* trace) {
   if (trace != nullptr) trace->revise(detection.candidate, verdict);
 }
 
-// The first member of the best set; nullptr where nothing is in the right place.
+// The first member of the best set; nullptr where nothing can be the target.
 const Detection* seed_of_best_set(std::span<const Detection> detections,
                                   const std::optional<Ellipse>& last_target,
                                   DetectionTrace* trace) {
   const Detection* seed = nullptr;
   ConcentricSet best;
   for (const Detection& detection : detections) {
-    const Verdict place = judge_place(detection, last_target);
-    if (!place.is_accepted()) {
-      reject(detection, place, trace);
+    const Verdict alone = judge_alone(detection, last_target);
+    if (!alone.is_accepted()) {
+      reject(detection, alone, trace);
       continue;
     }
     const ConcentricSet set = set_around(detection.ellipse, detections);
@@ -117,7 +119,7 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
   const ConcentricSet best = set_around(seed->ellipse, detections);
   const Detection* target = nullptr;
   for (const Detection& member : detections) {
-    if (!judge_place(member, last_target).is_accepted()) continue;
+    if (!judge_alone(member, last_target).is_accepted()) continue;
     if (!are_concentric(seed->ellipse, member.ellipse)) {
       reject(member, judge_set(set_around(member.ellipse, detections), best), trace);
       continue;

@@ -1,7 +1,5 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 #include <string>
 
@@ -39,11 +37,8 @@ enum class Reason {
 /// What a test says of an ellipse.
 struct Verdict {
   Reason reason = Reason::kAccepted;
-  /// In the unit of ReasonInfo; 0 where nothing is measured. On the scale of the limit: where a
-  /// test asks for a part of a setting, or for more than it, the value of the setting that would
-  /// do.
-  double measured = 0.0;
-  double limit = 0.0;  ///< What it was held to: the setting's value, where a setting changes it.
+  double measured = 0.0;  ///< In the unit of ReasonInfo; 0 where nothing is measured.
+  double limit = 0.0;     ///< The setting's value, where a setting changes it.
 
   [[nodiscard]] bool is_accepted() const { return reason == Reason::kAccepted; }
   bool operator==(const Verdict&) const = default;
@@ -55,12 +50,6 @@ struct Verdict {
 
 [[nodiscard]] inline Verdict at_most(Reason reason, double measured, double limit) {
   return measured <= limit ? Verdict{} : Verdict{reason, measured, limit};
-}
-
-/// The verdict on what a test refused whose limit is computed from a setting.
-/// @param measured  On the scale of the setting. Rounding may put it at the limit; it stays below.
-[[nodiscard]] inline Verdict below_setting(Reason reason, double measured, double setting) {
-  return {reason, std::min(measured, std::nextafter(setting, measured - 1.0)), setting};
 }
 
 /// A reason as programs show it to people.

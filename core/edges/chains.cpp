@@ -9,9 +9,7 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMinLength = 14;       // pixels
 constexpr std::size_t kLongestWalk = 16384;  // pixels
-constexpr std::size_t kMinClosed = 16;       // pixels
 constexpr int kClosingGap = 3;               // pixels
 
 // For each octant of an edge the codes, as bits, by which a walk may go on: of free gradient maxima
@@ -135,7 +133,7 @@ void ChainTracer::add_chain(std::int32_t seed,
   }
   count_ += length;
   begins_.push_back(count_);
-  is_closed_.push_back(length > kMinClosed && are_near(*begin, *(out - 1), stride_));
+  is_closed_.push_back(are_near(*begin, *(out - 1), stride_));
 }
 
 void ChainTracer::reserve(std::size_t chains) {

@@ -18,6 +18,8 @@ struct Chain {
 /// Links gradient maxima to chains. Each gradient maximum is in one chain at most.
 class ChainTracer {
  public:
+  static constexpr std::size_t kMinLength = 14;  ///< Of a chain [pixels].
+
   /// Makes room for as many chains. Without it there is as much as there ever were.
   void reserve(std::size_t chains);
 

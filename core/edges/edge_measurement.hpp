@@ -14,6 +14,9 @@
 
 namespace ellipse {
 
+/// Edges that an ellipse of five parameters is fitted to, and judged by, at least.
+inline constexpr std::size_t kMinEdgesOfEllipse = 8;
+
 /// An edge that an outline meets, in the picture as the lens shows it.
 struct EdgeMeasurement {
   int sample = 0;                    ///< Its number around the outline.

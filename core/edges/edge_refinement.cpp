@@ -9,7 +9,6 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMinEdges = 12;
 constexpr double kMinVariance = 1e-4;                      // of an edge's offset [px^2]
 constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // [px]
 
@@ -25,7 +24,7 @@ std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
   RefinedEllipse refined{e, {}, 0.0, 0.0};
   refined.support = measurer.measure(luma, lens, e, polarity, samples, min_gradient).support;
   const std::span<const EdgeMeasurement> edges = measurer.edges();
-  if (edges.size() < kMinEdges) return std::nullopt;
+  if (edges.size() < kMinEdgesOfEllipse) return std::nullopt;
   const auto count = static_cast<double>(edges.size());
   std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples> ideal;
   for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -21,6 +21,8 @@ struct Gradient {
 
 /// What the 5 x 5 kernels make of a slope of one grey level per pixel.
 inline constexpr double kGradientGain = 128.0;
+/// And, at most, of a step of one grey level between two pixels.
+inline constexpr double kGradientOfStep = 48.0;
 
 /// The gradient maxima: one byte a pixel, 0 where there is none. The low three bits hold the
 /// direction of the edge, which is the gradient turned by 90 degrees from x

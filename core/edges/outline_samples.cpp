@@ -2,7 +2,6 @@
 #include "core/edges/outline_samples.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 namespace ellipse {
 namespace {
@@ -16,7 +15,7 @@ std::span<const Eigen::Vector2f> directions(std::size_t count) {
     std::array<Circle, kCounts.size()> circles{};
     for (std::size_t c = 0; c < kCounts.size(); ++c) {
       for (std::size_t i = 0; i < kCounts[c]; ++i) {
-        const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / double(kCounts[c]);
+        const double t = kTwoPi * static_cast<double>(i) / double(kCounts[c]);
         circles[c][i] = {static_cast<float>(std::cos(t)), static_cast<float>(std::sin(t))};
       }
     }
@@ -31,7 +30,7 @@ std::span<const Eigen::Vector2f> directions(std::size_t count) {
 OutlineSamples::OutlineSamples(const Ellipse& e, std::size_t samples, const LensView& lens)
     : size_(std::min(samples, kMaxSamples)),
       around_(directions(size_)),
-      step_rad_(static_cast<float>(2.0 * std::numbers::pi / static_cast<double>(size_))),
+      step_rad_(static_cast<float>(kTwoPi / static_cast<double>(size_))),
       axes_product_(static_cast<float>(e.semi_major * e.semi_minor)),
       origin_(static_cast<int>(std::lround(e.cx)), static_cast<int>(std::lround(e.cy))),
       is_distorted_(lens.is_distorted()) {

@@ -136,10 +136,8 @@ bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolera
 
 bool are_concentric(const Ellipse& a, const Ellipse& b) {
   constexpr Tolerance kCentre{2.0, 0.1};
-  constexpr double kAspect = 0.15;
   const Ellipse& larger = a.semi_major > b.semi_major ? a : b;
-  const double aspect = a.semi_minor / a.semi_major - b.semi_minor / b.semi_major;
-  return (a.center() - b.center()).norm() <= kCentre.of(larger) && std::abs(aspect) <= kAspect;
+  return (a.center() - b.center()).norm() <= kCentre.of(larger);
 }
 
 double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {

@@ -8,6 +8,8 @@
 
 namespace ellipse {
 
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
 /// An ellipse in the picture. Pixels, x right, y down, (0, 0) is the centre of the top-left pixel.
 struct Ellipse {
   double cx = 0.0;          ///< Centre [px].
@@ -34,7 +36,6 @@ struct PerimeterStep {
 /// Walks once around the perimeter in steps of at most a pixel. Allocates nothing.
 template <class Use>
 void walk_perimeter(const Ellipse& e, const Use& use) {
-  constexpr double kTwoPi = 2.0 * std::numbers::pi;
   const int steps = static_cast<int>(std::clamp(std::ceil(kTwoPi * e.semi_major), 16.0, 65536.0));
   const double step_cos = std::cos(kTwoPi / steps);
   const double step_sin = std::sin(kTwoPi / steps);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace ellipse {
 namespace {
@@ -259,7 +258,7 @@ RingUncertainty expected_uncertainty(const Ellipse& e,
                                      double height,
                                      double sigma_px) {
   constexpr int kSamples = 48;
-  const double step = 2.0 * std::numbers::pi / kSamples;
+  const double step = kTwoPi / kSamples;
   GeometricFit fit(e);
   for (int i = 0; i < kSamples; ++i) {
     const double t = step * i;

@@ -33,19 +33,19 @@ struct Source {
 
 constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
-    {"airlab-deformed", {174, 0}, {173, 1}},
-    {"airlab-gascola", {455, 0}, {454, 1}},
-    {"pupil-infrared", {1088, 11}, {1022, 2}},
-    {"pupil-blinks", {261, 2}, {258, 0}},
+    {"airlab-deformed", {173, 0}, {174, 0}},
+    {"airlab-gascola", {454, 0}, {453, 1}},
+    {"pupil-infrared", {1099, 12}, {1031, 2}},
+    {"pupil-blinks", {261, 4}, {258, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {141, 0}, {139, 2}},
+    {"octagon-negative", {140, 1}, {139, 2}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 
 /// All ellipses of calibration-discs, by single frames.
-constexpr int kMinRightDiscs = 2059;
-constexpr int kMaxMistakenDiscs = 0;
+constexpr int kMinRightDiscs = 2441;
+constexpr int kMaxMistakenDiscs = 5;
 
 void PrintTo(const Source& source, std::ostream* out) {
   *out << source.name;

@@ -15,24 +15,12 @@ namespace {
 
 constexpr int kScales[] = {2, 4, 1};  // in this order
 constexpr int kCoarsest = 4;
-constexpr int kMinSidePx = 24;            // of a picture that is searched
-constexpr double kFitRms = 0.8;           // [px], and
-constexpr double kFitRmsRelative = 0.02;  // of the radius, or of a third of the arc
-constexpr double kChainRms = 1.5;         // the same of a closed chain
-constexpr double kChainRmsRelative = 0.06;
-constexpr std::size_t kMinClosedChain = 24;  // pixels
-constexpr std::size_t kChainPoints = 64;     // of a chain's fit
-constexpr double kClosingChord = 0.35;       // of a chain's length
 constexpr int kMaxPairs = 50;
-constexpr double kConvexSlackPx = 2.0;       // by which one arc may lie outside the other, and
-constexpr double kConvexSlack = 0.1;         // of their distance
-constexpr double kSame = 0.05;               // of the semi-major axis
+constexpr double kConvexSlack = 0.1;  // of the distance between arcs, by which one may lie outside
+constexpr double kSame = 0.05;        // of the semi-major axis
 constexpr Tolerance kSameOutline{2.0, 0.1};  // of an outline that is judged
 constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis from which half the size is enough
-constexpr double kMuchLonger = 1.4;
-constexpr double kOnEllipsePx = 2.5;
-constexpr double kNoDoubt = 3.0;            // log odds
-constexpr double kSteeperAtHalfSize = 0.4;  // gradients at full size over those at half
+constexpr double kNoDoubt = 3.0;             // log odds
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -41,10 +29,6 @@ constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .max_axis_ratio = kAxisRatioRange.max,
                                .min_contour_size = 0,
                                .min_probability = 0.0};
-
-double radius_of(const Ellipse& e) {
-  return std::sqrt(e.semi_major * e.semi_minor);
-}
 
 bool are_same(const Ellipse& a, const Ellipse& b, double px) {
   return is_same(a, b, {px, kSame});
@@ -55,7 +39,7 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2d apart = b.points[k] - a.points[i];
-      const double slack = kConvexSlackPx + kConvexSlack * apart.lpNorm<1>();
+      const double slack = kConvexSlack * apart.lpNorm<1>();
       if (apart.dot(a.inwards[i]) < -slack) return false;
     }
   }
@@ -102,7 +86,6 @@ std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
 
 void ArcDetector::search_scales(const ImageView& luma, const Thresholds& thresholds) {
   for (const int scale : kScales) {
-    if (scale > 1 && std::min(luma.width, luma.height) < scale * kMinSidePx) continue;
     search(scaler_.reduce(luma, scale), thresholds, scale);
     if (!thresholds.wants_all && is_beyond_doubt()) return;
   }
@@ -117,15 +100,13 @@ void ArcDetector::search(const ImageView& luma, const Thresholds& full, int scal
   map_ = &map_at(scale);
   map_->compute(luma, {thresholds.edge_low, thresholds.edge_high});
   map_->set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
-  min_gradient_ =
-      kGradientGain * map_->thresholds().low * std::pow(kSteeperAtHalfSize, std::log2(scale));
+  min_gradient_ = kGradientGain * map_->thresholds().low / scale;
   if (trace_ != nullptr) trace_edges(luma);
   chains_.trace(*map_);
   arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
   if (trace_ != nullptr) trace_arcs();
   is_used_.assign(arcs_.size(), 0);
   try_single_arcs(thresholds);
-  try_closed_chains(thresholds);
   try_pairs(thresholds);
 }
 
@@ -135,44 +116,6 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
     if (is_used_[i] != 0 || arc.turn_rad < ArcSplitter::kMinSingleTurn) continue;
     try_arcs({&arc}, thresholds);
   }
-}
-
-// Where an outline is too rough to be cut into arcs, the whole of it may still be of one ellipse.
-void ArcDetector::try_closed_chains(const Thresholds& thresholds) {
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < chains_.size(); ++i) {
-    const std::span<const std::int32_t> pixels = chains_.chain(i).pixels;
-    const TracedPiece piece{begin, begin + pixels.size()};
-    begin = piece.end;
-    if (pixels.size() < kMinClosedChain) continue;
-    const double chord = (map_->point_of(pixels.back()) - map_->point_of(pixels.front())).norm();
-    if (!(chord < kClosingChord * static_cast<double>(pixels.size()))) continue;
-    const auto guess = guess_from_chain(pixels);
-    if (guess) try_guess(*guess, {&piece, 1}, thresholds);
-  }
-}
-
-// A chain runs with the bright side on its left: the sign of the area that it encloses tells which
-// side is dark.
-std::optional<ArcDetector::Guess> ArcDetector::guess_from_chain(
-    std::span<const std::int32_t> pixels) const {
-  const std::size_t step = pixels.size() / kChainPoints + 1;
-  const Eigen::Vector2d first = map_->point_of(pixels.front());
-  Moments moments(first);
-  Eigen::Vector2d last(0.0, 0.0);  // from the first
-  double twice_area = 0.0;
-  for (std::size_t k = 0; k < pixels.size(); k += step) {
-    const Eigen::Vector2d point = map_->point_of(pixels[k]);
-    if (!point.allFinite()) continue;
-    moments.add(point, static_cast<double>(step));
-    const Eigen::Vector2d from_first = point - first;
-    twice_area += last.x() * from_first.y() - last.y() * from_first.x();
-    last = from_first;
-  }
-  const auto fit = fit_with_residual(moments);
-  if (!fit || fit->rms_px > kChainRms + kChainRmsRelative * radius_of(fit->ellipse)) return {};
-  const Polarity polarity = twice_area > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
-  return Guess{fit->ellipse, polarity, static_cast<double>(pixels.size()), 0.0};
 }
 
 // The best arcs with each other first: by the sum of their ranks.
@@ -195,11 +138,7 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
 void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds) {
   const Arc& first = **arcs.begin();
   Moments moments = first.moments;
-  double length_px = first.length_px();
-  for (const Arc* other : std::span(arcs).subspan(1)) {
-    moments.add(other->moments);
-    length_px += other->length_px();
-  }
+  for (const Arc* other : std::span(arcs).subspan(1)) moments.add(other->moments);
   TracedPiece pieces[2];
   std::transform(arcs.begin(), arcs.end(), pieces, [](const Arc* arc) {
     return TracedPiece{arc->begin, arc->end};
@@ -207,7 +146,7 @@ void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresho
   const std::span<const TracedPiece> made_of(pieces, arcs.size());
   const auto fit = fit_with_residual(moments);
   if (fit) {
-    try_guess({fit->ellipse, first.polarity, length_px, fit->rms_px}, made_of, thresholds);
+    try_guess({fit->ellipse, first.polarity, fit->rms_px}, made_of, thresholds);
   } else if (trace_ != nullptr) {
     (void)trace_->add(made_of, std::nullopt, {Reason::kNoEllipse});
   }
@@ -231,8 +170,8 @@ void ArcDetector::try_guess(const Guess& guess,
 Verdict ArcDetector::examine(const Guess& guess,
                              const Thresholds& thresholds,
                              MeasuredEllipse& measured) {
-  const auto& [ellipse, polarity, length_px, rms_px] = guess;
-  const double limit_px = kFitRms + kFitRmsRelative * std::min(radius_of(ellipse), length_px / 3.0);
+  const auto& [ellipse, polarity, rms_px] = guess;
+  const double limit_px = EllipseVerifier::deformation_px(ellipse);
   Verdict verdict = at_most(Reason::kPoorFit, rms_px, limit_px);
   if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, *map_, thresholds);
   if (verdict.is_accepted()) verdict = judge_news(guess);
@@ -250,10 +189,8 @@ Verdict ArcDetector::judge_news(const Guess& guess) const {
       return {Reason::kKnown};
     }
   }
-  // One from much more of its edge may do better than the one that was rejected.
   for (const Guess& known : rejected_) {
-    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, 1.0) &&
-        guess.length_px < kMuchLonger * known.length_px) {
+    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, 1.0)) {
       return {Reason::kRefused};
     }
   }
@@ -280,7 +217,7 @@ void ArcDetector::add(const MeasuredEllipse& measured) {
 }
 
 void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
-  const double tolerance_px = std::max(kOnEllipsePx, EllipseVerifier::deformation_px(e));
+  const double tolerance_px = EllipseVerifier::deformation_px(e);
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
     if (is_used_[i] != 0 || arcs_[i].polarity != polarity) continue;
     const auto& points = arcs_[i].points;
@@ -353,7 +290,8 @@ void ArcDetector::report() {
                            one.support,
                            log_odds(one.probability),
                            one.probability,
-                           one.candidate});
+                           one.candidate,
+                           one.as_target});
     polarities_.push_back(one.polarity);
   }
 }

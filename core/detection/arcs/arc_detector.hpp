@@ -50,8 +50,7 @@ class ArcDetector final : public Detector {
   struct Guess {
     Ellipse ellipse;  // [px of the pass]
     Polarity polarity;
-    double length_px;  // of the edges that it comes from
-    double rms_px;     // and how well it fits them
+    double rms_px;  // of the distances of the edges that it comes from
   };
 
   struct Found {
@@ -65,8 +64,6 @@ class ArcDetector final : public Detector {
     return maps_[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)))];
   }
   void try_single_arcs(const Thresholds& thresholds);
-  void try_closed_chains(const Thresholds& thresholds);
-  [[nodiscard]] std::optional<Guess> guess_from_chain(std::span<const std::int32_t> pixels) const;
   void try_pairs(const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,

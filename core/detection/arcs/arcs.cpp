@@ -9,22 +9,13 @@
 namespace ellipse {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kMinLength = 10;
 constexpr std::size_t kEnoughPoints = 32;  // of an arc
-constexpr double kMinTurn = 0.25;          // [rad]
 constexpr std::size_t kCornerReach = 3;    // [px] before and after
 constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
-constexpr std::size_t kSmoothing = 2;      // [px] before and after, of directions
-constexpr double kMinRetreat = 0.2;        // [rad], that ends an arc; or
-constexpr double kRetreatOverNoise = 5.0;  // so many of the noise's
-constexpr double kWholeTurnMin = 5.2;      // [rad], of a chain that is a whole ellipse
-constexpr double kWholeTurnMax = 7.4;
-constexpr double kWholeRms = 0.8;            // [px], and
-constexpr double kWholeRmsRelative = 0.012;  // of its radius: a deformed pad
-constexpr double kMaxRankedTurn = 3.0;       // [rad]; more is no better
+constexpr double kRetreatOverNoise = 5.0;  // of the direction, that ends an arc
+constexpr double kMinTurn = 0.25;          // [rad]; straighter ones only cost time
+constexpr double kClosingChord = 0.35;     // of the length of a chain that is tried whole
 
 // The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
 // branches, so that the compiler makes vectors of it. The angle takes the place of x. The
@@ -75,7 +66,7 @@ Eigen::Vector2d ideal_normal(const LensView& lens,
 }  // namespace
 
 double ArcSplitter::Piece::rank() const {
-  return static_cast<double>(end - begin) * std::min(std::abs(turn_rad), kMaxRankedTurn);
+  return static_cast<double>(end - begin) * std::abs(turn_rad);
 }
 
 std::span<Arc> ArcSplitter::split(const GradientMap& map,
@@ -84,14 +75,14 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map,
   pieces_.clear();
   pixels_ = chains.pixels();
   angles_.resize(std::max(angles_.size(), pixels_.size()));
-  smooth_.resize(angles_.size());
+  y_.resize(angles_.size());
   strengths_.resize(angles_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Gradient& g = map.gradients()[pixels_[i]];
     angles_[i] = g.x;
-    smooth_[i] = g.y;
+    y_[i] = g.y;
   }
-  to_angles(angles_.data(), smooth_.data(), strengths_.data(), pixels_.size());
+  to_angles(angles_.data(), y_.data(), strengths_.data(), pixels_.size());
   std::size_t begin = 0;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const Chain chain = chains.chain(i);
@@ -141,13 +132,11 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   return moments;
 }
 
-bool ArcSplitter::is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end) {
-  const double turn = std::abs(angles_[end - 1] - angles_[begin]);
-  if (turn < kWholeTurnMin || turn > kWholeTurnMax) return false;
-  const auto fit = fit_with_residual(moments_of(map, begin, end));
-  if (!fit) return false;
-  const double radius = std::sqrt(fit->ellipse.semi_major * fit->ellipse.semi_minor);
-  return fit->rms_px < kWholeRms + kWholeRmsRelative * radius;
+// Where an outline is too rough to be cut into arcs, the whole of it may still be of one ellipse.
+void ArcSplitter::add_whole(const GradientMap& map, std::size_t begin, std::size_t end) {
+  const double chord = (map.point_of(pixels_[end - 1]) - map.point_of(pixels_[begin])).norm();
+  if (!(chord < kClosingChord * static_cast<double>(end - begin))) return;
+  pieces_.push_back({begin, end, angles_[end - 1] - angles_[begin]});
 }
 
 void ArcSplitter::split_chain(const GradientMap& map,
@@ -155,10 +144,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
                               std::size_t end,
                               bool is_closed) {
   unwrap(begin, end);
-  if (is_closed && is_whole_ellipse(map, begin, end)) {
-    add_piece(begin, end);
-    return;
-  }
+  add_whole(map, begin, end);
   // A run of pixels that turn sharply has its corner where they turn most.
   std::size_t part = begin;
   std::size_t corner = end;
@@ -191,50 +177,22 @@ void ArcSplitter::split_chain(const GradientMap& map,
   if (part < end) split_smooth_part(map.noise(), part, end);
 }
 
-void ArcSplitter::smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width) {
-  float sum = 0.0F;
-  std::size_t count = 0;
-  for (std::size_t i = begin; i < std::min(end, begin + half_width); ++i, ++count) {
-    sum += angles_[i];
-  }
-  for (std::size_t i = begin; i < end; ++i) {
-    if (i + half_width < end) {
-      sum += angles_[i + half_width];
-      ++count;
-    }
-    if (i >= begin + half_width + 1) {
-      sum -= angles_[i - half_width - 1];
-      --count;
-    }
-    smooth_[i] = sum / static_cast<float>(count);
-  }
-}
-
 // By how much a direction has to turn back, so that it is not noise [rad].
-double ArcSplitter::min_retreat(double noise,
-                                std::size_t begin,
-                                std::size_t end,
-                                std::size_t half_width) const {
+double ArcSplitter::min_retreat(double noise, std::size_t begin, std::size_t end) const {
   float strength = 0.0F;
   for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
   const double length = static_cast<double>(end - begin);
   // The mean of |x| + |y| is 1.27 times that of the norm.
-  const double angle_noise = 1.27 * noise * length / strength;
-  // Gradients of neighbours share their pixels: three of them are as good as one.
-  const double smoothed = std::sqrt(std::min(1.0, 3.0 / (2.0 * double(half_width) + 1.0)));
-  return std::max(kMinRetreat, kRetreatOverNoise * angle_noise * smoothed);
+  return kRetreatOverNoise * 1.27 * noise * length / strength;
 }
 
 // Cuts where the direction retreats from its furthest.
 void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
-  if (end < begin + kMinLength) return;
-  const std::size_t half_width = std::min(kSmoothing, (end - begin) / 4);
-  const auto retreat = static_cast<float>(min_retreat(noise, begin, end, half_width));
-  smooth_angles(begin, end, half_width);
-
+  if (end < begin + ChainTracer::kMinLength) return;
+  const auto retreat = static_cast<float>(min_retreat(noise, begin, end));
   std::size_t lowest_at = begin;
   std::size_t highest_at = begin;
-  float lowest = smooth_[begin];
+  float lowest = angles_[begin];
   float highest = lowest;
   int direction = 0;
   std::size_t part = begin;
@@ -244,7 +202,7 @@ void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t
     part = furthest;
   };
   for (std::size_t i = begin + 1; i < end; ++i) {
-    const float angle = smooth_[i];
+    const float angle = angles_[i];
     if (angle > highest) {
       highest = angle;
       highest_at = i;
@@ -277,7 +235,7 @@ double ArcSplitter::mean_angle(std::size_t at, std::size_t begin, std::size_t en
 }
 
 void ArcSplitter::add_piece(std::size_t begin, std::size_t end) {
-  if (end < begin + kMinLength) return;
+  if (end < begin + ChainTracer::kMinLength) return;
   const double turn = mean_angle(end - 3, begin, end) - mean_angle(begin + 2, begin, end);
   if (std::abs(turn) >= kMinTurn) pieces_.push_back({begin, end, turn});
 }

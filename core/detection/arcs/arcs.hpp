@@ -51,14 +51,10 @@ class ArcSplitter {
   };
 
   void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
-  [[nodiscard]] double min_retreat(double noise,
-                                   std::size_t begin,
-                                   std::size_t end,
-                                   std::size_t half_width) const;
+  [[nodiscard]] double min_retreat(double noise, std::size_t begin, std::size_t end) const;
   void split_smooth_part(double noise, std::size_t begin, std::size_t end);
-  void smooth_angles(std::size_t begin, std::size_t end, std::size_t half_width);
   void unwrap(std::size_t begin, std::size_t end);
-  [[nodiscard]] bool is_whole_ellipse(const GradientMap& map, std::size_t begin, std::size_t end);
+  void add_whole(const GradientMap& map, std::size_t begin, std::size_t end);
   [[nodiscard]] Moments moments_of(const GradientMap& map,
                                    std::size_t begin,
                                    std::size_t end) const;
@@ -68,8 +64,8 @@ class ArcSplitter {
   [[nodiscard]] Arc make_arc(const GradientMap& map, const Piece& piece) const;
 
   std::span<const std::int32_t> pixels_;
-  std::vector<float> angles_;  // of the gradient [rad], without jumps along a chain
-  std::vector<float> smooth_;
+  std::vector<float> angles_;     // of the gradient [rad], without jumps along a chain
+  std::vector<float> y_;          // of the gradient
   std::vector<float> strengths_;  // of the gradient, |x| + |y|
   std::vector<Piece> pieces_;
   std::vector<Arc> arcs_;

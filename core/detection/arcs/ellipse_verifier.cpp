@@ -11,23 +11,16 @@
 namespace ellipse {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kMinEdges = 8.0;       // 5 parameters, and edges to judge them by
-constexpr double kMinPromise = 0.4;     // share of the perimeter that has edges near
-constexpr double kBasePx = 1.5;         // an edge of a rigid outline is this near,
-constexpr double kDeformation = 0.025;  // one of a deformed outline this share of the radius more
-constexpr double kMaxDeformationPx = 8.0;
-constexpr double kOnOutlinePx = 2.0;          // an edge on the outline is this near,
-constexpr double kSigmas = 2.0;               // and so many of its standard deviations more
-constexpr double kOnEllipsePx = 1.0;          // for the paper's Eq. (1): this near,
-constexpr double kOnEllipseRad = 0.3;         // and in this direction
-constexpr double kTurnWindow = 0.2;           // [rad] of the outline's turn, to both sides
-constexpr double kStraightSlope = -0.5;       // halfway between an ellipse's 0 and a line's -1
-constexpr double kContourSizeOfLength = 0.9;  // pixels of a contour per pixel of length
+constexpr double kBasePx = 1.5;          // an edge of a rigid outline is this near,
+constexpr double kDeformation = 0.025;   // one of a deformed outline this share of the radius more
+constexpr double kOnOutlinePx = 2.0;     // an edge on the outline is this near,
+constexpr double kOnEllipsePx = 1.0;     // one that counts in the paper's Eq. (1) this near,
+constexpr double kOnEllipseRad = 0.3;    // and in this direction
+constexpr double kTurnWindow = 0.2;      // [rad] of the outline's turn, to both sides
+constexpr double kStraightSlope = -0.5;  // halfway between an ellipse's 0 and a line's -1
 
 constexpr std::size_t kFewSamples = 32;  // of a look that only rejects,
-constexpr std::size_t kSamples = 128;    // of one that decides,
-constexpr double kFewInside = 16.0;      // and more of those that are inside the picture
+constexpr std::size_t kSamples = 64;     // of one that decides
 
 // A Gauss-Newton step: its samples, its reach, and by how much the log odds of an ellipse grow at
 // most from here on, in 99 % of the ellipses of the sources.
@@ -36,16 +29,13 @@ struct Step {
   double part_of_reach;
   double max_growth;
 };
-constexpr std::array<Step, 4> kSteps = {
-    {{kFewSamples, 1.0, 7.0}, {kFewSamples, 0.7, 5.0}, {kFewSamples, 0.5, 2.5}, {64, 0.5, 1.0}}};
+constexpr std::array<Step, 4> kSteps = {{{kFewSamples, 1.0, 7.0},
+                                         {kFewSamples, 0.7, 5.0},
+                                         {kFewSamples, 0.5, 2.5},
+                                         {kSamples, 0.5, 1.0}}};
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
-}
-
-std::size_t samples_for(const Ellipse& e) {
-  const double length = std::numbers::pi * (e.semi_major + e.semi_minor);
-  return length < 100.0 ? 64 : kSamples;
 }
 
 double median(std::vector<double>& values) {
@@ -66,7 +56,7 @@ double longest_gap(std::span<const EdgeMeasurement> edges, std::size_t samples) 
 }
 
 bool is_on_outline(const EdgeMeasurement& edge, double reach_px) {
-  return std::abs(edge.offset.distance_px) <= reach_px + kSigmas * edge.sigma_px;
+  return std::abs(edge.offset.distance_px) <= reach_px;
 }
 
 // Over the edges of an outline.
@@ -86,9 +76,8 @@ struct Sums {
     contrast += edge.contrast;
     turn += turn_of_edge;
     if (is_on_outline(edge, reach_px)) turn_in_reach += turn_of_edge;
-    if (distance_px < kOnEllipsePx && std::abs(edge.direction_error_rad) < kOnEllipseRad) {
-      length_on_ellipse += edge.length_px;
-    }
+    const bool is_along = std::abs(edge.direction_error_rad) <= kOnEllipseRad;
+    if (distance_px <= kOnEllipsePx && is_along) length_on_ellipse += edge.length_px;
   }
   [[nodiscard]] double share_of_turn() const { return turn > 0.0 ? turn_in_reach / turn : 0.0; }
   [[nodiscard]] double rms_px() const { return length > 0.0 ? std::sqrt(squares / length) : 1e9; }
@@ -97,7 +86,7 @@ struct Sums {
 }  // namespace
 
 double EllipseVerifier::deformation_px(const Ellipse& e) {
-  return std::min(kMaxDeformationPx, kBasePx + kDeformation * radius_of(e));
+  return kBasePx + kDeformation * radius_of(e);
 }
 
 Verdict EllipseVerifier::judge_shape(const Ellipse& e,
@@ -118,15 +107,9 @@ Verdict EllipseVerifier::approach(const GradientMap& map,
                                   const EvidenceTable& table,
                                   MeasuredEllipse& measured) {
   const double widest_px = std::max(3.0, deformation_px(measured.ellipse));
-  std::size_t samples = kFewSamples;
   for (const Step& step : kSteps) {
     const double reach_px = std::max(kOnOutlinePx, step.part_of_reach * widest_px);
-    samples = std::max(samples, step.samples);
-    measure(map, samples, reach_px, measured);
-    while (samples < kSamples && measured.inside_fraction * double(samples) < kFewInside) {
-      samples *= 2;
-      measure(map, samples, reach_px, measured);
-    }
+    measure(map, step.samples, reach_px, measured);
     const Verdict prospect = judge_prospect(step.max_growth, thresholds, table, measured);
     if (!prospect.is_accepted()) return prospect;
     const auto better = nearer_to_edges(measured.ellipse, reach_px);
@@ -138,15 +121,17 @@ Verdict EllipseVerifier::approach(const GradientMap& map,
   return {};
 }
 
+Verdict EllipseVerifier::judge_edges() const {
+  const auto edges = static_cast<double>(measurer_.edges().size());
+  return at_least(Reason::kTooFewEdges, edges, double(kMinEdgesOfEllipse));
+}
+
 // Whether a candidate can reach the wanted probability yet.
 Verdict EllipseVerifier::judge_prospect(double max_growth,
                                         const Thresholds& thresholds,
                                         const EvidenceTable& table,
                                         const MeasuredEllipse& measured) const {
-  const Verdict promise = at_least(Reason::kTooFewEdges, measured.support, kMinPromise);
-  if (!promise.is_accepted()) return promise;
-  const auto edges = static_cast<double>(measurer_.edges().size());
-  const Verdict enough = at_least(Reason::kTooFewEdges, edges, kMinEdges);
+  const Verdict enough = judge_edges();
   if (!enough.is_accepted()) return enough;
   const double wanted = thresholds.min_probability;
   const double reachable = table.log_odds(measured.features) + max_growth;
@@ -202,6 +187,7 @@ double EllipseVerifier::straight_share() {
   return judged > 0.0 ? straight / judged : 1.0;
 }
 
+// @param samples   At least; more where few of them are inside the picture.
 // @param reach_px  Edges this near are on the outline.
 void EllipseVerifier::measure(const GradientMap& map,
                               std::size_t samples,
@@ -209,7 +195,12 @@ void EllipseVerifier::measure(const GradientMap& map,
                               MeasuredEllipse& measured) {
   const Ellipse& e = measured.ellipse;
   const int tolerance_px = static_cast<int>(std::lround(std::max(reach_px, deformation_px(e))));
-  const OutlineSupport found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
+  OutlineSupport found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
+  while (samples < OutlineSamples::kMaxSamples &&
+         found.inside_fraction * static_cast<double>(samples) < 2.0 * kMinEdgesOfEllipse) {
+    samples *= 2;
+    found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
+  }
   const std::span<const EdgeMeasurement> edges = measurer_.edges();
   Sums sums;
   direction_errors_.clear();
@@ -218,7 +209,6 @@ void EllipseVerifier::measure(const GradientMap& map,
     if (!is_on_outline(edge, reach_px)) continue;
     direction_errors_.push_back(std::abs(edge.direction_error_rad));
   }
-  measured.inside_fraction = found.inside_fraction;
   measured.support = found.support;
   measured.on_ellipse = sums.length > 0.0 ? sums.length_on_ellipse / sums.length : 0.0;
   const auto set = [&](Feature feature, double value) {
@@ -248,8 +238,8 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   measured.polarity = polarity;
   Verdict verdict = approach(map, thresholds, table, measured);
   if (!verdict.is_accepted()) return verdict;
-  measure(map, samples_for(measured.ellipse), kOnOutlinePx, measured);
-  if (measurer_.edges().size() < static_cast<std::size_t>(kMinEdges)) return {Reason::kTooFewEdges};
+  measure(map, kSamples, kOnOutlinePx, measured);
+  if (verdict = judge_edges(); !verdict.is_accepted()) return verdict;
   measured.features[static_cast<std::size_t>(Feature::kStraight)] = straight_share();
   measured.probability = table.probability(measured.features);
   verdict = at_least(Reason::kUnlikely, measured.probability, thresholds.min_probability);
@@ -259,10 +249,13 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   verdict = at_least(Reason::kContourOverlap, measured.on_ellipse, thresholds.contour_overlap);
   if (!verdict.is_accepted()) return verdict;
   const Ellipse& e = measured.ellipse;
+  // A contour has max(|cos|, |sin|) of a direction pixels per pixel of length: over all of them
+  constexpr double kPixelsOfLength = 2.0 * std::numbers::sqrt2 / std::numbers::pi;
   const double visible_px = perimeter_px(e) * visible_fraction(e, map.width(), map.height());
-  return at_least(Reason::kContourTooShort,
-                  kContourSizeOfLength * visible_px * measured.support,
-                  thresholds.min_contour_size);
+  measured.as_target = at_least(Reason::kContourTooShort,
+                                kPixelsOfLength * visible_px * measured.support,
+                                thresholds.min_contour_size);
+  return thresholds.wants_all ? Verdict{} : measured.as_target;
 }
 
 }  // namespace ellipse

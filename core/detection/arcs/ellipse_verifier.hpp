@@ -15,12 +15,12 @@ namespace ellipse {
 struct MeasuredEllipse {
   Ellipse ellipse;
   Polarity polarity = Polarity::kDarkInside;
-  double inside_fraction = 0.0;  ///< Of the perimeter inside the picture.
-  double support = 0.0;          ///< Share of the inside perimeter that has edges, by length.
-  double on_ellipse = 0.0;       ///< Share of these edges that lie on the ellipse.
+  double support = 0.0;     ///< Share of the inside perimeter that has edges, by length.
+  double on_ellipse = 0.0;  ///< Share of these edges that lie on the ellipse.
   Features features{};
   double probability = 0.0;  ///< That it is an ellipse, by the evidence table.
   int candidate = -1;        ///< As in Detection.
+  Verdict as_target = {};    ///< As in Detection.
 };
 
 /// Fits a guessed ellipse to the edges around it, and measures what they say of it.
@@ -55,6 +55,7 @@ class EllipseVerifier {
                                        const Thresholds& thresholds,
                                        const EvidenceTable& table,
                                        const MeasuredEllipse& measured) const;
+  [[nodiscard]] Verdict judge_edges() const;
   [[nodiscard]] std::optional<Ellipse> nearer_to_edges(const Ellipse& e, double reach_px) const;
   void measure(const GradientMap& map,
                std::size_t samples,

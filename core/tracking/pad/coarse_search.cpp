@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
 namespace {
@@ -41,7 +42,7 @@ using Template = std::array<TemplatePoint, kAngles>;
 Template circle_template(double radius_cells, bool is_bright_outside) {
   Template points;
   for (int k = 0; k < kAngles; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / kAngles;
+    const double angle = kTwoPi * k / kAngles;
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     const double sign = is_bright_outside ? 1.0 : -1.0;

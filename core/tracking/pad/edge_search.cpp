@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "core/geometry/ellipse.hpp"
 #include "core/tracking/pad/visible_part.hpp"
 
 namespace ellipse {
@@ -15,9 +15,8 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr std::size_t kFineSteps = 4;  // in one of the circle's, where little of it is visible
 constexpr double kMinContrast = 4.0;   // [grey levels]
-constexpr double kContrastShare = 0.25;
-constexpr int kMaxSteps = 24;  // to each side of the expected place
-constexpr int kMaxBox = 3;     // samples that are averaged on each side of an edge
+constexpr int kMaxSteps = 24;          // to each side of the expected place
+constexpr int kMaxBox = 3;             // samples that are averaged on each side of an edge
 constexpr int kLongestProfile = 2 * (kMaxSteps + kMaxBox) + 3;
 
 // Directions all around.
@@ -26,7 +25,7 @@ const Eigen::Vector2d& direction(std::size_t fine_step) {
   static const auto kTurn = [] {
     std::array<Eigen::Vector2d, kDirections> turn;
     for (std::size_t i = 0; i < kDirections; ++i) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kDirections;
+      const double angle = kTwoPi * static_cast<double>(i) / kDirections;
       turn[i] = {std::cos(angle), std::sin(angle)};
     }
     return turn;
@@ -100,7 +99,7 @@ struct EdgeSearch::Placement {
   double spacing_px = 0.0;
 
   [[nodiscard]] double step_px(const PadCircle& circle) const {
-    return 2.0 * std::numbers::pi * circle.radius * px_per_radius / kCircleSteps;
+    return kTwoPi * circle.radius * px_per_radius / kCircleSteps;
   }
   [[nodiscard]] double length_px(const PadLine& line, const Interval& part) const {
     return part.length() * (line.to - line.from).norm() * px_per_radius;
@@ -287,7 +286,7 @@ void EdgeSearch::look_along(const ImageView& luma,
   profile.step_px = static_cast<float>(step_px);
   profile.middle_px = static_cast<float>(slope * (middle - crossing));
   profile.read(pixel, stride);
-  const double least = std::max(kMinContrast, kContrastShare * gain * sample.contrast);
+  const double least = std::max(kMinContrast, kMinContrastShare * gain * sample.contrast);
   keep_edges(profile, static_cast<float>(least), reach_px, sample);
 }
 

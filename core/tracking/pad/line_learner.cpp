@@ -16,10 +16,8 @@ constexpr double kMinLength = 0.1;      // [radii]
 constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, all along it
 constexpr double kMaxRadius = 0.97;
 constexpr double kShortened = 0.02;  // at both ends, where the direction turns
-constexpr double kContrastShare = 0.3;
 constexpr std::size_t kRoom = 4 * LineLearner::kMaxLines;
 constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
-constexpr double kGradientOfStep = 48.0;    // largest gradient of a step of one grey level
 
 }  // namespace
 
@@ -94,7 +92,7 @@ Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
 
 void LineLearner::learn(PadModel& model) {
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
-  const double least = kContrastShare * model.circles.front().contrast * kGradientOfStep;
+  const double least = kMinContrastShare * model.circles.front().contrast * kGradientOfStep;
   map_.compute(above, {least / kGradientGain, least / kGradientGain});
   forget_maxima_at_border();
   chains_.trace(map_);
@@ -151,7 +149,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
 
   const auto corner = std::min(pixels.size() / 4, static_cast<std::size_t>(kShortened / kPixel));
   const PadLine line = line_through(pixels.subspan(corner, pixels.size() - 2 * corner), from, to);
-  if (line.contrast < kContrastShare * model.circles.front().contrast) return;
+  if (line.contrast < kMinContrastShare * model.circles.front().contrast) return;
   if (lines_.size() == kRoom) keep_longest();
   lines_.push_back(line);
 }

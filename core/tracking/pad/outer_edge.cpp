@@ -13,10 +13,8 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMinContrast = 0.3;     // of the expected one
-constexpr double kMaximumOfStep = 48.0;  // of GradientMap's gradient, per grey level
-constexpr double kMinSupport = 0.5;      // share of the perimeter with a gradient maximum
-constexpr std::size_t kSamples = 48;     // half of what the detector takes: each frame pays
+constexpr double kMinSupport = 0.5;   // share of the perimeter with a gradient maximum
+constexpr std::size_t kSamples = 48;  // half of what the detector takes: each frame pays
 constexpr double kThinRingPx = 6.0;
 constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
 constexpr double kReachOfNextEdgePx = 2.0;  // its blur
@@ -43,7 +41,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
   const auto edge = refined_on_picture(luma,
                                        *predicted,
                                        polarity_of(circle.is_bright_outside),
-                                       kMaximumOfStep * min_contrast,
+                                       kGradientOfStep * min_contrast,
                                        kSamples,
                                        view.lens);
   if (!edge || edge->support < kMinSupport) return std::nullopt;
@@ -81,7 +79,7 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
   const auto outer = project_circle(view.ideal_from_pad, 1.0);
   if (!outer || refinement == Refinement::kNone) return std::nullopt;
   const PadCircle& circle = model.circles.front();
-  const double min_contrast = kMinContrast * circle.contrast * gain;
+  const double min_contrast = kMinContrastShare * circle.contrast * gain;
   const double ring_px = model.circles.size() > 1
                              ? (1.0 - model.circles[1].radius) * outer->semi_minor
                              : std::numeric_limits<double>::infinity();
@@ -102,7 +100,7 @@ std::optional<FittedEllipse> refined_circle(const ImageView& luma,
                                             const PadView& view,
                                             const PadCircle& circle,
                                             double gain) {
-  return on_maxima(luma, view, circle, kMinContrast * circle.contrast * gain);
+  return on_maxima(luma, view, circle, kMinContrastShare * circle.contrast * gain);
 }
 
 }  // namespace ellipse

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
 namespace {
@@ -41,7 +42,7 @@ class RadialProfile {
         std::max(1.0, std::floor(view.ideal_from_pad.topLeftCorner<2, 2>().norm()));
     half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
     for (std::size_t k = 0; k < kAngles; ++k) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / kAngles;
+      const double angle = kTwoPi * static_cast<double>(k) / kAngles;
       directions_[k] = {std::cos(angle), std::sin(angle)};
     }
     for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);

@@ -9,6 +9,9 @@
 
 namespace ellipse {
 
+/// An edge with less of the expected contrast is not the pad's.
+inline constexpr double kMinContrastShare = 0.25;
+
 /// A circle about the pad's centre where its brightness changes.
 struct PadCircle {
   double radius = 1.0;  ///< [radii of the outer circle]

@@ -29,17 +29,14 @@ constexpr double kMaxInnovationRatio = 64.0;
 constexpr double kEdgeSigmaPx = 0.6;
 constexpr int kFineSamples = 72;
 constexpr int kWideSamples = 128;
-constexpr double kNearReachPx = 4.0;
-constexpr double kNearMaxPx = 12.0;
-constexpr double kFineReachPx = 3.5;
+constexpr double kReachPx = 4.0;        // where the prediction is good; elsewhere
+constexpr double kWideReach = 0.14;     // of the radius
 constexpr double kSmallChangePx = 1.0;  // the edges' normals are the same still
 constexpr double kTolerancePx = 1.2;
 constexpr double kToleranceRelative = 0.012;  // of the radius: deformed pads
-constexpr double kNearCoverage = 0.7;
-constexpr double kWideCoverage = 0.6;
+constexpr double kMinCoverage = 0.65;
 constexpr double kWeakestCircle = 0.5;
 constexpr int kMinMatched = 10;
-constexpr double kLockCoverage = 0.7;
 constexpr double kLongestMiss = 12.0;  // thirtieths of a second
 constexpr int kHypotheses = 40;
 constexpr int kLockSteps = 3;
@@ -47,17 +44,15 @@ constexpr double kSlowing = 0.8;    // of a motion that is not seen
 constexpr double kGainShare = 0.3;  // of what a frame tells of the contrast
 constexpr double kMinGain = 0.3;
 constexpr double kLearningShare = 0.2;  // the same of the radii
-constexpr double kMinVisibleToLearn = 0.4;
+constexpr double kMinVisibleToLearn = 0.5;
 constexpr double kMinRadiusToLearnPx = 24.0;
 constexpr double kGrowthToLearn = 1.4;
-constexpr double kVisibleToLearnLines = 0.6;
-constexpr double kCoverageToLearn = 0.8;
 constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kMinMatchedOfLine = 0.5;
 constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
 constexpr double kMaxCentreSigma = 0.025;  // [radii], where less is visible
-constexpr double kPatternCoverage = 0.75;
+constexpr double kSureCoverage = 0.75;
 constexpr double kMinVisibleToRefine = 0.3;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
@@ -143,7 +138,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
   }
-  if (attempt->support.coverage < kLockCoverage) return false;
+  if (attempt->support.coverage < kMinCoverage) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
   motion_.velocity_variance = camera_noise(view_, camera_, kFirstTurn, kFirstShift);
   is_locked_ = true;
@@ -197,21 +192,21 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
   search_.place(model_, view_in(window, start), window.luma, kFineSamples);
   if (search_.samples().size() < kMinMatched) return std::nullopt;
-  search_.look(window.luma, gain_, kNearReachPx, &covariance, kNearMaxPx);
+  search_.look(window.luma, gain_, kReachPx, &covariance, 3.0 * kReachPx);
   auto estimate = solve_homography(
-      search_.samples(), prior, HomographyChange::Zero(), kNearMaxPx, kEdgeSigmaPx, 2);
+      search_.samples(), prior, HomographyChange::Zero(), 3.0 * kReachPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
   estimate =
-      solve_homography(search_.samples(), prior, estimate->change, kFineReachPx, kEdgeSigmaPx, 2);
+      solve_homography(search_.samples(), prior, estimate->change, kReachPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
   std::optional<Attempt> attempt;
   if (rms_px(search_.samples(), estimate->change) <= kSmallChangePx) {
     attempt = attempt_of(start, *estimate, estimate->change);
   } else {
-    attempt = finish(window, start, prior, estimate->change, kFineReachPx);
+    attempt = finish(window, start, prior, estimate->change, kReachPx);
   }
   if (attempt) last_coverage_ = attempt->support.coverage;
-  const bool is_good = attempt && attempt->support.coverage >= kNearCoverage &&
+  const bool is_good = attempt && attempt->support.coverage >= kMinCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&
                        attempt->support.matched >= kMinMatched;
   return is_good ? attempt : std::nullopt;
@@ -221,24 +216,22 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
 // known of the motion, the best of which is refined.
 std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& window,
                                                          const Eigen::Matrix3d& start,
-                                                         const HomographyCovariance& covariance,
-                                                         double reach_px) {
+                                                         const HomographyCovariance& covariance) {
+  const double reach_px = std::max(2.0 * kReachPx, kWideReach * radius_px());
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
   search_.place(model_, view_in(window, start), window.luma, kWideSamples);
   const auto samples = search_.samples();
   if (samples.size() < kMinMatched) return std::nullopt;
   search_.look(window.luma, gain_, reach_px);
-  const double fit_px = std::max(3.0, 0.06 * radius_px());
+  const double fit_px = 0.5 * reach_px;
   const HomographyChange best = best_hypothesis(samples, prior, reach_px, fit_px);
-  auto estimate = solve_homography(samples, prior, best, 2.0 * fit_px, kEdgeSigmaPx, 2);
+  auto estimate = solve_homography(samples, prior, best, reach_px, kEdgeSigmaPx, 2);
   if (estimate)
     estimate = solve_homography(samples, prior, estimate->change, fit_px, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
-  auto attempt = finish(window, start, prior, estimate->change, std::max(4.0, 0.03 * radius_px()));
-  if (attempt) {
-    attempt = finish(window, start, prior, attempt->estimate.change, kFineReachPx);
-  }
-  const bool is_good = attempt && attempt->support.coverage >= kWideCoverage &&
+  auto attempt = finish(window, start, prior, estimate->change, 0.5 * fit_px);
+  if (attempt) attempt = finish(window, start, prior, attempt->estimate.change, kReachPx);
+  const bool is_good = attempt && attempt->support.coverage >= kMinCoverage &&
                        attempt->support.weakest >= kWeakestCircle &&
                        attempt->support.matched >= kMinMatched;
   return is_good ? attempt : std::nullopt;
@@ -293,8 +286,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   auto attempt = look_near(window, prediction, before.pose);
   if (!attempt) {
     before = predicted(frames, 400.0);
-    const double reach_px = std::max(8.0, 0.16 * radius_px());
-    attempt = look_wide(window, prediction, before.pose, reach_px);
+    attempt = look_wide(window, prediction, before.pose);
   }
   if (!attempt) attempt = look_coarsely(window, prediction, before);
   if (!attempt) {
@@ -318,8 +310,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& w
   if (!coarse) return std::nullopt;
   HomographyCovariance loose = HomographyCovariance::Zero();
   loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
-  auto attempt = look_wide(
-      window, shifted(*coarse, window.origin_px), loose, std::max(8.0, 0.12 * radius_px()));
+  auto attempt = look_wide(window, shifted(*coarse, window.origin_px), loose);
   if (!attempt) return std::nullopt;
   // The whole change, from the prediction.
   const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
@@ -395,7 +386,7 @@ void PadTracker::learn_radii(const HomographyChange& change, double share) {
       if (edge == nullptr) continue;
       const double beside_px = edge->distance_px - sample.predicted_px(change);
       const double px = sample.view.px_per_unit;
-      const double weight = tukey_weight(beside_px, kFineReachPx) * px * px;
+      const double weight = tukey_weight(beside_px, kReachPx) * px * px;
       sum += weight * sign * beside_px / px;
       weights += weight;
     }
@@ -408,8 +399,8 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   const double radius = radius_px();
   const bool is_time =
       radius >= kMinRadiusToLearnPx && radius >= kGrowthToLearn * learned_radius_px_;
-  if (!is_time || attempt.visible < kVisibleToLearnLines ||
-      attempt.support.coverage < kCoverageToLearn) {
+  if (!is_time || attempt.visible < kMinVisibleToLearn ||
+      attempt.support.coverage < kSureCoverage) {
     return;
   }
   line_learner_.take(window.luma, view_in(window, view_));
@@ -466,9 +457,8 @@ std::optional<EdgeTrack> PadTracker::told(const Attempt* attempt) const {
   track.coverage = attempt->support.coverage;
   track.outline = attempt->support.outline;
   track.visible = attempt->visible;
-  track.is_visible =
-      track.visible >= kEnoughVisible ||
-      (motion_.centre_sigma() <= kMaxCentreSigma && track.coverage >= kPatternCoverage);
+  track.is_visible = track.visible >= kEnoughVisible ||
+                     (motion_.centre_sigma() <= kMaxCentreSigma && track.coverage >= kSureCoverage);
   return track;
 }
 

@@ -89,8 +89,7 @@ class PadTracker {
                                                  const HomographyCovariance& covariance);
   [[nodiscard]] std::optional<Attempt> look_wide(const LumaWindow& window,
                                                  const Eigen::Matrix3d& start,
-                                                 const HomographyCovariance& covariance,
-                                                 double reach_px);
+                                                 const HomographyCovariance& covariance);
   [[nodiscard]] static HomographyChange best_hypothesis(std::span<const EdgeSample> samples,
                                                         const HomographyPrior& prior,
                                                         double reach_px,

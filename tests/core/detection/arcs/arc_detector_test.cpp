@@ -128,6 +128,24 @@ TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
   EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
 }
 
+TEST(ArcDetector, FindsSmallOnesBesideTheTargetWhereAllAreWanted) {
+  const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
+  const Picture picture = rendered(disc(), truth, 120, 100);
+  Thresholds thresholds = detecting();
+  thresholds.wants_all = true;
+  EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
+  ArcDetector detector;
+  const auto found = detector.detect(picture.view(), thresholds);
+  ASSERT_FALSE(found.empty());
+  for (const Detection& one : found) {
+    EXPECT_EQ(one.as_target.reason, Reason::kContourTooShort);
+    EXPECT_LT(one.as_target.measured, one.as_target.limit);
+  }
+  EXPECT_FALSE(select_target(found));
+  thresholds.min_contour_size = 20;
+  EXPECT_TRUE(select_target(detector.detect(picture.view(), thresholds)));
+}
+
 TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
   Random random(11);
   Thresholds thresholds = detecting();

@@ -194,14 +194,15 @@ TEST(ArcSplitter, KnowsTheDarkSide) {
   const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
   for (const double paint : {40.0, 230.0}) {
     const Traced traced(rendered(disc(paint), e, 200, 160));
-    ASSERT_EQ(traced.arcs.size(), 1U);
-    const Arc& arc = traced.arcs[0];
-    EXPECT_EQ(arc.polarity, paint < 140.0 ? Polarity::kDarkInside : Polarity::kBrightInside);
-    const auto fit = fit_ellipse(arc.moments);
-    ASSERT_TRUE(fit);
-    EXPECT_LT(max_difference_px(*fit, e), 0.2);
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_GT(arc.inwards[k].dot(e.center() - arc.points[k]), 0.0);
+    ASSERT_EQ(traced.arcs.size(), 2U);  // the arc, and the closed chain as a whole
+    for (const Arc& arc : traced.arcs) {
+      EXPECT_EQ(arc.polarity, paint < 140.0 ? Polarity::kDarkInside : Polarity::kBrightInside);
+      const auto fit = fit_ellipse(arc.moments);
+      ASSERT_TRUE(fit);
+      EXPECT_LT(max_difference_px(*fit, e), 0.2);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_GT(arc.inwards[k].dot(e.center() - arc.points[k]), 0.0);
+      }
     }
   }
 }
@@ -211,7 +212,10 @@ TEST(ArcSplitter, CutsAtCorners) {
   for (int y = 30; y < 70; ++y) {
     for (int x = 30; x < 90; ++x) picture.at(x, y) = 40;
   }
-  EXPECT_TRUE(Traced(picture).arcs.empty());  // straight lines turn too little
+  const Traced traced(picture);
+  EXPECT_FALSE(traced.arcs.empty());  // the closed chain as a whole, and straight lines
+  for (const Arc& arc : traced.arcs)
+    EXPECT_TRUE(std::abs(arc.turn_rad) < 0.5 || arc.turn_rad > 5.0);
 }
 
 TEST(ArcSplitter, CutsWhereTheCurvatureChangesItsSign) {
