@@ -74,9 +74,12 @@ void OutlineJudge::judge(Detector& detector,
 // only outlines are judged that never showed more.
 bool OutlineJudge::is_due(const Target& target) const {
   if (target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return false;
-  const bool is_sure =
-      log_odds() >= kSure && target.ellipse_overlap >= judged_overlap_ - kLessMatched;
-  return !is_sure || since_judged_s_ >= kJudge_s;
+  const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
+  return !is_sure() || is_less_matched || since_judged_s_ >= kJudge_s;
+}
+
+bool OutlineJudge::is_sure() const {
+  return log_odds() >= kSure;
 }
 
 void OutlineJudge::add(double log_odds) {

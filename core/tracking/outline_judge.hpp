@@ -33,6 +33,8 @@ class OutlineJudge {
 
   /// By all frames so far.
   [[nodiscard]] double log_odds() const { return odds_.value(); }
+  /// Whether nothing has to be added soon.
+  [[nodiscard]] bool is_sure() const;
 
  private:
   [[nodiscard]] bool is_due(const Target& target) const;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;     // the clock's unit
 constexpr double kLook_s = 8.0 * kFrame_s;  // between the detector's looks while following
+constexpr int kLookScale = 2;               // of these looks, while the target is sure
 constexpr double kGivenUp = -3.0;           // log odds
 constexpr double kKeepsNumber_s = 0.4;      // in which a target that was lost may return
 constexpr double kEnoughToLock = 0.45;      // of the perimeter in view, to follow what was found
@@ -168,13 +169,18 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   return target;
 }
 
-// The detector is asked what it would choose.
+// The detector is asked what it would choose: on the reduced frame while the target is sure, so
+// that this frame costs little more than the others.
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
-  const std::optional<Target> chosen = detect(frame);
+  const bool is_visible = followed && followed->state == TargetState::kTracked;
+  ScopedFrame looked = frame;
+  if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
+    looked.finest_scale = std::max(frame.finest_scale, std::min(kLookScale, settings_.max_scale));
+  }
+  const std::optional<Target> chosen = detect(looked);
   since_look_s_ = 0.0;
   if (!chosen) return followed;
-  const bool is_visible = followed && followed->state == TargetState::kTracked;
   if (is_visible && !is_better(*chosen, *followed)) return followed;
   return acquire(frame, *chosen);
 }
