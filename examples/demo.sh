@@ -13,7 +13,7 @@ project=$(cd "$(dirname "$0")/.." && pwd)
 "$project/setup.sh" --without-tests
 build="$project/build"
 [ -e "$build/build.ninja" ] || meson setup "$build" "$project" > /dev/null
-ninja -C "$build" examples/ellipse-demo gst/libgstellipse.so > "$build/demo-build.log" 2>&1 ||
+ninja -C "$build" examples/ellipse-demo gst/libgstellipsetrack.so > "$build/demo-build.log" 2>&1 ||
   { cat "$build/demo-build.log" >&2; exit 1; }
 
 export GST_PLUGIN_PATH="$build/gst${GST_PLUGIN_PATH:+:$GST_PLUGIN_PATH}"

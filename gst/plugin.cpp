@@ -14,7 +14,7 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR,
                   GST_VERSION_MINOR,
-                  ellipse,
+                  ellipsetrack,
                   "Detects and tracks an elliptical target",
                   plugin_init,
                   VERSION,

@@ -50,12 +50,22 @@ from gi.repository import GstEllipse; GstEllipse.EllipseRole.TARGET' || fail "th
 fi
 if [ -n "${PKG_CONFIG_PATH:-}" ]; then
   pkg-config --exists gstellipse-1.0 || fail "the .pc file is not found"
+  ! pkg-config --print-requires --print-requires-private gstellipse-1.0 ellipse-1.0 | grep -i opencv ||
+    fail "a .pc file wants OpenCV"
 fi
+
+# What reads metadata loads neither OpenCV nor the detector.
+metadata=$(find "$work/root" -name libgstellipse-1.0.so)
+ldd "$metadata" > "$work/loaded" || fail "libgstellipse-1.0 is not installed"
+! grep -E 'opencv|libellipse|tbb|lapack' "$work/loaded" || fail "libgstellipse-1.0 loads more than it needs"
+nm -DC --defined-only "$metadata" > "$work/defined"
+grep -q gst_buffer_get_ellipse_meta "$work/defined" || fail "libgstellipse-1.0 has no metadata"
+! grep 'ellipse::' "$work/defined" || fail "libgstellipse-1.0 exports what libellipse has"
 
 # The headers include nothing that is not installed, and nothing of the renderer of scenes.
 headers=$(find "$work/root" -type d -path '*/include/ellipse-1.0')
 (cd "$headers" && find . -name '*.hpp' -printf '#include "%P"\n') > "$work/all.cpp"
-c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3 opencv4) "$work/all.cpp" ||
+c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3) "$work/all.cpp" ||
   fail "the installed headers do not compile by themselves"
 grep -q tracking/tracker.hpp "$work/all.cpp" || fail "the tracker's header is not installed"
 ! grep -q scene "$work/all.cpp" || fail "the renderer's headers are installed"
