@@ -9,7 +9,7 @@ namespace {
 
 // Measured or chosen in docs/provenance.md, "Evidence over time".
 constexpr double kMemory_s = 0.3;
-constexpr double kPrior = -1.0;      // log odds, where no target was reported for long
+constexpr double kPrior = -0.4;      // log odds, where no target was reported for long
 constexpr double kReturn_s = 2.0;    // in which the memory of the last target fades by e
 constexpr double kMaxOfFrame = 5.0;  // log odds: single frames are not calibrated beyond it
 
