@@ -16,15 +16,15 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kWidestRad = 1.53;  // 87.7 degrees: near 90 the ideal plane is endless
-constexpr double kMinSlope = 0.05;   // of the radial map, where it is still one to one
-constexpr int kRadialSteps = 512;    // by which that is told
+constexpr double kWidestRad = 1.53;  // 87.7 degrees: the ideal plane diverges at 90
+constexpr double kMinSlope = 0.05;   // of the radial map to count as one to one
+constexpr int kRadialSteps = 512;    // samples for that test
 constexpr int kTableSteps = 3;
 constexpr double kTableMargin = 1.05;  // for the tangential part
 constexpr int kMaxIterations = 20;
-constexpr double kNearPx = 1e-5;  // from where one step more is exact
+constexpr double kNearPx = 1e-5;  // residual after which one more step is exact
 
-// At focal length 1.
+// In normalized coordinates (focal length 1).
 LensPoint distorted(const Camera& camera, const Vector2d& p) {
   const Distorted<double> at = camera.lens == LensModel::kFisheye
                                    ? kannala_brandt(camera.distortion, p.x(), p.y())
@@ -40,7 +40,7 @@ Vector2d beside_radial(const Camera& camera, const Vector2d& p) {
   return {aside.x, aside.y};
 }
 
-// How fast the distorted radius grows with the angle to the axis.
+// Derivative of the distorted radius: by the angle for a fisheye, else by the ideal radius.
 double radial_slope(const Camera& camera, double theta) {
   if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).derivative;
   const double r = std::tan(theta);
@@ -54,7 +54,7 @@ double radial_place(const Camera& camera, double theta) {
   return r * rational_factor(camera.distortion, r * r).value;
 }
 
-// A linear way to a place at focal length 1, or back.
+// Linear map of one coordinate to focal length 1, or back.
 struct Axis {
   float scale;
   float offset;
@@ -78,7 +78,7 @@ ELLIPSE_INLINE void distort_all(const Distortion& by, const CurveSamples& places
                                                               : brown_conrady(by.distortion, x, y);
     const float x_by_y = at.x_by_y * by.focal_ratio;
     const float y_by_x = at.y_by_x / by.focal_ratio;
-    // A curve's normal goes with the inverse transposed.
+    // Normals transform by the inverse transpose.
     const float across_x = at.y_by_y * nx - y_by_x * ny;
     const float across_y = at.x_by_x * ny - x_by_y * nx;
     const float along = std::sqrt(across_x * across_x + across_y * across_y);
@@ -171,8 +171,8 @@ Lens::Lens(const Camera& camera)
   if (camera.is_distorted()) make_table();
 }
 
-// As far as the picture's corners. The radial part is undone by Newton's method, from the angle
-// next to it.
+// Covers the picture to its corners. Inverts the radial part by Newton's method, starting from the
+// angle of the previous entry.
 void Lens::make_table() {
   const Vector2d farthest(std::max(camera_.cx + 1.0, camera_.width - camera_.cx),
                           std::max(camera_.cy + 1.0, camera_.height - camera_.cy));
@@ -193,7 +193,7 @@ void Lens::make_table() {
   table_.back() = table_[kTableSize];
 }
 
-// Without the tangential part.
+// Ignores the tangential part.
 Vector2d Lens::from_table(const Vector2d& distorted) const {
   const double at = distorted.squaredNorm() * table_scale_;
   if (!(at <= kTableSize)) return Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -243,7 +243,7 @@ std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) con
   const Vector2d wanted = ray(picture_px);
   const double radius = wanted.norm();
   if (!(radius <= 1.1 * largest_picture_)) return std::nullopt;
-  // A start that is right at small angles, and for an equidistant lens at all.
+  // Initial value: exact at small angles, and at all angles for an equidistant lens.
   Vector2d p = wanted;
   if (camera_.lens == LensModel::kFisheye && radius > 0.0) {
     p *= std::tan(std::min(radius, kWidestRad)) / radius;

@@ -22,9 +22,9 @@ namespace {
 
 constexpr std::size_t kMaxFile = 1 << 20;  // bytes
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr double kMinFocal = 1.0;  // px: shorter ones are a slip of units
+constexpr double kMinFocal = 1.0;  // px: shorter ones are in wrong units
 
-// The keys that different programs use for the same thing.
+// Alternative keys of different programs for one value.
 using Keys = std::initializer_list<const char*>;
 constexpr Keys kWidthKeys = {"image_width", "image_Width", "width"};
 constexpr Keys kHeightKeys = {"image_height", "image_Height", "height"};
@@ -34,11 +34,11 @@ constexpr Keys kDistortionKeys = {
 constexpr Keys kModelKeys = {"distortion_model"};
 constexpr Keys kFisheyeKeys = {"fisheye_model"};
 
-// One file, and the way to say what is wrong with it.
+// A calibration file, with error messages that name file, line and key.
 class File {
  public:
   explicit File(const std::string& path) : path_(path) {
-    // Whoever opens a FIFO waits for its other end.
+    // Opening a FIFO blocks until its other end is opened.
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -57,7 +57,7 @@ class File {
     parse();
   }
 
-  // The node of the first of these keys that is there; else an empty one.
+  // The node of the first key present, else an empty one; `found` is that key, else the first one.
   [[nodiscard]] cv::FileNode find(Keys keys, const char*& found) const {
     for (const char* key : keys) {
       const cv::FileNode node = storage_[key];
@@ -82,17 +82,17 @@ class File {
     if (is_cut_off(text_[first])) {
       throw std::invalid_argument(path_ + ": is no calibration: it ends too early");
     }
-    // OpenCV reads YAML under its own first line only, which those of ROS have not.
+    // OpenCV requires its own first line in YAML, which ROS files lack.
     const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
     const std::string text = is_bare ? "%YAML:1.0\n---\n" + as_opencv_reads() : text_;
     const int added = is_bare ? 2 : 0;
     try {
       storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     } catch (const cv::Exception& error) {
-      const std::string& told = error.func;  // there OpenCV's parsers say what is wrong
+      const std::string& told = error.func;  // OpenCV's parsers put their message here
       throw std::invalid_argument(path_ + line_in(told, added) +
                                   ": is no calibration: " + reason_in(error));
-    } catch (const std::exception&) {  // std::length_error, where a key has no letters
+    } catch (const std::exception&) {  // std::length_error for an empty key
       throw std::invalid_argument(path_ + ": is no calibration");
     }
     if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
@@ -101,7 +101,7 @@ class File {
     }
   }
 
-  // OpenCV's parsers of XML and JSON may read beyond the end of what does not end as it should.
+  // OpenCV's XML and JSON parsers may read beyond the end of a truncated file.
   [[nodiscard]] bool is_cut_off(char first) const {
     if (first != '<' && first != '{') return false;
     const std::string_view end = first == '<' ? "</opencv_storage>" : "}";
@@ -109,8 +109,8 @@ class File {
     return !text.ends_with(end);
   }
 
-  // Others' YAML may have "---" of its own: kept as an empty line. And lists whose dashes stand
-  // below the key's first letter, as `ros2 topic echo` prints them: indented.
+  // Adapts YAML to OpenCV's parser: blanks "---" lines, and indents lists whose dashes are in the
+  // first column, as `ros2 topic echo` prints them.
   [[nodiscard]] std::string as_opencv_reads() const {
     std::istringstream lines(text_);
     std::string text;
@@ -139,7 +139,7 @@ class File {
     return close == std::string::npos ? error.err : message.substr(close + 3);
   }
 
-  // Of a key: a word at a line's begin, behind blanks, quotes or a bracket. 0 where it is not.
+  // Line number of a key: the first word of a line, after blanks, quotes or a bracket. 0 if absent.
   [[nodiscard]] int line_of(std::string_view key) const {
     std::istringstream lines(text_);
     std::string line;
@@ -177,7 +177,7 @@ int size(const File& file, Keys keys) {
   return static_cast<int>(value);
 }
 
-// Either a plain list, or rows, cols and data as OpenCV and ROS both have them.
+// Reads a plain list, or rows, cols and data as in OpenCV and ROS.
 std::vector<double> numbers(const File& file, const char* key, const cv::FileNode& node) {
   const cv::FileNode data = node.isMap() ? node["data"] : node;
   if (data.empty() || !data.isSeq()) file.refuse(key, "has no data");
@@ -231,8 +231,8 @@ LensModel model_of(const File& file) {
   file.refuse(key, "is none of: plumb_bob, rational_polynomial, equidistant, fisheye, none");
 }
 
-// Whether the lens shows the middle half of the picture, each direction once. Farther out many a
-// calibration's polynomial turns back, where no picture was taken for it.
+// Whether the lens maps the middle half of the picture one to one. Farther out many a calibration's
+// polynomial extrapolates and is not monotonic.
 bool is_one_to_one(const Camera& camera) {
   constexpr int kDirections = 16;
   constexpr int kSteps = 4;

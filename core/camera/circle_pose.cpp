@@ -17,20 +17,20 @@ using Eigen::Vector3d;
 // Found by experiment, see docs/provenance.md.
 constexpr double kStretchNoise = 2.3;
 constexpr double kTiltOfNoise = 8.0;
-constexpr double kMemory = 0.98;         // of the inner edges' evidence, from frame to frame
+constexpr double kMemory = 0.98;         // decay of the inner edges' information per frame
 constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance, that frames average out
-constexpr double kModelDegrees = 4.0;    // of freedom, of the scale of the errors
-constexpr double kErrorOverSigma = 0.4;  // measured, .25 to .6: stated sigmas are too large
+constexpr double kModelDegrees = 4.0;    // degrees of freedom of the errors' scale
+constexpr double kErrorOverSigma = 0.4;  // measured .25 to .6: stated sigmas are too large
 constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
-constexpr double kMaxInnerOdds = 12.0;   // logarithm: inner edges may belong to something else
+constexpr double kMaxInnerOdds = 12.0;   // log odds: inner edges may belong to clutter
 constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
-constexpr double kTurnPerFrame = 0.05;   // by which a normal moves between frames [rad]
+constexpr double kTurnPerFrame = 0.05;   // typical change of a normal between frames [rad]
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Two unit vectors that make a right-handed frame with the normal.
+// Two unit vectors that form a right-handed frame with the normal.
 Eigen::Matrix<double, 3, 2> plane_axes(const Vector3d& normal) {
   const Vector3d first = normal.unitOrthogonal();
   Eigen::Matrix<double, 3, 2> axes;
@@ -38,7 +38,7 @@ Eigen::Matrix<double, 3, 2> plane_axes(const Vector3d& normal) {
   return axes;
 }
 
-// The pad's plane in front of the camera: columns are its axes and its centre [radii].
+// Maps the pad's plane to the camera frame: columns are its axes and its centre [radii].
 Matrix3d camera_from_plane(const CirclePose& pose) {
   Matrix3d plane;
   plane << plane_axes(pose.normal), pose.position;
@@ -47,7 +47,7 @@ Matrix3d camera_from_plane(const CirclePose& pose) {
 
 using RingChange = Eigen::Matrix<double, 5, 1>;
 
-// By which a circle's image differs from the unit circle of a view, to first order.
+// Change of a view's unit circle to a circle's image, to first order.
 std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
   const auto there = image ? with_outer_edge(view, *image) : std::nullopt;
   if (!there) return std::nullopt;
@@ -56,17 +56,17 @@ std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<
   return change_of(between - Matrix3d::Identity()).head<5>();
 }
 
-// How badly the two solutions explain the inner edges.
+// Residuals of the inner edges under the two solutions.
 struct InnerMisfit {
   std::array<double, 2> chi_squared{};
   double separation = 0.0;  // chi-square between the two predictions
   int degrees = 0;
 };
 
-// An inner edge beside what a solution predicts for the radius that fits it best.
+// Residual of an inner edge under a solution, for the radius that fits best.
 struct RadiusFit {
   RingChange residual;
-  RingMatrix weights;  // of the four parameters that are left
+  RingMatrix weights;  // of rank 4: the radius is projected out
 };
 
 std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
@@ -74,7 +74,7 @@ std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
                                     const RingChange& measured,
                                     const RingMatrix& information,
                                     double radius) {
-  constexpr double kStep = 1e-3;  // of the radius, for its derivative
+  constexpr double kStep = 1e-3;  // relative radius step of the numeric derivative
   constexpr int kSteps = 2;
   RadiusFit fit;
   for (int step = 0; step <= kSteps; ++step) {
@@ -90,8 +90,8 @@ std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
   return fit;
 }
 
-// Compares one inner edge with what both solutions predict for a circle of its radius, which is
-// fitted: four of its five parameters are left to tell the solutions apart.
+// Compares one inner edge with the predictions of both solutions. Its radius is fitted, so four of
+// its five parameters discriminate.
 void add_misfit(const Camera& camera,
                 const std::array<CirclePose, 2>& poses,
                 const RingUncertainty& outer,
@@ -102,7 +102,7 @@ void add_misfit(const Camera& camera,
   const auto outer_ellipse = project_circle(outer.view, 1.0);
   if (!measured || !outer_ellipse) return;
   const double size_px = std::sqrt(inner.ellipse.semi_major * inner.ellipse.semi_minor);
-  // An error of the outer edge moves the prediction along.
+  // An error of the outer edge shifts the prediction.
   const RingMatrix along = ring_changes(outer.view, view);
   RingMatrix covariance = inner.uncertainty.information.inverse() +
                           along * outer.information.inverse() * along.transpose();
@@ -124,8 +124,8 @@ void add_misfit(const Camera& camera,
   misfit.degrees += 4;
 }
 
-// Log likelihood ratio of the first solution, with the scale of the errors unknown: Student's t. So
-// where neither fits, as on a pad that is not flat, there is little to choose between them.
+// Log likelihood ratio of the first solution under errors of unknown scale: Student's t. If neither
+// fits, as on a pad that is not flat, the ratio is small.
 double log_odds(const InnerMisfit& misfit) {
   const double odds =
       0.5 * (misfit.degrees + kModelDegrees) *
@@ -176,7 +176,7 @@ Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose) {
   return camera.matrix() * camera_from_plane(pose);
 }
 
-// The edge moves by five parameters of the pose: a shift, and turns about two axes in the plane.
+// Five pose parameters move the edge: a shift, and rotations about two axes in the plane.
 Matrix3d position_covariance(const Camera& camera,
                              const CirclePose& pose,
                              const RingUncertainty& picture) {
@@ -192,8 +192,8 @@ Matrix3d position_covariance(const Camera& camera,
   changes.col(4) = change_of(-inverse * pose.normal * first).head<5>();
   const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
   RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
-  // Near the view straight on the stretch goes with the tilt's square: it tells the tilt the less,
-  // the nearer it is to its own noise, and at its noise no better than by that one's square root.
+  // Near a frontal view the stretch is quadratic in the tilt. As the stretch approaches its noise,
+  // the tilt's sigma grows, up to the order of the square root of that noise.
   const double noise = std::sqrt(covariance(3, 3) + covariance(4, 4));
   const double cosine = pose.normal.dot(pose.position.normalized());
   const double stretch = 0.25 * (1.0 - cosine * cosine);
@@ -206,8 +206,8 @@ Matrix3d position_covariance(const Camera& camera,
   return information.inverse().topLeftCorner<3, 3>();
 }
 
-// Puts what is known of the last frame's solutions into the order of this frame's. Near the view
-// straight on the two solutions meet, and which was which is lost.
+// Reorders the accumulated odds to match this frame's solutions. Near a frontal view the solutions
+// merge and their association is lost, so the odds decay.
 void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
   if (last_) {
     const auto turn = [&](std::size_t here, std::size_t there) {
@@ -249,7 +249,7 @@ double PoseEstimator::update_odds(const Camera& camera,
     add_misfit(camera, poses, uncertainty, inner, misfit);
   }
   const double apart = std::sqrt(misfit.separation);
-  // In standard deviations, from where both solutions explain the inner edges equally well.
+  // Standard deviations from equal likelihood of both solutions.
   const double deviation = 0.5 * (misfit.chi_squared[1] - misfit.chi_squared[0]) / apart;
   const bool has_inner = apart > 0.0 && std::isfinite(deviation);
   const bool has_gravity = gravity.squaredNorm() > 0.0;
@@ -275,7 +275,7 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
   if (!poses) return std::nullopt;
   follow_solutions(*poses);
   const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
-  // A choice that nothing decides stays as it is.
+  // Without evidence, keeps the previous selection.
   constexpr double kUndecided = 1e-3;
   odds_ = std::isfinite(odds) ? odds : 0.0;
   const bool is_first = odds_ >= 0.0;

@@ -11,63 +11,63 @@
 
 namespace ellipse {
 
-// Frame of reference: the camera's, x right, y down, z forward (REP 103's optical frame).
+// Frame of reference: the camera's optical frame of REP 103, x right, y down, z forward.
 
 /// A circle in space. Lengths in radii of the circle.
 struct CirclePose {
   Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< Of its centre.
-  Eigen::Vector3d normal{0.0, 0.0, 0.0};    ///< Unit, on the side that the camera sees.
+  Eigen::Vector3d normal{0.0, 0.0, 0.0};    ///< Unit, on the side facing the camera.
 };
 
-/// The two circles that have this ellipse as their picture, in closed form [KanataniLiu1993]. Seen
-/// straight on they are the same one.
+/// The two circles that project to this ellipse, in closed form [KanataniLiu1993]. They coincide in
+/// a frontal view.
 ///
 /// @param ideal  In the ideal plane [px].
-/// nullopt where it is no picture of a circle in front of the camera. Thread-safe, allocates
-/// nothing.
+/// @return nullopt if no circle in front of the camera projects to it. Thread-safe, allocates
+///         nothing.
 [[nodiscard]] std::optional<std::array<CirclePose, 2>> circle_poses(const Camera& camera,
                                                                     const Ellipse& ideal);
 
-/// Where the camera sees a circle's centre, which is not the ellipse's [px of the ideal plane].
+/// Projection of a circle's centre [px of the ideal plane]; differs from the ellipse's centre.
 [[nodiscard]] Eigen::Vector2d projected_centre(const Camera& camera, const CirclePose& pose);
 
-/// The view of the circle's plane; unit: its radius.
+/// Homography from the circle's plane to the ideal plane; unit: the circle's radius.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose);
 
-/// Covariance of a circle's position [radii^2], from how well its picture is known. Its tilt is
-/// taken for no better known than the second order of a circle seen straight on allows.
+/// Covariance of a circle's position [radii^2], from the uncertainty of its image. Includes that
+/// the ellipse determines the tilt only to second order near a frontal view.
 [[nodiscard]] Eigen::Matrix3d position_covariance(const Camera& camera,
                                                   const CirclePose& pose,
                                                   const RingUncertainty& picture);
 
-/// What is known of the target in space.
+/// The target's pose in the camera frame.
 struct TargetPose {
   Eigen::Vector3d bearing{0.0, 0.0, 1.0};        ///< Unit, towards the circle's centre.
-  Eigen::Vector2d angles_rad{0.0, 0.0};          ///< Of the bearing to the right and downwards.
+  Eigen::Vector2d angles_rad{0.0, 0.0};          ///< Of the bearing, to the right and downwards.
   Eigen::Vector2d centre_px{0.0, 0.0};           ///< The circle's centre in the picture.
   Eigen::Vector3d normal{0.0, 0.0, -1.0};        ///< Unit, towards the camera.
-  Eigen::Vector3d other_normal{0.0, 0.0, -1.0};  ///< Of the circle with the same picture.
-  double certainty = 0.5;  ///< Probability that the first of the two is the right one.
-  double radius_m = 0.0;   ///< 0 = not known; then so are those below.
+  Eigen::Vector3d other_normal{0.0, 0.0, -1.0};  ///< Of the other circle with the same image.
+  double certainty = 0.5;  ///< Probability that `normal` is the right one of the two.
+  double radius_m = 0.0;   ///< 0 = unknown; then so are the fields below.
   Eigen::Vector3d position_m{0.0, 0.0, 0.0};
   Eigen::Vector3d other_position_m{0.0, 0.0, 0.0};
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< Of the position.
 };
 
-/// Estimates a target's pose frame by frame, and chooses between the two solutions: each predicts
-/// where a concentric inner circle appears, and how far from level the target is. Without either,
-/// the choice of the frame before is kept.
+/// Estimates a target's pose in each frame and selects one of the two solutions: each predicts the
+/// images of concentric inner circles and the target's deviation from level. Without inner circles
+/// and gravity, keeps the previous selection.
 ///
-/// One object follows one target, on one thread. Allocates nothing.
+/// One object serves one target, on one thread. Allocates nothing.
 class PoseEstimator {
  public:
   /// @param ideal        The target's outer edge, in the ideal plane.
   /// @param uncertainty  Of the outer edge.
-  /// @param inner_edges  Measured images of circles inside the outer one and concentric with it, of
-  ///                     any radius; in the ideal plane. May be empty.
-  /// @param radius_m     0 = not known.
-  /// @param gravity      Downwards, in the camera's frame, of any length: the target is level.
-  ///                     0 = not known.
+  /// @param inner_edges  Measured images of concentric circles inside the outer one, of any radius;
+  ///                     in the ideal plane. May be empty.
+  /// @param radius_m     0 = unknown.
+  /// @param gravity      Downwards in the camera frame, of any length; assumes a level target.
+  ///                     0 = unknown.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
                                                    const RingUncertainty& uncertainty,
@@ -75,7 +75,7 @@ class PoseEstimator {
                                                    double radius_m,
                                                    const Eigen::Vector3d& gravity);
 
-  /// Call before another target, or the same one after a gap.
+  /// Call before a new target, or the same one after a gap.
   void forget() { *this = {}; }
 
  private:
@@ -86,24 +86,24 @@ class PoseEstimator {
                                    std::span<const FittedEllipse> inner_edges,
                                    const Eigen::Vector3d& gravity);
 
-  // The mean of the frames' log odds by inner edges, weighted by information. Averaging reduces
-  // only the part of their error that differs from frame to frame, which is measured by successive
-  // differences [VonNeumann1941]: a repeated frame is no further evidence.
+  // Mean of the frames' log odds from inner edges, weighted by information. Averaging reduces only
+  // the error that is independent between frames. Successive differences measure that part
+  // [VonNeumann1941]: a repeated frame adds no evidence.
   struct OddsAverage {
     double odds = 0.0;         // the mean
     double information = 0.0;  // sum of the frames' squared separations
-    double noise_share = 0.0;  // of the variance, that differs from frame to frame
-    double differences = 0.0;  // number of those that it was measured by
+    double noise_share = 0.0;  // share of the variance that is independent between frames
+    double differences = 0.0;  // number of differences that measured it
     double last_deviation = 0.0;
 
-    // The log odds by all frames so far, with one more in which the solutions are separation^(1/2)
-    // standard deviations apart.
+    // Adds a frame in which the solutions are separation^(1/2) standard deviations apart. Returns
+    // the log odds from all frames so far.
     double add(double frame_odds, double deviation, double separation);
   };
 
   // Log odds of the first solution against the second, in the order of the last frame.
-  double odds_ = 0.0;  // by all evidence
-  OddsAverage inner_;  // by inner edges alone
+  double odds_ = 0.0;  // from all evidence
+  OddsAverage inner_;  // from inner edges alone
   std::optional<std::array<CirclePose, 2>> last_;
 };
 

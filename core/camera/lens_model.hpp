@@ -7,10 +7,10 @@
 
 namespace ellipse {
 
-// What the models of lenses say, at focal length 1: for one place in double precision, and for many
-// at once in single. Without branches, so that the compiler makes vectors of them.
+// Lens models at focal length 1: in double precision for one point, in single for many at once.
+// Branch-free, so that the compiler vectorizes them.
 
-/// Where a lens puts a place, and the derivatives of both coordinates.
+/// A distorted point and the derivatives of both coordinates.
 template <class T>
 struct Distorted {
   T x;
@@ -29,7 +29,7 @@ struct Slope {
 };
 
 /// (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6) [Brown1971], in the rational
-/// form of OpenCV; by r^2.
+/// form of OpenCV, as a function of r^2.
 /// @param d  k1, k2, p1, p2, k3, k4, k5, k6.
 template <class T>
 ELLIPSE_INLINE Slope<T> rational_factor(const std::array<T, 8>& d, T r2) {
@@ -50,7 +50,7 @@ ELLIPSE_INLINE Slope<T> fisheye_angle(const std::array<T, 8>& d, T theta) {
           1 + t2 * (3 * d[0] + t2 * (5 * d[1] + t2 * (7 * d[2] + t2 * 9 * d[3])))};
 }
 
-/// What a lens whose elements are not quite in line adds to the radial part [Brown1971].
+/// Tangential distortion of a decentred lens, added to the radial part [Brown1971].
 template <class T>
 ELLIPSE_INLINE Distorted<T> tangential(const std::array<T, 8>& d, T x, T y) {
   const T p1 = d[2];
@@ -102,7 +102,7 @@ ELLIPSE_INLINE float arc_tangent(float x) {
 
 template <class T>
 ELLIPSE_INLINE Distorted<T> kannala_brandt(const std::array<T, 8>& d, T x, T y) {
-  constexpr T kAxis = static_cast<T>(1e-18);  // so that there is a direction on the axis
+  constexpr T kAxis = static_cast<T>(1e-18);  // avoids division by 0 on the axis
   const T r2 = x * x + y * y + kAxis;
   const T inverse = 1 / std::sqrt(r2);
   const Slope<T> angle = fisheye_angle(d, arc_tangent(r2 * inverse));

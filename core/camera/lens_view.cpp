@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr std::size_t kFitPoints = 24;
-constexpr std::size_t kOutlinePoints = 96;  // by which a distorted perimeter is measured
+constexpr std::size_t kOutlinePoints = 96;  // samples to measure a distorted perimeter
 
 bool is_shown(const Vector2d& point) {
   return point.allFinite();
@@ -33,7 +33,7 @@ void for_each_point(const Ellipse& e, std::size_t count, const Use& use) {
   }
 }
 
-// Through the points of an ellipse, each taken to where `map` puts it; some of them may be nowhere.
+// Fits an ellipse to the mapped points of another; `map` returns nullopt for points out of range.
 template <class Map>
 std::optional<Ellipse> mapped(const Ellipse& e, std::size_t min_points, const Map& map) {
   std::optional<Moments> moments;
@@ -86,7 +86,7 @@ Vector2d LensView::near_ideal(const Vector2d& picture_px) const {
   return is_distorted() ? in_picture(lens_->near_ideal(in_frame(picture_px))) : picture_px;
 }
 
-// What the lens does not show is taken to be as long as what comes before it.
+// Outside the lens's range a segment counts with the length of the last one inside.
 double visible_fraction(const LensView& lens, const Ellipse& ideal, int width, int height) {
   if (!lens.is_distorted()) return visible_fraction(ideal, width, height);
   std::array<Vector2d, kOutlinePoints> points;

@@ -65,7 +65,7 @@ std::optional<Ellipse> from_shape(const Eigen::Vector2d& center, const Eigen::Ma
   const double off = 0.5 * (shape(0, 1) + shape(1, 0));
   const double radius = std::hypot(diff, off);
   const double major_sq = mean + radius;
-  // The small eigenvalue by the determinant: mean - radius would cancel on flat ellipses.
+  // Small eigenvalue from the determinant: mean - radius suffers cancellation on flat ellipses.
   const double minor_sq = (shape(0, 0) * shape(1, 1) - off * off) / major_sq;
   if (!(minor_sq > 0.0) || !std::isfinite(major_sq) || !center.allFinite()) return std::nullopt;
   return Ellipse{center.x(),

@@ -75,7 +75,7 @@ struct Interval {
 /// Symmetric C with (p - c)^T C^-1 (p - c) = 1 on the perimeter [px^2].
 [[nodiscard]] Eigen::Matrix2d shape_matrix(const Ellipse& e);
 
-/// The inverse of shape_matrix(). nullopt where the matrix is not positive definite and finite.
+/// The inverse of shape_matrix(). nullopt unless the matrix is positive definite and finite.
 [[nodiscard]] std::optional<Ellipse> from_shape(const Eigen::Vector2d& center,
                                                 const Eigen::Matrix2d& shape);
 
@@ -85,7 +85,7 @@ struct Interval {
 /// The inverse of conic_matrix(), for any scale and sign of Q. nullopt for other conics.
 [[nodiscard]] std::optional<Ellipse> from_conic(const Eigen::Matrix3d& conic);
 
-/// The ellipse seen through p -> A p + t. nullopt where A is singular.
+/// The ellipse mapped by p -> A p + t. nullopt if A is singular.
 [[nodiscard]] std::optional<Ellipse> transformed(const Ellipse& e,
                                                  const Eigen::Matrix2d& linear,
                                                  const Eigen::Vector2d& translation_px);
@@ -101,7 +101,7 @@ struct Interval {
 /// The largest difference among centre coordinates and semi-axes [px].
 [[nodiscard]] double max_difference_px(const Ellipse& a, const Ellipse& b);
 
-/// A distance that grows with the size of what is compared.
+/// A tolerance that grows with the size of an ellipse.
 struct Tolerance {
   double px = 0.0;
   double relative = 0.0;  ///< Of the semi-major axis.
@@ -112,11 +112,11 @@ struct Tolerance {
 /// Whether no centre coordinate and no semi-axis differs by more than the tolerance of `reference`.
 [[nodiscard]] bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolerance);
 
-/// Whether two ellipses may be images of concentric circles: perspective parts their centres, and
-/// small fits are uncertain.
+/// Whether two ellipses may be images of concentric circles. The tolerance covers the perspective
+/// offset of their centres and the uncertainty of small fits.
 [[nodiscard]] bool are_concentric(const Ellipse& a, const Ellipse& b);
 
-/// Intersection over union of two ellipses, counted inside a frame only; 0 where both miss it.
+/// Intersection over union of two ellipses inside a frame; 0 if both are outside.
 [[nodiscard]] double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height);
 
 /// Share of the perimeter's length inside the frame, 0 to 1.

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kMinPoints = 5;  // A conic has five degrees of freedom.
 
-// On standardized points the two principal variances sum to 1: below this they lie on a line.
+// Min product of the principal variances of standardized points, which sum to 1: below it the
+// points are collinear.
 constexpr double kMinVariance = 1e-6;
 
 // Keeps the reduced scatter invertible when the points lie on the ellipse exactly.
@@ -23,8 +24,8 @@ constexpr int kMaxNewtonSteps = 40;
 constexpr int kBinomial[5][5] = {
     {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
 
-// [HalirFlusser1998] (19)-(21): the scatter S1 of the quadratic monomials (x^2, xy, y^2), less what
-// the linear ones (x, y, 1) explain of it: S1 + S2 T with T = -S3^-1 S2^T.
+// [HalirFlusser1998] (19)-(21): the scatter S1 of the quadratic monomials (x^2, xy, y^2) minus the
+// part explained by the linear ones (x, y, 1): S1 + S2 T with T = -S3^-1 S2^T.
 struct ReducedScatter {
   Eigen::Matrix3d quadratic;  // M = S1 + S2 T
   Eigen::Matrix3d linear;     // T
@@ -47,7 +48,7 @@ ReducedScatter reduced_scatter(const Moments& m) {
   return {s1 + s2 * linear, linear};
 }
 
-// The polynomial det(M - lambda C), from the highest power down.
+// Coefficients of det(M - lambda C), from the highest power down.
 using Cubic = std::array<double, 4>;
 
 Cubic characteristic(const Eigen::Matrix3d& m) {
@@ -56,8 +57,8 @@ Cubic characteristic(const Eigen::Matrix3d& m) {
   return {-4.0, 4.0 * (r - t), p * w - r * r + 4.0 * (r * t - q * v), m.determinant()};
 }
 
-// Its largest root, by Newton's method from above: beyond the largest of three real roots a cubic
-// has all its derivatives of one sign, so that the steps never leave that side.
+// Largest root, by Newton's method from above: beyond the largest of three real roots all
+// derivatives of a cubic have one sign, so the steps converge monotonically.
 double largest_root(const Cubic& c, double above) {
   double x = above;
   for (int step = 0; step < kMaxNewtonSteps; ++step) {
@@ -72,7 +73,7 @@ double largest_root(const Cubic& c, double above) {
 
 // Minimizes a^T M a under a^T C a = 1, C = [0 0 2; 0 -1 0; 2 0 0] (4 a c - b^2 = 1): M a = lambda C
 // a with the only positive lambda [Fitzgibbon1999] Lemma 1. It is at most the value for a circle,
-// a = (1/2, 0, 1/2). The answer is orthogonal to all rows of M - lambda C, two of which say it.
+// a = (1/2, 0, 1/2). The solution is orthogonal to all rows of M - lambda C, whose rank is 2.
 Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
   Eigen::Matrix3d m = 0.5 * (scatter + scatter.transpose());
   m.diagonal().array() += kRegularization * m.trace();

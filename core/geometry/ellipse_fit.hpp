@@ -11,15 +11,15 @@
 
 namespace ellipse {
 
-/// Sums of x^i y^j, i + j <= 4, over points taken relative to an origin. All that a least-squares
-/// ellipse needs to know of its points, however many they are.
+/// Sums of x^i y^j, i + j <= 4, over points relative to an origin. Sufficient for a least-squares
+/// fit of an ellipse to any number of points.
 class Moments {
  public:
-  /// @param origin_px  A point near the data, such as its first one: it keeps the sums small.
+  /// @param origin_px  A point near the data, such as its first one, which keeps the sums small.
   explicit Moments(const Eigen::Vector2d& origin_px) : origin_(origin_px) {}
 
   void add(const Eigen::Vector2d& point_px, double weight = 1.0);
-  /// The points of both. Both must have the same origin.
+  /// Adds the points of `other`, which must have the same origin.
   void add(const Moments& other);
 
   [[nodiscard]] double count() const { return at(0, 0); }
@@ -56,23 +56,22 @@ struct MomentFit {
   double rms_px = 0.0;
 };
 
-/// The same with the residual, which the moments tell too: O(1).
+/// The same with the residual, also from moments: O(1).
 [[nodiscard]] std::optional<MomentFit> fit_with_residual(const Moments& moments);
 
-/// Where a point lies, seen from an ellipse's perimeter.
+/// Position of a point relative to an ellipse's perimeter.
 struct PerimeterOffset {
   Eigen::Vector2d anomaly;   ///< Cosine and sine of the eccentric anomaly.
-  double px_per_unit = 0.0;  ///< How far the perimeter moves if the axes grow by their own length.
-  double distance_px = 0.0;  ///< From the perimeter, above 0 outside; as sampson_distance().
+  double px_per_unit = 0.0;  ///< Displacement of the perimeter per relative axis growth.
+  double distance_px = 0.0;  ///< From the perimeter, positive outside; as sampson_distance().
 };
 
-/// One Gauss-Newton step towards the ellipse with the least sum of squared Sampson distances
-/// [Sampson1982]. Direct least squares draws short arcs towards small, flat ellipses; this does
-/// not.
+/// One Gauss-Newton step towards the ellipse with the minimal sum of squared Sampson distances
+/// [Sampson1982]. Direct least squares is biased towards small, flat ellipses on short arcs; this
+/// is not.
 ///
-/// The ellipse is {c + M u, |u| = 1}, M its axes: five parameters move c within M and stretch M
-/// symmetrically, so that no direction is singular, at a circle neither. Allocates nothing; O(1) a
-/// point.
+/// The ellipse is {c + M u, |u| = 1}, M its axes: five parameters shift c in units of M and stretch
+/// M symmetrically, which is not singular even at a circle. Allocates nothing; O(1) per point.
 class GeometricFit {
  public:
   explicit GeometricFit(const Ellipse& start);
@@ -87,8 +86,8 @@ class GeometricFit {
   /// The ellipse after the step; nullopt for fewer than 5 points or a singular system.
   [[nodiscard]] std::optional<Ellipse> solve() const;
 
-  /// Sum of the weighted squares: for weights of 1 over the variance of the points' distances, the
-  /// inverse covariance of T, S and E (see HomographyChange) in the view image_from_pad(start).
+  /// Normal matrix: with weights of 1 over the variance of the points' distances, the inverse
+  /// covariance of T, S and E (see HomographyChange) in the view image_from_pad(start).
   [[nodiscard]] RingMatrix information() const { return equations_.information(); }
 
  private:
@@ -99,20 +98,20 @@ class GeometricFit {
   LeastSquares<5> equations_;
 };
 
-/// An ellipse and how well it is known.
+/// An ellipse and its uncertainty.
 struct FittedEllipse {
   Ellipse ellipse;
   RingUncertainty uncertainty;
 };
 
-/// What a fit to edges around the part of an ellipse inside a frame would leave open.
-/// @param sigma_px  Standard deviation of an edge's place, every kIndependentPx of the perimeter.
+/// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame.
+/// @param sigma_px  Standard deviation of an edge position, every kIndependentPx of the perimeter.
 [[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
                                                    double width,
                                                    double height,
                                                    double sigma_px);
 
-/// Edges nearer to each other along their ellipse err alike [px].
+/// Min distance along the perimeter between edges with independent errors [px].
 inline constexpr double kIndependentPx = 6.0;
 
 }  // namespace ellipse

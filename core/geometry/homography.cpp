@@ -20,7 +20,7 @@ Matrix3d generator_of(const HomographyChange& d) {
   return a;
 }
 
-// Changes are small: the fifth term of the series is below 1e-3 of the change for |A| < 0.6.
+// Changes are small: the first omitted term is below 1.1e-3 of the change for |A| < 0.6.
 Matrix3d exponential(const Matrix3d& a) {
   const Matrix3d squared = a * a;
   return Matrix3d::Identity() + a + squared / 2.0 + squared * a / 6.0 + squared * squared / 24.0;
@@ -38,7 +38,7 @@ Matrix3d image_from_pad(const Ellipse& outer_edge) {
 }
 
 std::optional<Ellipse> project_circle(const Matrix3d& image_from_pad, double radius) {
-  // The circle is in front of the camera where the third row is positive all along it.
+  // The circle is in front of the camera if the third row is positive all along it.
   const Eigen::RowVector3d depth = image_from_pad.row(2);
   if (!(depth(2) > radius * depth.head<2>().norm())) return std::nullopt;
   const Matrix3d pad_from_image = image_from_pad.inverse();
@@ -48,7 +48,7 @@ std::optional<Ellipse> project_circle(const Matrix3d& image_from_pad, double rad
 }
 
 std::optional<Matrix3d> with_outer_edge(const Matrix3d& image_from_pad, const Ellipse& outer_edge) {
-  // Seen from the pad, as a conic of points [HartleyZisserman2004] 2.3.
+  // The ellipse in pad coordinates: conics map as C = H^T C' H [HartleyZisserman2004] 2.3.
   const auto on_pad =
       from_conic(image_from_pad.transpose() * conic_matrix(outer_edge) * image_from_pad);
   if (!on_pad) return std::nullopt;

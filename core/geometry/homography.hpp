@@ -7,64 +7,65 @@
 
 namespace ellipse {
 
-// A pad's plane seen by a camera: (u, v, 1) ~ H (x, y, 1). On the pad the unit is the radius of its
-// outer circle, whose centre is the origin; in the picture it is the pixel.
+// Projection of a pad's plane: (u, v, 1) ~ H (x, y, 1). On the pad the origin is the centre of its
+// outer circle and the unit is its radius; in the image the unit is the pixel.
 
-/// The affine view in which the outer circle is exactly this ellipse.
+/// The affine view that maps the outer circle exactly to this ellipse.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Ellipse& outer_edge);
 
-/// The exact picture of a circle about the pad's centre. nullopt where it is not an ellipse, such
-/// as when part of it is behind the camera.
+/// Exact projection of a circle around the pad's centre. nullopt if it is not an ellipse, such as
+/// when part of it is behind the camera.
 [[nodiscard]] std::optional<Ellipse> project_circle(const Eigen::Matrix3d& image_from_pad,
                                                     double radius);
 
-/// The view next to this one in which the outer circle is exactly this ellipse: the pad is moved
-/// and stretched in its own plane, and not turned. nullopt where the view shows no such ellipse.
+/// Adjusts a view to map the outer circle exactly to this ellipse, by a shift and a symmetric
+/// stretch in the pad's plane, without rotation. nullopt if the ellipse has no such preimage.
 [[nodiscard]] std::optional<Eigen::Matrix3d> with_outer_edge(const Eigen::Matrix3d& image_from_pad,
                                                              const Ellipse& outer_edge);
 
-/// A small change of a view, in the pad's own measure: H becomes H exp(A) with
+/// A small change of a view, in pad units: H becomes H exp(A) with
 /// A = [S+E1, E2-R, T1+B1; E2+R, S-E1, T2+B2; B1, B2, 0].
-/// T (0, 1) shifts, S (2) grows, E (3, 4) stretches the outer circle; R (5) turns and B (6, 7)
-/// tilts the pad within it. Without a singularity at a circle.
+/// T (0, 1) shifts, S (2) scales and E (3, 4) stretches the outer circle; R (5) rotates and
+/// B (6, 7) tilts the pad within it. Not singular at a circle.
 using HomographyChange = Eigen::Matrix<double, 8, 1>;
 using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 
 [[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
                                     const HomographyChange& change);
 
-/// The change whose A this is, but for a multiple of the unit matrix.
+/// The change with this generator A, up to a multiple of the identity matrix.
 [[nodiscard]] HomographyChange change_of(const Eigen::Matrix3d& generator);
 
-/// Of a change, what moves the outer circle: T, S and E.
+/// Matrix over T, S and E, the part of a change that moves the outer circle.
 using RingMatrix = Eigen::Matrix<double, 5, 5>;
 
-/// How well the picture of an outer circle is known.
+/// Uncertainty of the image of an outer circle.
 struct RingUncertainty {
-  Eigen::Matrix3d view;    ///< One in which it is the outer circle.
+  Eigen::Matrix3d view;    ///< A view that maps the outer circle to this image.
   RingMatrix information;  ///< Inverse covariance of T, S and E in this view.
 };
 
-/// What T, S and E of one view are in another one with the same picture of the outer circle.
+/// Transforms T, S and E from one view to another with the same image of the outer circle.
 [[nodiscard]] RingMatrix ring_changes(const Eigen::Matrix3d& from_view,
                                       const Eigen::Matrix3d& to_view);
 
-/// How a camera's own motion changes a view, to first order: columns are turns about its axes x, y,
-/// z [rad] and shifts along them [radii of the pad].
+/// Jacobian of a view by camera motion: columns are rotations about the axes x, y, z [rad] and
+/// shifts along them [radii of the pad].
 /// @param camera_matrix  K [HartleyZisserman2004] 6.1.
 [[nodiscard]] Eigen::Matrix<double, 8, 6> change_by_camera(const Eigen::Matrix3d& image_from_pad,
                                                            const Eigen::Matrix3d& camera_matrix);
 
-/// A place on an edge of the pad, in the picture.
+/// Image of a point on an edge of the pad.
 struct EdgeView {
   Eigen::Vector2d point;   ///< [px]
-  Eigen::Vector2d normal;  ///< Unit, of the edge.
-  double px_per_unit;      ///< By which the edge moves along it, per unit along the pad's normal.
-  HomographyChange row;    ///< And per HomographyChange [px].
+  Eigen::Vector2d normal;  ///< Unit normal of the edge.
+  double px_per_unit;      ///< Edge displacement along it per unit along the normal on the pad.
+  HomographyChange row;    ///< The same per HomographyChange [px].
 };
 
-/// @param normal  Of the edge on the pad, unit.
-/// nullopt where the place is behind the camera.
+/// Projects a point on an edge of the pad.
+/// @param normal  Unit normal of the edge on the pad.
+/// @return nullopt if the point is behind the camera.
 [[nodiscard]] std::optional<EdgeView> view_of(const Eigen::Matrix3d& image_from_pad,
                                               const Eigen::Vector2d& place,
                                               const Eigen::Vector2d& normal);

@@ -18,9 +18,9 @@ namespace ellipse {
 /// Normal equations of weighted linear least squares, with a prior: minimizes the sum of
 /// weight (row . x - value)^2 plus the prior's (x - mean)^T information (x - mean).
 ///
-/// With tukey_weight() in a loop that starts from the last solution it is a robust estimate. An
-/// ellipse has five parameters (GeometricFit), a homography eight (solve_homography()). Allocates
-/// nothing; not thread-safe.
+/// Iterated with tukey_weight() from the last solution, it is a robust estimate. An ellipse has
+/// five parameters (GeometricFit), a homography eight (solve_homography()). Allocates nothing; not
+/// thread-safe.
 template <int kParameters>
 class LeastSquares {
  public:
@@ -47,7 +47,7 @@ class LeastSquares {
 
   [[nodiscard]] int samples() const { return samples_; }
 
-  /// Inverse covariance of the solution, where each weight is 1 over the variance of its value.
+  /// Inverse covariance of the solution, if each weight is 1 over the variance of its value.
   [[nodiscard]] Matrix information() const {
     Matrix information;
     std::size_t term = 0;
@@ -57,7 +57,7 @@ class LeastSquares {
     return information;
   }
 
-  /// nullopt where the system is singular.
+  /// nullopt if the system is singular.
   [[nodiscard]] std::optional<Vector> solve() const {
     Matrix normal = information();
     normal.diagonal() *= 1.0 + kRidge;

@@ -19,10 +19,10 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
-/// The common part of two rectangles, empty (0 x 0) where there is none.
+/// The intersection of two rectangles, 0 x 0 if empty.
 [[nodiscard]] Rect intersect(const Rect& a, const Rect& b);
 
-/// An 8-bit luma picture that somebody else owns. Copying it copies no pixel.
+/// A borrowed 8-bit luma image. Copying it copies no pixels.
 struct ImageView {
   const std::uint8_t* data = nullptr;  ///< The top-left pixel. Borrowed.
   int width = 0;                       ///< [px]
@@ -33,7 +33,7 @@ struct ImageView {
   [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
   [[nodiscard]] Rect bounds() const { return {0, 0, width, height}; }
 
-  /// Brightness between pixels: bilinear. 0 <= x < width - 1 and 0 <= y < height - 1.
+  /// Bilinear interpolation. 0 <= x < width - 1 and 0 <= y < height - 1.
   [[nodiscard]] float at(float x, float y) const {
     const int column = static_cast<int>(x);
     const int line = static_cast<int>(y);

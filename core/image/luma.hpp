@@ -8,9 +8,9 @@
 
 namespace ellipse {
 
-/// How the bytes of one pixel lie in memory.
+/// Memory layout of one pixel.
 struct PixelLayout {
-  /// How brightness is stored: as a byte of its own, or as red, green and blue.
+  /// Stored brightness: a luma byte, or red, green and blue.
   enum class Kind { kLuma, kRgb };
 
   Kind kind = Kind::kLuma;
@@ -23,7 +23,7 @@ struct PixelLayout {
   [[nodiscard]] bool is_plain_luma() const { return kind == Kind::kLuma && pixel_stride == 1; }
 };
 
-/// A picture in whatever 8-bit layout the camera delivers, owned by somebody else.
+/// A borrowed image in the camera's 8-bit layout.
 struct PixelView {
   const std::uint8_t* data = nullptr;  ///< First byte of the top-left pixel. Borrowed.
   int width = 0;                       ///< [px]
@@ -38,22 +38,22 @@ struct PixelView {
             std::ptrdiff_t row_stride,
             const PixelLayout& pixel_layout)
       : data(first), width(width_px), height(height_px), stride(row_stride), layout(pixel_layout) {}
-  /// A luma picture is a picture: no conversion is needed to read it.
+  /// A luma image, readable without conversion.
   PixelView(const ImageView& luma)  // NOLINT(google-explicit-constructor)
       : PixelView(luma.data, luma.width, luma.height, luma.stride, PixelLayout{}) {}
 
   [[nodiscard]] Rect bounds() const { return {0, 0, width, height}; }
 };
 
-/// Reads the luma of a region: where it lies when the picture stores it so, else converted into a
-/// buffer of its own, which is kept from frame to frame. Only the region is converted.
+/// Reads the luma of a region: in place if the picture stores plain luma, else converted into an
+/// internal buffer that is reused between frames. Only the region is converted.
 ///
 /// RGB becomes luma with the weights of [BT601], full range, rounded. Not thread-safe.
 class LumaReader {
  public:
   /// @param region  Clipped to the picture.
-  /// @return A view of the region's size, empty when nothing of it is inside. Valid until the
-  ///         next call or until the picture goes away. Its stride is not negative.
+  /// @return A view of the clipped region, empty if nothing of it is inside. Valid until the next
+  ///         call or until the picture is released. Its stride is not negative.
   [[nodiscard]] ImageView read(const PixelView& picture, const Rect& region);
 
  private:

@@ -9,7 +9,7 @@
 namespace ellipse {
 namespace {
 
-// Column by column. Sixteen bits hold 128 rows.
+// Sums the rows of each column. Sixteen bits hold 128 rows.
 void add_rows(const ImageView& luma, int first, int count, std::uint16_t* __restrict sums) {
   const std::uint8_t* __restrict row = luma.row(first);
   for (int x = 0; x < luma.width; ++x) sums[x] = row[x];
@@ -31,7 +31,7 @@ ELLIPSE_INLINE void average(const std::uint16_t* __restrict sums,
   }
 }
 
-// The two scales that are used most are known when this is compiled.
+// Scales 2 and 4, the most frequent, are specialized at compile time.
 void halve(const std::uint8_t* __restrict upper,
            const std::uint8_t* __restrict lower,
            int width,

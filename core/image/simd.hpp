@@ -1,7 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-// Hot loops are written once, inlined into a function for every processor and into one for those
-// with wider registers; the compiler does the rest.
+// Hot loops are written once and inlined into a baseline and an AVX2 function, which the compiler
+// vectorizes.
 #if defined(__x86_64__) && defined(__GNUC__)
 #define ELLIPSE_AVX2 __attribute__((target("avx2")))
 #else
@@ -11,10 +11,10 @@
 
 namespace ellipse {
 
-/// Which instructions the hot loops use. All give the same numbers.
+/// Instruction set of the hot loops. All give the same results.
 enum class Simd { kBaseline, kAvx2 };
 
-/// The best that this processor has.
+/// The best set that this processor supports.
 [[nodiscard]] Simd best_simd();
 
 }  // namespace ellipse

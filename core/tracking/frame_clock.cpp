@@ -7,7 +7,7 @@ namespace ellipse {
 namespace {
 
 constexpr double kUnitNs = 1e9 / 30.0;
-constexpr double kLongestGap = 30.0;  // of these
+constexpr double kLongestGap = 30.0;  // [1/30 s]
 
 }  // namespace
 

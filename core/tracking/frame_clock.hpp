@@ -5,13 +5,13 @@
 
 namespace ellipse {
 
-/// Time from frame to frame. Depacketizers and decoders leave out a time stamp now and then: a
-/// frame without one is taken to come after as long as the frame before it did.
+/// Time between frames. Depacketizers and decoders omit some time stamps: a frame without one
+/// repeats the previous interval.
 class FrameClock {
  public:
-  /// @param pts_ns  Time stamp of a frame; negative where it has none.
-  /// @return Time since the frame before [1/30 s]: at most 30; 1 where it is not known, as at the
-  ///         first frame, in a stream without time stamps, and where time goes back.
+  /// @param pts_ns  Time stamp of a frame; negative if it has none.
+  /// @return Time since the previous frame [1/30 s], at most 30; 1 if unknown: at the first frame,
+  ///         in a stream without time stamps, and where time stamps do not increase.
   double advance_to(std::int64_t pts_ns);
 
  private:

@@ -17,16 +17,16 @@
 
 namespace ellipse {
 
-/// One frame, and what of it is searched. A value for the time of one call.
+/// One frame and its search region. Valid during one call only.
 struct ScopedFrame {
   PixelView pixels;
   Rect searchable;       ///< No pixel outside is read [px]; inside the frame.
-  int finest_scale = 1;  ///< Frame scale that is not gone below.
+  int finest_scale = 1;  ///< Min frame scale.
   LensView lens;         ///< Of the whole frame.
 };
 
-/// Searches regions of frames with a detector, at a frame scale, and tells what it finds in pixels
-/// of the frame: what all trackers have in common.
+/// Searches frame regions with a detector at a given frame scale; results are in frame pixels.
+/// Shared by all trackers.
 ///
 /// One object serves one stream, one thread at a time. Deterministic.
 class FrameSearch {
@@ -38,30 +38,30 @@ class FrameSearch {
   /// See Tracker::set_trace().
   void set_trace(DetectionTrace* trace);
 
-  /// The thresholds where nothing is known of the target, for a search at this scale.
+  /// Thresholds for a search without a prior, at this scale.
   [[nodiscard]] Thresholds detecting_thresholds(int scale) const;
-  /// The lowered ones, for the surroundings of a target that is being tracked.
+  /// Lowered thresholds for the surroundings of a tracked target.
   [[nodiscard]] Thresholds tracking_thresholds(int scale) const;
 
-  /// Detects, and chooses the target; see select_target(). It has no id and no time yet.
+  /// Detects and selects the target, see select_target(). Its id and time stamp are not set.
   ///
-  /// @param region       [px] of the frame; clipped to it.
-  /// @param last_target  The target of the frame before [px of the frame]; nullopt = not tracking.
+  /// @param region       In frame pixels; clipped to the frame.
+  /// @param last_target  Target of the previous frame [frame px]; nullopt = not tracking.
   [[nodiscard]] std::optional<Target> find_target(const ScopedFrame& frame,
                                                   const Rect& region,
                                                   int scale,
                                                   const Thresholds& thresholds,
                                                   const std::optional<Ellipse>& last_target = {});
 
-  /// The luma of a region. Until the next call of this or of find_target().
+  /// The luma of a region. Valid until the next call of this or of find_target().
   [[nodiscard]] ImageView read(const ScopedFrame& frame, const Rect& region);
 
-  /// Forgets the region and the candidates.
+  /// Clears the region and the candidates.
   void clear();
 
-  /// Where was read last [px].
+  /// Region that was read last [px].
   [[nodiscard]] const Rect& region() const { return region_; }
-  /// What the last search found [px of the frame].
+  /// Detections of the last search [frame px].
   [[nodiscard]] std::span<const Detection> candidates() const { return candidates_; }
   [[nodiscard]] Detector& detector() { return *detector_; }
 

@@ -10,14 +10,14 @@
 namespace ellipse {
 namespace {
 
-constexpr double kJudge_s = 0.15;         // between judgements of a sure outline
-constexpr double kSure = 3.0;             // log odds
-constexpr double kLessMatched = 0.1;      // of the outline, than when it was judged last
-constexpr double kEnoughToJudge = 0.5;    // of the perimeter in view
+constexpr double kJudge_s = 0.15;         // period of evaluation while certain
+constexpr double kSure = 3.0;             // min log odds of certainty
+constexpr double kLessMatched = 0.1;      // drop of the matched share that triggers an evaluation
+constexpr double kEnoughToJudge = 0.5;    // min visible share of the perimeter
 constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
 constexpr int kCoarsestScale = 4;         // of the detector
 
-// The part of a window that shows an ellipse and its surroundings.
+// Crops a window to an ellipse and its surroundings.
 LumaWindow part_around(const LumaWindow& window, const Ellipse& seen) {
   const Rect whole{static_cast<int>(window.origin_px.x()),
                    static_cast<int>(window.origin_px.y()),
@@ -70,8 +70,8 @@ void OutlineJudge::judge(Detector& detector,
   if (judged) add(*judged);
 }
 
-// A short arc tells too little against an outline that was seen whole: below half of the perimeter
-// only outlines are judged that never showed more.
+// A short arc is weak evidence against an outline that was visible before: below half of the
+// perimeter, evaluates only outlines that never showed more.
 bool OutlineJudge::is_due(const Target& target) const {
   if (target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return false;
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;

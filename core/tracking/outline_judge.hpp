@@ -8,32 +8,31 @@
 
 namespace ellipse {
 
-/// The evidence for what is followed by its edges: what the detector thinks of its outline, added
-/// up over frames.
+/// Accumulates the detector's evidence for the outline of the tracked hypothesis over frames.
 ///
 /// One object serves one stream, one thread at a time. Deterministic.
 class OutlineJudge {
  public:
-  /// The detector found something new. See TargetOdds::start().
+  /// Starts a hypothesis from a new detection. See TargetOdds::start().
   void start(double log_odds, double absence_s);
-  /// The detector found what is followed.
+  /// Adds a detection of the tracked hypothesis.
   void confirm(double log_odds);
 
-  /// Time passes [s], once a frame.
+  /// Call once per frame.
   void advance(double elapsed_s) { since_judged_s_ += elapsed_s; }
 
-  /// Asks the detector about the outline of a target that is visible in the window: at once where
-  /// the odds are open or where less of it is matched than before, else now and then.
+  /// Evaluates the outline of a visible target with the detector: at once while the odds are
+  /// uncertain or when the matched share drops, else periodically.
   ///
-  /// @param limits  Thresholds of edges; the overlaps are the detector's own.
+  /// @param limits  Edge thresholds; the overlaps are replaced by the detector's own.
   void judge(Detector& detector,
              const LumaWindow& window,
              const Target& target,
              const Thresholds& limits);
 
-  /// By all frames so far.
+  /// Log odds from all frames so far.
   [[nodiscard]] double log_odds() const { return odds_.value(); }
-  /// Whether nothing has to be added soon.
+  /// Whether the odds are high enough for periodic evaluation.
   [[nodiscard]] bool is_sure() const;
 
  private:
@@ -42,8 +41,8 @@ class OutlineJudge {
 
   TargetOdds odds_;
   double since_judged_s_ = 0.0;
-  double most_visible_ = 0.0;    // of the perimeter, so far
-  double judged_overlap_ = 0.0;  // share of the outline that was matched when it was judged last
+  double most_visible_ = 0.0;    // max visible share of the perimeter since the last detection
+  double judged_overlap_ = 0.0;  // matched share of the outline at the last evaluation
 };
 
 }  // namespace ellipse

@@ -9,8 +9,8 @@
 namespace ellipse {
 namespace {
 
-// Algorithm 3, DetectTarget. ScaleImage, DetectEllipses, SelectTarget, ScaleSize, and
-// CompensateOffset of Algorithm 2 are find_target().
+// Algorithm 3, DetectTarget. find_target() implements ScaleImage, DetectEllipses, SelectTarget,
+// ScaleSize, and CompensateOffset of Algorithm 2.
 std::optional<Target> detect_target(const ScopedFrame& frame,
                                     FrameSearch& search,
                                     const Rect& region,
@@ -47,7 +47,7 @@ std::optional<Target> RedetectTracker::track_target(const ScopedFrame& frame,
   return target;
 }
 
-// Algorithm 2, its end: the tracking status and the region for the next frame.
+// End of Algorithm 2: the tracking status and the region for the next frame.
 void RedetectTracker::prepare_next_frame(const ScopedFrame& frame,
                                          const std::optional<Target>& target,
                                          double roi_expansion) {

@@ -10,15 +10,15 @@
 
 namespace ellipse {
 
-/// The tracker of the paper: [Keipour2021] Algorithms 2 and 3. While it tracks, it detects again in
-/// every frame, with lowered thresholds, in a region around the last target, at a frame scale that
-/// suits the target's size. What is different and why: docs/provenance.md.
+/// The tracker of [Keipour2021] Algorithms 2 and 3. While tracking, it detects again in every
+/// frame, with lowered thresholds, in a region around the last target, at a frame scale that suits
+/// the target's size. Deviations from the paper: docs/provenance.md.
 ///
 /// One object serves one stream, one thread at a time. Deterministic.
 class RedetectTracker {
  public:
-  /// TrackTarget of Algorithm 2: one turn of its loop.
-  /// @return The target, without an id and a time; nullopt where it was not found.
+  /// One iteration of TrackTarget of Algorithm 2.
+  /// @return The target, without id and time stamp; nullopt if not found.
   [[nodiscard]] std::optional<Target> track_target(const ScopedFrame& frame,
                                                    FrameSearch& search,
                                                    const TrackerSettings& settings);
@@ -29,13 +29,13 @@ class RedetectTracker {
                           double roi_expansion);
 
   int scale_ = 1;
-  Rect roi_;                            // where the target is expected, while it is being tracked
-  std::optional<Ellipse> last_target_;  // isTracking: whether there is one
+  Rect roi_;                            // region of the next search while tracking
+  std::optional<Ellipse> last_target_;  // isTracking if set
 };
 
-/// The scale for the next frame, of Algorithm 2: twice as coarse (up to max_scale) where the
-/// target's full major axis at the processed scale is above max_size_px, twice as fine (down to 1)
-/// where it is below min_size_px.
+/// Frame scale for the next frame, from Algorithm 2: doubled (up to max_scale) if the target's full
+/// major axis at the processed scale exceeds max_size_px, halved (down to 1) if it is below
+/// min_size_px.
 [[nodiscard]] int next_scale(
     int scale, int max_scale, double size_px, double min_size_px, double max_size_px);
 

@@ -7,7 +7,7 @@
 namespace ellipse {
 namespace {
 
-// [center - half, center + half] as whole pixels on a grid of `scale`, inside [0, limit).
+// [center - half, center + half] rounded out to multiples of `scale`, clipped to [0, limit).
 struct Span {
   int begin = 0;
   int length = 0;

@@ -5,12 +5,12 @@
 
 namespace ellipse {
 
-/// Where to look for the target in the next frame: its box, with a margin of (expansion - 1)
-/// semi-major axes on every side, clipped to the frame. CalculateROI of [Keipour2021] Algorithm 2.
-/// The margin is the same on all sides, because a target seen flat moves as far as a round one.
+/// Search region for the next frame: the target's box with a margin of (expansion - 1) semi-major
+/// axes on every side, clipped to the frame. CalculateROI of [Keipour2021] Algorithm 2.
+/// The margin is the same on all sides, because the motion does not depend on the aspect ratio.
 ///
-/// The region starts at multiples of `scale`, so that reducing it moves no pixel by a fraction.
-/// Empty where nothing of it lies in the frame.
+/// The region starts at multiples of `scale`, so that reduction causes no subpixel shift.
+/// Empty if it lies outside the frame.
 [[nodiscard]] Rect calculate_roi(
     const Ellipse& target, double expansion, int scale, int frame_width, int frame_height);
 

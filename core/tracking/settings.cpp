@@ -31,7 +31,7 @@ constexpr auto& follow(auto& object) {
   }
 }
 
-// The setting that lies at the end of a path of members.
+// The setting at the end of a path of members.
 template <auto... kPath>
 constexpr SettingInfo setting(const char* name,
                               const Range& range,
@@ -54,11 +54,11 @@ constexpr auto kDetect = &TrackerSettings::detect_overlaps;
 constexpr auto kTrack = &TrackerSettings::track_overlaps;
 constexpr auto kLimits = &TrackerSettings::limits;
 
-// The smallest share of its edges on an ellipse that `arcs` reports, over all scenes of the catalog
-// once a second: .953 of 333. Below it their contour overlap refuses nothing.
+// Lower bound on the contour overlap of ellipses reported by `arcs`: thresholds below it reject
+// none. The lowest measured is .953 of 333, over all scenes of the catalog, once a second.
 constexpr double kMinOnEllipse = 0.7;
 
-// The tests hold every setting's effect against what the tracker does.
+// Tests compare each effect with the tracker's behaviour.
 constexpr SettingEffect kOfContours{.detector = DetectorKind::kContours,
                                     .elsewhere_above = kMinOnEllipse};
 constexpr SettingEffect kOfArcs{.detector = DetectorKind::kArcs};

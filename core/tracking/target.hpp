@@ -10,32 +10,30 @@
 namespace ellipse {
 
 enum class TargetState {
-  kDetected,   ///< Found where nothing was known of it.
-  kTracked,    ///< Found around its last place.
-  kPredicted,  ///< Not seen in this frame; its motion was continued.
+  kDetected,   ///< Found without a prior.
+  kTracked,    ///< Found near its last position.
+  kPredicted,  ///< Not visible in this frame; extrapolated from its motion.
 };
 
 /// The target in one frame.
 struct Target {
-  Ellipse ellipse;       ///< The outer edge [px]; in the ideal plane where the lens is distorted.
-  std::uint64_t id = 0;  ///< The same while it is not lost, from 1.
+  Ellipse ellipse;       ///< The outer edge [px], undistorted if the lens has distortion.
+  std::uint64_t id = 0;  ///< From 1; constant until the target is lost.
   TargetState state = TargetState::kDetected;
-  /// [Keipour2021] Eq. (1). Where edges are followed: share of the pad's edges in view that were
-  /// matched, inner ones included.
+  /// [Keipour2021] Eq. (1). With edge tracking: matched share of the pad's visible edges, inner
+  /// ones included.
   double contour_overlap = 0.0;
-  /// [Keipour2021] Eq. (2). Where edges are followed: share of the outer edge in view that was
-  /// matched.
+  /// [Keipour2021] Eq. (2). With edge tracking: matched share of the visible outer edge.
   double ellipse_overlap = 0.0;
-  /// That it is an ellipse: where edges are followed, by all frames so far; else by the detector in
-  /// this frame, 1 where it does not say.
+  /// Probability of being an ellipse: with edge tracking, from all frames so far; else from the
+  /// detector in this frame, 1 if it gives none.
   double probability = 1.0;
-  double visible_fraction = 0.0;  ///< Share of the perimeter inside the frame.
-  int scale = 1;                  ///< Frame scale that it was found at.
-  Rect search_region;             ///< Where it was looked for [px].
-  std::int64_t pts_ns = 0;        ///< Of its frame.
-  std::optional<RingUncertainty> uncertainty =
-      {};                               ///< Of the ellipse, while its edges are followed.
-  std::optional<TargetPose> pose = {};  ///< Where a camera is known.
+  double visible_fraction = 0.0;                    ///< Share of the perimeter inside the frame.
+  int scale = 1;                                    ///< Frame scale of the detection.
+  Rect search_region;                               ///< Region that was searched [px].
+  std::int64_t pts_ns = 0;                          ///< Time stamp of the frame.
+  std::optional<RingUncertainty> uncertainty = {};  ///< Of the ellipse; only if a camera is known.
+  std::optional<TargetPose> pose = {};              ///< Only if a camera is known.
 };
 
 }  // namespace ellipse

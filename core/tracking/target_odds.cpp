@@ -8,10 +8,10 @@ namespace ellipse {
 namespace {
 
 // Measured or chosen in docs/provenance.md, "Evidence over time".
-constexpr double kMemory_s = 0.3;
-constexpr double kPrior = -0.4;      // log odds, where no target was reported for long
-constexpr double kReturn_s = 2.0;    // in which the memory of the last target fades by e
-constexpr double kMaxOfFrame = 5.0;  // log odds: single frames are not calibrated beyond it
+constexpr double kMemory_s = 0.3;    // correlation time of the evidence
+constexpr double kPrior = -0.4;      // log odds after a long absence
+constexpr double kReturn_s = 2.0;    // time constant of the prior's decay towards kPrior
+constexpr double kMaxOfFrame = 5.0;  // log odds: single frames are not calibrated beyond
 
 double of_frame(double log_odds) {
   return std::clamp(log_odds, -kMaxOfFrame, kMaxOfFrame);

@@ -2,27 +2,27 @@
 
 namespace ellipse {
 
-/// Log odds that what is followed is a target, from all frames so far.
+/// Log odds that the tracked hypothesis is a target, accumulated over frames.
 ///
-/// The evidence of neighbouring frames is correlated. It is taken for a Gaussian autoregressive
-/// process of first order whose mean has one sign for targets and the other for all else. A sample
-/// l that follows a sample k with the correlation r then adds (l - r k) / (1 + r): the log
-/// likelihood ratio of l given k. The correlation depends on seconds, not on the rate of frames.
+/// The evidence of neighbouring frames is correlated. It is modelled as a first-order Gaussian
+/// autoregressive process whose mean has opposite signs for targets and non-targets. A sample l
+/// that follows a sample k with correlation r then adds (l - r k) / (1 + r): the log likelihood
+/// ratio of l given k. The correlation depends on elapsed time, not on the frame rate.
 ///
 /// Deterministic; allocates nothing; one thread at a time.
 class TargetOdds {
  public:
-  /// Bounds the sum: a target stays for seconds and may leave at any moment.
+  /// Bound of the sum's magnitude: a target may leave at any moment.
   static constexpr double kMax = 4.0;
 
-  /// Begins with a new hypothesis.
-  /// @param log_odds   By the frame that shows it.
-  /// @param absence_s  Since a target was reported last: the sooner, the likelier it is back.
-  ///                   Infinite where there was none.
+  /// Starts a new hypothesis.
+  /// @param log_odds   From its first frame.
+  /// @param absence_s  Since a target was last reported: the shorter, the higher the prior.
+  ///                   Infinite if there was none.
   void start(double log_odds, double absence_s);
 
-  /// @param log_odds   By one more frame; may be infinite.
-  /// @param elapsed_s  Since the last frame that was counted.
+  /// @param log_odds   From one more frame; may be infinite.
+  /// @param elapsed_s  Since the last frame that was added.
   void add(double log_odds, double elapsed_s);
 
   [[nodiscard]] double value() const { return sum_; }

@@ -13,21 +13,21 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30.0;     // the clock's unit
-constexpr double kLook_s = 8.0 * kFrame_s;  // between the detector's looks while following
-constexpr int kLookScale = 2;               // of these looks, while the target is sure
-constexpr double kGivenUp = -3.0;           // log odds
-constexpr double kKeepsNumber_s = 0.4;      // in which a target that was lost may return
-constexpr double kEnoughToLock = 0.45;      // of the perimeter in view, to follow what was found
-constexpr double kMinPredicted = 0.5;       // of the perimeter in view, to report what is not seen
-constexpr double kMinCoverage = 0.4;        // of its edges, all the same
-constexpr double kDetectedSigmaPx = 0.3;    // of the edges of an ellipse that is not followed
+constexpr double kFrame_s = 1.0 / 30.0;     // unit of the frame clock
+constexpr double kLook_s = 8.0 * kFrame_s;  // period of detections while tracking
+constexpr int kLookScale = 2;               // frame scale of these while the target is certain
+constexpr double kGivenUp = -3.0;           // log odds below which the hypothesis is dropped
+constexpr double kKeepsNumber_s = 0.4;      // max absence after which a target keeps its id
+constexpr double kEnoughToLock = 0.45;      // min visible share of the perimeter to lock
+constexpr double kMinPredicted = 0.5;       // min visible share to report a prediction
+constexpr double kMinCoverage = 0.4;        // min matched share of its edges for the same
+constexpr double kDetectedSigmaPx = 0.3;    // edge sigma of an ellipse that is not tracked
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
 }
 
-// Of a target that is too large for the detector the inner edges are all that it finds.
+// Whether a detection may be an inner edge of the pad with this outer edge.
 bool lies_in(const Ellipse& inner, const Ellipse& outer) {
   return (inner.center() - outer.center()).norm() + inner.semi_minor < outer.semi_major &&
          inner.semi_major < outer.semi_major;
@@ -95,13 +95,13 @@ std::optional<Target> Tracker::track(const ScopedFrame& frame, double elapsed_s)
   return target;
 }
 
-// The frame by itself.
+// Detects in this frame alone.
 std::optional<Target> Tracker::detect(const ScopedFrame& frame) {
   const int scale = frame.finest_scale;
   return search_->find_target(frame, frame.searchable, scale, search_->detecting_thresholds(scale));
 }
 
-// One frame of the state machine of TrackerState. Odds are log odds by all frames so far.
+// Advances the state machine by one frame. The odds accumulate all frames of the hypothesis.
 std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s) {
   judge_->advance(elapsed_s);
   since_look_s_ += elapsed_s;
@@ -109,7 +109,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (wants_look(target)) target = look(frame, target);
-  if (judge_->log_odds() < kGivenUp) pad_tracker_->release();  // given up
+  if (judge_->log_odds() < kGivenUp) pad_tracker_->release();
 
   if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
   if (target) hypothesis_ = target->ellipse;
@@ -120,7 +120,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
   return target;
 }
 
-// Each line is the way into a state, from any other.
+// The new state does not depend on the previous one.
 TrackerState Tracker::state_after(const std::optional<Target>& target) const {
   if (!target) return TrackerState::kSearching;
   if (judge_->log_odds() < wanted_log_odds()) return TrackerState::kConfirming;
@@ -134,15 +134,15 @@ double Tracker::wanted_log_odds() const {
   return std::min(wanted, TargetOdds::kMax);
 }
 
-// The detector looks where nothing is followed that is seen and believed, and now and then, because
-// something better may have come into view.
+// Detects unless a visible target has sufficient odds; then only periodically, since a better
+// target may have come into view.
 bool Tracker::wants_look(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const bool is_time = settings_.wants_candidates || since_look_s_ >= kLook_s;
   return !is_visible || judge_->log_odds() < wanted_log_odds() || is_time;
 }
 
-// From its edges alone: nothing else of the frame is read.
+// Reads only the search window of the pad.
 std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double elapsed_s) {
   if (!pad_tracker_->is_locked()) return std::nullopt;
   const double elapsed = elapsed_s / kFrame_s;
@@ -169,8 +169,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   return target;
 }
 
-// The detector is asked what it would choose: on the reduced frame while the target is sure, so
-// that this frame costs little more than the others.
+// Runs the detector; on a reduced frame while the target is certain, which limits the frame time.
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
@@ -190,14 +189,14 @@ bool Tracker::is_better(const Target& chosen, const Target& followed) const {
   return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
 }
 
-// Of a target that large the detector finds the inner edges only.
+// Of so large a target the detector finds only the inner edges.
 bool Tracker::is_too_large(const Ellipse& e) const {
   return !settings_.limits.admit_axes_of(e) ||
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
 }
 
-// What the detector chose is followed from now on; a part of an ellipse may be part of anything and
-// is not.
+// Replaces or confirms the hypothesis by a detection. Locks only if at least 45 % of the perimeter
+// is visible.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
   if (hypothesis_ && is_near(*hypothesis_, target.ellipse)) {
     judge_->confirm(log_odds(target.probability));
@@ -229,7 +228,7 @@ void Tracker::remember(const std::optional<Target>& target) {
   last_ellipse_ = target->ellipse;
 }
 
-// What a camera adds to what is seen.
+// Adds the uncertainty and the pose, which need a camera.
 void Tracker::locate(Target& target) {
   const Camera& camera = lens_->camera();
   const bool is_followed = pad_tracker_->is_locked();
@@ -294,7 +293,7 @@ void Tracker::configure(const TrackerSettings& settings) {
     search_->set_detector(make_detector(settings.detector));
   }
   const bool is_other_camera = !has_same_camera(settings, settings_);
-  // A target may outgrow the limits; limits that are drawn anew leave it out.
+  // A tracked target may outgrow the limits; changed limits that exclude it reset the tracker.
   const bool is_excluded = had_target_ && settings_.limits.admit_axes_of(last_ellipse_) &&
                            !settings.limits.admit_axes_of(last_ellipse_);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;

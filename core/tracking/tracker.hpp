@@ -21,65 +21,65 @@ class RedetectTracker;
 struct LumaWindow;
 struct ScopedFrame;
 
-/// What the tracker is doing. See docs/architecture.md. Where edges are not followed it is
-/// searching in a frame without a target and following in one with a target.
+/// State of the tracker, see docs/architecture.md. Without edge tracking it is kFollowing in a
+/// frame with a target, else kSearching.
 enum class TrackerState {
-  kSearching,   ///< No target is known: the detector searches.
-  kConfirming,  ///< Something is followed, but its odds are below the limit: not reported.
-  kFollowing,   ///< The target is followed, and reported.
-  kCoasting,    ///< The target is not seen in this frame; its motion is continued and reported.
+  kSearching,   ///< No target: the detector searches.
+  kConfirming,  ///< A hypothesis is tracked, but not reported: its odds are below the limit.
+  kFollowing,   ///< The target is tracked and reported.
+  kCoasting,    ///< The target is not visible in this frame; its predicted ellipse is reported.
 };
 
-/// What of one frame is searched, and how finely.
+/// Search region and resolution for one frame.
 struct SearchScope {
-  Rect within;           ///< [px] of the frame; clipped to it. Empty: nothing is searched.
-  int finest_scale = 1;  ///< Frame scale that is not gone below: a power of two, up to 128.
+  Rect within;           ///< In frame pixels; clipped to the frame. Empty: no search.
+  int finest_scale = 1;  ///< Min frame scale: a power of two, up to 128.
 };
 
-/// Follows one elliptical target through a stream, in the way that TrackerSettings::tracking names.
+/// Tracks one elliptical target through a stream, by the method in TrackerSettings::tracking.
 ///
 /// One object serves one stream, one thread at a time. The same frames give the same targets.
 class Tracker {
  public:
-  /// Throws std::invalid_argument where the settings are not valid.
+  /// Throws std::invalid_argument for invalid settings.
   explicit Tracker(const TrackerSettings& settings = {});
-  /// With a detector of one's own, instead of the one that settings.detector names.
+  /// Uses the given detector instead of settings.detector.
   Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector);
   ~Tracker();
 
-  /// From the next frame on. Throws like the constructor, and then keeps the old ones.
+  /// Takes effect from the next frame. Throws like the constructor, then keeps the old settings.
   void configure(const TrackerSettings& settings);
 
-  /// @param frame   Borrowed for the call only. A change of its size starts over.
-  /// @param pts_ns  Its time stamp, negative where it has none; copied into the target.
-  /// @return The target, or nullopt where none was found.
+  /// @param frame   Borrowed for the call only. A change of its size resets the tracker.
+  /// @param pts_ns  Its time stamp, negative if it has none; copied into the target.
+  /// @return The target, or nullopt if none was found.
   [[nodiscard]] std::optional<Target> process(const PixelView& frame, std::int64_t pts_ns);
 
-  /// The same, where the frame is searched: no pixel outside is read, and what is followed is
-  /// looked for inside only. Where nothing is searched the target is forgotten.
+  /// The same within a scope: no pixel outside is read, and a tracked target is searched inside
+  /// only. An empty scope resets the tracker.
   [[nodiscard]] std::optional<Target> process(const PixelView& frame,
                                               std::int64_t pts_ns,
                                               const SearchScope& scope);
 
-  /// Forgets the target, the scale and the region. Numbers of targets go on.
+  /// Drops the target, the scale and the region. Target ids continue.
   void reset();
 
-  /// All ellipses that the detector found in the last frame [px, as Target::ellipse]; none in a
-  /// frame where it was not asked, see TrackerSettings::wants_candidates. Until the next call.
+  /// All ellipses that the detector found in the last frame [px, as Target::ellipse]. Empty if it
+  /// did not run, see TrackerSettings::wants_candidates. Valid until the next call.
   [[nodiscard]] std::span<const Detection> candidates() const;
 
-  /// Every search by the detector from now on tells there what it sees, and why what is not the
-  /// target is not it: in pixels of the frame. What is followed by its edges is not told of, and
-  /// where a frame is searched twice, the second time is. nullptr = no more. Borrowed.
+  /// Records each further detector search in `trace`: its stages, and why candidates are rejected,
+  /// in frame pixels. Edge tracking is not recorded. If a frame is searched twice, the trace holds
+  /// the second search. nullptr stops recording. Borrowed.
   void set_trace(DetectionTrace* trace);
 
-  /// After the last frame.
+  /// State after the last frame.
   [[nodiscard]] TrackerState state() const { return state_; }
 
-  /// Where the last frame was searched [px].
+  /// Search region of the last frame [px].
   [[nodiscard]] const Rect& search_region() const;
 
-  /// Through what lens the last frame was seen. Until the next call.
+  /// Lens of the last frame. Valid until the next call.
   [[nodiscard]] LensView lens() const;
 
  private:
@@ -107,22 +107,22 @@ class Tracker {
   std::unique_ptr<FrameSearch> search_;
   std::unique_ptr<RedetectTracker> redetect_tracker_;
   std::unique_ptr<PadTracker> pad_tracker_;
-  std::unique_ptr<OutlineJudge> judge_;  // of what is followed by its edges
+  std::unique_ptr<OutlineJudge> judge_;  // of the hypothesis
   PoseEstimator pose_estimator_;
-  std::optional<Lens> lens_;  // of frames of this size
+  std::optional<Lens> lens_;  // for the current frame size
   Rect frame_bounds_;
 
   TrackerState state_ = TrackerState::kSearching;
-  std::optional<Ellipse> hypothesis_;  // what is followed by its edges, reported or not
-  std::uint64_t id_ = 0;               // of it, once it is reported
-  Ellipse last_ellipse_;               // of a target that was reported
-  std::uint64_t last_id_ = 0;          // of the same
-  std::uint64_t located_id_ = 0;       // of the target that the pose estimator knows
-  double absence_s_ = std::numeric_limits<double>::infinity();  // of a target that is reported
-  double since_look_s_ = 0.0;  // of the detector, while following by edges
-  bool had_target_ = false;    // in the last frame, reported or not
+  std::optional<Ellipse> hypothesis_;  // tracked by its edges, reported or not
+  std::uint64_t id_ = 0;               // of the hypothesis, if it is reported
+  Ellipse last_ellipse_;               // last reported target
+  std::uint64_t last_id_ = 0;          // its id
+  std::uint64_t located_id_ = 0;       // target of the pose estimator
+  double absence_s_ = std::numeric_limits<double>::infinity();  // since a target was reported
+  double since_look_s_ = 0.0;                                   // since the detector ran
+  bool had_target_ = false;  // in the last frame, reported or not
   bool is_lens_stale_ = true;
-  bool is_detector_given_ = false;  // by the constructor, so that the settings do not choose it
+  bool is_detector_given_ = false;  // by the constructor; overrides the settings
 };
 
 }  // namespace ellipse

@@ -12,16 +12,16 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kCells = 64;
-constexpr double kExtent = 2.4;  // radii from the middle to the border
+constexpr double kExtent = 2.4;  // half width of the patch [radii]
 constexpr double kCell = 2.0 * kExtent / kCells;
 constexpr double kRadius = 1.0 / kCell;  // of the outer circle [cells]
 constexpr int kMaxShift = static_cast<int>((kExtent - 1.0) * kRadius);
 constexpr int kAngles = 32;
 constexpr std::array<double, 3> kSizes = {0.88, 1.0, 1.14};
-constexpr double kSaturation = 0.6;  // of the outer circle's contrast
-constexpr std::size_t kFewer = 6;    // one of these points, at first
-constexpr double kWorthwhile = 0.4;  // of the best score so far, to look at all
-constexpr double kFarPenalty = 0.15;
+constexpr double kSaturation = 0.6;   // of gradients, share of the outer circle's contrast
+constexpr std::size_t kFewer = 6;     // point stride of the preliminary test
+constexpr double kWorthwhile = 0.4;   // min share of the best score in that test
+constexpr double kFarPenalty = 0.15;  // share of the score lost at a shift of kMaxShift
 constexpr double kMinScore = 0.3;
 constexpr int kMinVisible = 6;
 
@@ -30,7 +30,7 @@ struct CellGradient {
   float y = 0.0F;
 };
 
-// Where a circle's edge lies from its centre, and which way it gets brighter.
+// A point on a circle relative to its centre, and the unit normal towards its bright side.
 struct TemplatePoint {
   int x;
   int y;
@@ -87,8 +87,9 @@ class Patch {
     }
   }
 
-  // Mean agreement of a circle around a cell, 0 to 1; 0 where too little of it is inside.
-  // @param step  1 = all of its points count.
+  // Mean agreement of a circle around a cell, 0 to 1, less if few of its points are visible; 0 if
+  // too few are.
+  // @param step  Stride over its points.
   [[nodiscard]] double agreement(const Template& circle, int x, int y, std::size_t step = 1) const {
     float sum = 0.0F;
     int seen = 0;

@@ -9,12 +9,12 @@
 
 namespace ellipse {
 
-/// Looks for a pad's circles in a coarse picture of what surrounds its expected place: 64 x 64
-/// cells in which the pad is round, moved over all shifts and three sizes.
+/// Searches a pad's circles around its expected position, in 64 x 64 cells that are resampled so
+/// that the pad is round. Tests all shifts and three sizes.
 ///
-/// @param view  Where it is expected.
-/// @return The view of the ideal plane in which its circles agree best; nullopt where they agree
-/// nowhere. Allocates nothing; the time depends on no size.
+/// @param view  Expected view.
+/// @return The view in the ideal plane with the best agreement; nullopt if it is too low anywhere.
+///         Allocates nothing; the run time does not depend on the size of the image or the pad.
 [[nodiscard]] std::optional<Eigen::Matrix3d> coarse_search(const ImageView& luma,
                                                            const PadModel& model,
                                                            const PadView& view);

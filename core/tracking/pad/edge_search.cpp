@@ -13,13 +13,13 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kFineSteps = 4;  // in one of the circle's, where little of it is visible
+constexpr std::size_t kFineSteps = 4;  // per circle step, if little of the pad is visible
 constexpr double kMinContrast = 4.0;   // [grey levels]
-constexpr int kMaxSteps = 24;          // to each side of the expected place
-constexpr int kMaxBox = 3;             // samples that are averaged on each side of an edge
+constexpr int kMaxSteps = 24;          // to each side of the expected position
+constexpr int kMaxBox = 3;             // max samples averaged on each side of an edge
 constexpr int kLongestProfile = 2 * (kMaxSteps + kMaxBox) + 3;
 
-// Directions all around.
+// Unit vectors at kCircleSteps * kFineSteps angles.
 const Eigen::Vector2d& direction(std::size_t fine_step) {
   constexpr std::size_t kDirections = EdgeSearch::kCircleSteps * kFineSteps;
   static const auto kTurn = [] {
@@ -33,14 +33,14 @@ const Eigen::Vector2d& direction(std::size_t fine_step) {
   return kTurn[fine_step];
 }
 
-// The levels of some pixels across an edge.
+// Pixel levels across an edge.
 struct Profile {
-  std::array<float, kLongestProfile + 1> sums;  // of all levels before
+  std::array<float, kLongestProfile + 1> sums;  // prefix sums of the levels
   std::size_t count = 0;
   std::size_t box = 1;
-  float first = 0.0F;      // steps from the middle one to the first one
+  float first = 0.0F;      // first pixel relative to the middle one [steps]
   float step_px = 0.0F;    // along the normal
-  float middle_px = 0.0F;  // from where the edge is expected to the middle one
+  float middle_px = 0.0F;  // middle pixel relative to the expected edge, along the normal
 
   void read(const std::uint8_t* pixel, std::ptrdiff_t stride) {
     sums[0] = 0.0F;
@@ -50,12 +50,12 @@ struct Profile {
   }
 };
 
-// Where the difference of the boxes before and behind is highest.
+// Keeps the strongest local maxima of the difference between the boxes after and before a position.
 void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample& sample) {
   const auto& sums = profile.sums;
   const std::size_t half = profile.box;
   const float scale = 1.0F / static_cast<float>(half);
-  std::array<float, kLongestProfile + 1> rises;  // between the samples before and at i
+  std::array<float, kLongestProfile + 1> rises;  // box differences between samples i - 1 and i
   for (std::size_t i = half; i + half <= profile.count; ++i) {
     rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
   }
@@ -182,7 +182,7 @@ void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, 
   }
 }
 
-// All samples from the ideal plane to the picture.
+// Maps all samples from the ideal plane to the distorted image.
 void EdgeSearch::distort(const LensView& lens) {
   constexpr std::size_t kMost = kMaxSamples;
   std::array<std::array<float, kMost>, 6> numbers;
@@ -215,7 +215,7 @@ void EdgeSearch::look(const ImageView& luma,
     double reach = reach_px;
     if (covariance != nullptr) {
       const double variance = sample.view.row.dot(*covariance * sample.view.row);
-      // Rounding may leave less than 0 of a variance.
+      // Rounding may make the variance negative.
       reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)) + 2.0, reach_px, max_px);
     }
     look_along(luma, gain, reach, sample);
@@ -224,12 +224,12 @@ void EdgeSearch::look(const ImageView& luma,
 
 namespace {
 
-// Where a normal's row or column of pixels, whichever is closer to it, crosses the edge.
+// Intersection of an edge with the pixel row or column closest to its normal.
 struct Crossing {
   int axis;         // along which pixels are read
-  int line;         // the row or column
-  double place_px;  // on it
-  double slope;     // of the distance from the edge
+  int line;         // index of the row or column
+  double place_px;  // position along it
+  double slope;     // distance from the edge per pixel along it
 };
 
 std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma) {
@@ -247,8 +247,8 @@ std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma)
 
 }  // namespace
 
-// Differences of box averages across the edge, from dark to bright above 0. Read along the row or
-// column of pixels that is closest to the normal: no pixel has to be interpolated.
+// Differences of box averages across the edge, positive from dark to bright. Reads pixels along the
+// row or column closest to the normal, which avoids interpolation.
 void EdgeSearch::look_along(const ImageView& luma,
                             double gain,
                             double reach_px,

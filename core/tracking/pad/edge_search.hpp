@@ -13,19 +13,19 @@
 
 namespace ellipse {
 
-/// An edge matched on a normal.
+/// An edge found along a sample's normal.
 struct EdgeCandidate {
-  float distance_px = 0.0F;  ///< Along the normal, from where it was expected.
+  float distance_px = 0.0F;  ///< Along the normal, from the expected position.
   float contrast = 0.0F;     ///< [grey levels], above 0.
 };
 
-/// One sample of an edge of the pad, and what was matched around it.
+/// A sample on an edge of the pad, and the edges found near it.
 struct EdgeSample {
   EdgeView view;
-  float contrast = 0.0F;    ///< That it has on the pad [grey levels].
-  int feature = 0;          ///< Number of the circle; or of the line, behind all circles.
-  bool is_visible = false;  ///< Its normal is inside the picture.
-  int count = 0;            ///< Of candidates.
+  float contrast = 0.0F;    ///< In the model [grey levels].
+  int feature = 0;          ///< Index of the circle; or of the line, after all circles.
+  bool is_visible = false;  ///< At least one box to each side of the edge is inside the image.
+  int count = 0;            ///< Number of candidates.
   std::array<EdgeCandidate, 3> candidates;  ///< The strongest first.
 
   [[nodiscard]] double predicted_px(const HomographyChange& change) const {
@@ -33,16 +33,16 @@ struct EdgeSample {
   }
 };
 
-/// Looks for the edges of a pad along their normals, in a picture.
+/// Searches an image for the edges of a pad along their normals.
 class EdgeSearch {
  public:
-  /// Spreads samples over all edges inside the picture, evenly by their length there.
+  /// Places samples on all visible edges, evenly by their length in the image.
   void place(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
 
-  /// Looks at each sample for edges of the right sign.
-  /// @param gain       Of the picture's contrast over the model's.
-  /// @param reach_px   How far; where a covariance is given, three of its standard deviations and
-  ///                   2 px at each sample, at least that and at most `max_px`.
+  /// Searches edges of the expected polarity at each sample.
+  /// @param gain       Ratio of image contrast to model contrast.
+  /// @param reach_px   Search range. With a covariance: 3 sigma + 2 px at each sample, within
+  ///                   [reach_px, max_px].
   void look(const ImageView& luma,
             double gain,
             double reach_px,
@@ -50,11 +50,11 @@ class EdgeSearch {
             double max_px = 0.0);
 
   [[nodiscard]] std::span<const EdgeSample> samples() const { return samples_; }
-  /// Share of the outer circle inside the picture, of the last place().
+  /// Visible share of the outer circle at the last place().
   [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
 
   static constexpr int kMaxSamples = 256;
-  static constexpr std::size_t kCircleSteps = 128;  ///< By which a circle's visible part is told.
+  static constexpr std::size_t kCircleSteps = 128;  ///< Resolution of a circle's visible part.
 
  private:
   static constexpr std::size_t kMaxCircles = 8;
@@ -76,7 +76,7 @@ class EdgeSearch {
 
   std::vector<EdgeSample> samples_;
   double visible_fraction_ = 0.0;
-  double narrowest_ = 0.0;  // between neighbouring circles [radii of the outer one]
+  double narrowest_ = 0.0;  // min gap between neighbouring circles [radii of the outer one]
 };
 
 }  // namespace ellipse

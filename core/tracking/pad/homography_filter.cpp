@@ -9,14 +9,14 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kFocalOverWidth = 0.8;  // where no camera is known
-constexpr double kAlongShare = 0.7;      // of the shift, along the optical axis
-constexpr double kSlack = 0.0015;        // of the shape, for all that is not modelled
-constexpr double kLittleSlack = 0.05;    // of its variance, of size and turn
-constexpr double kLeast = 1e-9;          // variance that is added to all
-constexpr double kMaxTurn = 0.05;        // that rings alone leave unknown [rad]
+constexpr double kFocalOverWidth = 0.8;  // if no camera is known
+constexpr double kAlongShare = 0.7;      // share of the shift along the optical axis
+constexpr double kSlack = 0.0015;        // sigma of stretch and tilt for unmodelled effects
+constexpr double kLittleSlack = 0.05;    // share of that variance for size and rotation
+constexpr double kLeast = 1e-9;          // variance added to all parameters
+constexpr double kMaxTurn = 0.05;        // max sigma of the rotation that rings leave open [rad]
 
-// The changes of a view by a camera that turns and shifts by what is usual in a frame.
+// Changes of a view by one-sigma camera motions, one per column.
 Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
                                           const Camera& camera,
                                           double turn_rad,
@@ -46,7 +46,7 @@ HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
   return changes * changes.transpose();
 }
 
-// The likeliest motion of the camera under the usual ones is what moved the view.
+// Attributes the velocity to the most likely camera motion under a Gaussian prior.
 HomographyChange carried(const HomographyChange& velocity,
                          const Eigen::Matrix3d& from,
                          const Eigen::Matrix3d& to,
@@ -63,8 +63,8 @@ HomographyChange carried(const HomographyChange& velocity,
 
 HomographyFilter HomographyFilter::after(double frames,
                                          const HomographyCovariance& noise_per_frame) const {
-  // A white acceleration of density q gives q t^3 / 3 for the position. The half below allows for
-  // more; on real footage neither is better throughout.
+  // White acceleration of density q adds q t^3 / 3 to the position's variance. The half below is
+  // more conservative; on real footage neither is consistently better.
   const HomographyCovariance noise = frames * noise_per_frame;
   HomographyFilter next;
   next.velocity = velocity;

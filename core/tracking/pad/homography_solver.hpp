@@ -7,13 +7,13 @@
 
 namespace ellipse {
 
-/// What is known of a change before it is measured.
+/// Gaussian prior of a change.
 struct HomographyPrior {
   HomographyChange mean = HomographyChange::Zero();
   HomographyCovariance information = HomographyCovariance::Zero();  ///< Inverse of the covariance.
 };
 
-/// A change and how well it is known.
+/// A change and its inverse covariance.
 struct HomographyEstimate {
   HomographyChange change = HomographyChange::Zero();
   HomographyCovariance information = HomographyCovariance::Zero();
@@ -21,22 +21,22 @@ struct HomographyEstimate {
 
 /// How well a change agrees with the samples.
 struct HomographySupport {
-  int visible = 0;        ///< Samples inside the picture.
-  int matched = 0;        ///< Of these, with an edge where it should be.
+  int visible = 0;        ///< Visible samples.
+  int matched = 0;        ///< Of these, with an edge within the tolerance.
   double coverage = 0.0;  ///< matched over visible.
-  double outline = 0.0;   ///< The same of the outer circle alone; 0 where none of it is in view.
-  double weakest = 0.0;   ///< Coverage of the circle with the least.
-  double gain = 1.0;      ///< Median contrast over the model's.
+  double outline = 0.0;   ///< The same of the outer circle alone; 0 if none of it is visible.
+  double weakest = 0.0;   ///< Lowest coverage of a circle with at least 4 visible samples.
+  double gain = 1.0;      ///< Median ratio of image contrast to model contrast.
 };
 
-/// Solves for the change that brings all edges to their matches, weighted by what is known of it:
-/// iterated least squares with Tukey's weights, each sample by its candidate next to the
+/// Solves for the maximum a posteriori change that moves all edges to their matches: iteratively
+/// reweighted least squares with Tukey's weights, on each sample's candidate nearest to the
 /// prediction.
 ///
-/// @param start     Where to begin.
-/// @param reach_px  Of the weights: edges farther off do not count.
-/// @param sigma_px  Standard deviation of an edge's place.
-/// nullopt where the system is singular. Allocates nothing.
+/// @param start     Initial change.
+/// @param reach_px  Residual from which weights are 0.
+/// @param sigma_px  Standard deviation of an edge's position.
+/// @return nullopt if the system is singular. Allocates nothing.
 [[nodiscard]] std::optional<HomographyEstimate> solve_homography(
     std::span<const EdgeSample> samples,
     const HomographyPrior& prior,
@@ -45,10 +45,10 @@ struct HomographySupport {
     double sigma_px,
     int iterations);
 
-/// The candidate next to where a change puts the edge; nullptr where none was matched.
+/// The candidate nearest to the predicted edge; nullptr if there is none.
 [[nodiscard]] const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px);
 
-/// The sum of the samples' weights under a change: how much it explains.
+/// Sum of the samples' Tukey weights under a change.
 [[nodiscard]] double explained(std::span<const EdgeSample> samples,
                                const HomographyChange& change,
                                double reach_px);

@@ -10,12 +10,12 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kParts = 8;
-constexpr int kStraightPixels = 8;      // from above: a perspective leaves its chord by little
-constexpr double kStraightPx = 1.2;     // most that a line leaves its chord
+constexpr int kStraightPixels = 8;      // span of linear interpolation in the top view
+constexpr double kStraightPx = 1.2;     // max distance of a line from its chord
 constexpr double kMinLength = 0.1;      // [radii]
-constexpr double kBesideCircle = 0.05;  // a line is not so near to a circle, all along it
-constexpr double kMaxRadius = 0.97;
-constexpr double kShortened = 0.02;  // at both ends, where the direction turns
+constexpr double kBesideCircle = 0.05;  // lines this close to a circle throughout are part of it
+constexpr double kMaxRadius = 0.97;     // of a line's middle
+constexpr double kShortened = 0.02;     // cut at both ends, where corners bend the edge
 constexpr std::size_t kRoom = 4 * LineLearner::kMaxLines;
 constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
 
@@ -31,10 +31,10 @@ void LineLearner::reserve(PadModel& model) {
   chains_.trace(map_);
 }
 
-// Pixels that the picture does not show are 0, and no others. Between places some pixels apart the
-// view is straight.
+// Pixels outside the image are 0, all others at least 1. Interpolates positions linearly over
+// kStraightPixels.
 void LineLearner::take(const ImageView& luma, const PadView& view) {
-  constexpr float kBorder = 1.01F;  // whose hundredth is for rounding
+  constexpr float kBorder = 1.01F;  // the .01 covers rounding
   const float right = static_cast<float>(luma.width) - kBorder;
   const float bottom = static_cast<float>(luma.height) - kBorder;
   const int end = std::min(kSize, rows_ + kSize / kParts);
@@ -44,7 +44,7 @@ void LineLearner::take(const ImageView& luma, const PadView& view) {
     for (int column = 0; column < kSize; column += kStraightPixels) {
       const auto here = next;
       next = view.at(place_of(column + kStraightPixels, rows_));
-      Eigen::Vector2f first(-1.0F, -1.0F);  // outside, where it is not shown
+      Eigen::Vector2f first(-1.0F, -1.0F);  // outside the image
       Eigen::Vector2f step(0.0F, 0.0F);
       if (here && next) {
         first = here->point.cast<float>();
@@ -62,13 +62,13 @@ void LineLearner::take(const ImageView& luma, const PadView& view) {
   }
 }
 
-// The picture's border is no line of the pad.
+// Removes gradient maxima caused by the image border.
 void LineLearner::forget_maxima_at_border() {
   const auto is_shown = [&](int x, int y) {
     const int pixel = y * kSize + x;
     return pixels_[static_cast<std::size_t>(pixel)] != 0;
   };
-  constexpr int kNear = 3;  // of the gradient's kernel, and a pixel
+  constexpr int kNear = 3;  // radius of the gradient's kernel plus one pixel
   for (int y = kNear; y < kSize - kNear; ++y) {
     for (int x = kNear; x < kSize - kNear; ++x) {
       std::uint8_t& maximum = map_.maxima()[y * map_.stride() + x];
@@ -109,7 +109,7 @@ void LineLearner::keep_longest() {
   lines_.resize(std::min(lines_.size(), kMaxLines));
 }
 
-// At the pixel that is farthest from the chord, until all are near it [DouglasPeucker1973].
+// Splits at the pixel farthest from the chord until all are near it [DouglasPeucker1973].
 void LineLearner::split(std::span<const std::int32_t> pixels, const PadModel& model) {
   const auto shortest = static_cast<std::size_t>(0.7 * kMinLength / kPixel);
   if (pixels.size() < shortest) return;
@@ -154,8 +154,8 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   lines_.push_back(line);
 }
 
-// Through the gradient maxima, finer than pixels, by total least squares; its contrast is that of
-// the mean gradient.
+// Fits the subpixel gradient maxima by total least squares; the contrast is that of the mean
+// gradient.
 PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
                                   const Eigen::Vector2d& from,
                                   const Eigen::Vector2d& to) const {

@@ -14,32 +14,32 @@
 
 namespace ellipse {
 
-/// Learns the straight edges inside a pad's outer circle: what its pattern, a cross or a letter, is
-/// made of. The pad is seen from above, its edges are traced, and cut into straight parts.
+/// Learns the straight edges of the pattern inside a pad's outer circle, such as a cross or a
+/// letter: rectifies the pad to a top view, traces its edges and splits them into line segments.
 class LineLearner {
  public:
-  /// Allocates all that take() and learn() need, once.
+  /// Allocates the buffers of take() and learn(), once.
   void reserve(PadModel& model);
 
-  /// Begins a new picture of the pad from above.
+  /// Starts a new top view.
   void start() { rows_ = 0; }
-  /// Adds the next rows of that picture, an eighth of it, so that no frame pays for all. The frames
-  /// may differ: each shows the pad where its view says. Allocates nothing after reserve().
-  /// @param view  Exact to about a pixel.
+  /// Adds the next eighth of the top view's rows, which spreads the cost over frames. Allocates
+  /// nothing after reserve().
+  /// @param view  The pad's view in this frame, accurate to about a pixel.
   void take(const ImageView& luma, const PadView& view);
-  /// Whether the picture is whole.
+  /// Whether the top view is complete.
   [[nodiscard]] bool is_ready() const { return rows_ == kSize; }
 
-  /// From a whole picture.
-  /// @param model  Its circles tell what is no line, and what contrast to expect; its lines are
-  ///               replaced. At most kMaxLines, the longest.
+  /// Learns the lines from a complete top view.
+  /// @param model  Its circles exclude circular edges and give the expected contrast. Its lines are
+  ///               replaced by the longest, at most kMaxLines.
   /// Allocates nothing after reserve().
   void learn(PadModel& model);
 
   static constexpr std::size_t kMaxLines = 24;
 
  private:
-  static constexpr int kSize = 208;              // of the pad from above [px]
+  static constexpr int kSize = 208;              // of the top view [px]
   static constexpr double kPixel = 2.0 / kSize;  // [radii]
 
   void forget_maxima_at_border();
@@ -52,8 +52,8 @@ class LineLearner {
   [[nodiscard]] static Eigen::Vector2d place_of(int column, int row);
   [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
 
-  std::vector<std::uint8_t> pixels_;  // the pad from above
-  int rows_ = 0;                      // that are there
+  std::vector<std::uint8_t> pixels_;  // top view
+  int rows_ = 0;                      // completed
   GradientMap map_;
   ChainTracer chains_;
   std::vector<PadLine> lines_;

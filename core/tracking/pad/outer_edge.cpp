@@ -13,12 +13,12 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMinSupport = 0.5;   // share of the perimeter with a gradient maximum
-constexpr std::size_t kSamples = 48;  // half of what the detector takes: each frame pays
-constexpr double kThinRingPx = 6.0;
-constexpr double kRepulsionShare = 0.2;     // of its correction, that may be left of it
-constexpr double kReachOfNextEdgePx = 2.0;  // its blur
-constexpr Tolerance kNear{1.0, 0.03};       // from the outline that is followed
+constexpr double kMinSupport = 0.5;         // share of the perimeter with a gradient maximum
+constexpr std::size_t kSamples = 48;        // half of the detector's, since this runs in each frame
+constexpr double kThinRingPx = 6.0;         // max width of a ring that needs a blur correction
+constexpr double kRepulsionShare = 0.2;     // sigma of the blur correction, share of it
+constexpr double kReachOfNextEdgePx = 2.0;  // blur of the ring's inner edge
+constexpr Tolerance kNear{1.0, 0.03};       // max distance from the predicted outline
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
@@ -31,7 +31,7 @@ RingMatrix widened(const RingMatrix& information, double sigma) {
   return covariance.inverse();
 }
 
-// The gradient maxima along a circle near its predicted image.
+// Fits the gradient maxima near a circle's predicted image.
 std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        const PadView& view,
                                        const PadCircle& circle,
@@ -48,7 +48,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
   return FittedEllipse{edge->ellipse, edge->uncertainty};
 }
 
-// Blur separates the gradient maxima of a thin ring's two edges.
+// Removes the blur bias that separates the gradient maxima of a thin ring's two edges.
 std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
                                              const PadView& view,
                                              const PadModel& model,

@@ -11,20 +11,22 @@
 
 namespace ellipse {
 
-/// The outer edge of a pad whose view is known within a pixel or so, made exact on the picture; in
-/// its ideal plane.
+/// Refines the outer edge of a pad whose view is accurate to about a pixel.
 ///
-/// @param gain  Of the picture's contrast over the model's.
-/// @return nullopt where the picture does not show it well enough. Allocates nothing.
+/// @param gain  Ratio of image contrast to model contrast.
+/// @return The edge in the image's ideal plane; nullopt if too little of it is visible, or it is
+/// too
+///         far from the view's. Allocates nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                                               const PadView& view,
                                                               const PadModel& model,
                                                               double gain,
                                                               Refinement refinement);
 
-/// A circle of a pad inside its outer one, the same way by gradient maxima.
+/// Refines an inner circle of a pad by gradient maxima.
 ///
-/// @return nullopt where the picture does not show it well enough. Allocates nothing.
+/// @return The circle in the image's ideal plane; nullopt if too little of it is visible. Allocates
+///         nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_circle(const ImageView& luma,
                                                           const PadView& view,
                                                           const PadCircle& circle,

@@ -15,14 +15,14 @@ constexpr int kRadii = 240;
 constexpr double kFirstRadius = 0.1;
 constexpr double kRadiusStep = 0.005;
 constexpr int kAngles = 128;
-constexpr int kMinVisible = 12;         // of the angles
-constexpr int kOuterSlack = 14;         // steps to both sides of radius 1
+constexpr int kMinVisible = 12;         // angles per radius
+constexpr int kOuterSlack = 14;         // search range to each side of radius 1 [steps]
 constexpr double kMinContrast = 6.0;    // of the outer circle [grey levels]
-constexpr double kOuterContrast = 0.6;  // of the strongest step near radius 1
-constexpr double kInnerContrast = 0.5;  // of the outer circle's
-constexpr int kApart = 5;               // steps between circles
+constexpr double kOuterContrast = 0.6;  // min share of the strongest step near radius 1
+constexpr double kInnerContrast = 0.5;  // min share of the outer circle's contrast
+constexpr int kApart = 5;               // min distance between circles [steps]
 constexpr std::size_t kMaxCircles = 5;
-constexpr double kMinAgreement = 0.7;  // of the angles with a circle's own step
+constexpr double kMinAgreement = 0.7;  // min share of angles that show a circle's step
 constexpr double kUnknown = -1.0;
 
 double radius_at(int i) {
@@ -33,7 +33,7 @@ int index_of(double radius) {
   return static_cast<int>(std::lround((radius - kFirstRadius) / kRadiusStep));
 }
 
-// Brightness around circles.
+// Median brightness along concentric circles.
 class RadialProfile {
  public:
   // Both are borrowed.
@@ -48,7 +48,7 @@ class RadialProfile {
     for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
   }
 
-  // Outside less inside, in the median over the angles; 0 where too little is seen.
+  // Median brightness outside minus inside; 0 if too few angles are visible.
   [[nodiscard]] double strength(int i) const { return std::abs(step(i)); }
   [[nodiscard]] double step(int i) const {
     double sum = 0.0;
@@ -62,7 +62,7 @@ class RadialProfile {
     return sum / half_width_;
   }
 
-  // Share of the angles with a step of the same sign and half the size.
+  // Share of the visible angles with a step of the same sign and at least half the size.
   [[nodiscard]] double agreement(int i) const {
     const double whole = step(i);
     int seen = 0;
@@ -119,7 +119,7 @@ bool is_peak(const RadialProfile& profile, int i) {
   return is_highest;
 }
 
-// The step next to the detected edge: the other edge of a thin ring may be as strong.
+// The step nearest to the detected edge: the other edge of a thin ring may be as strong.
 std::optional<int> outer_circle(const RadialProfile& profile) {
   const int one = index_of(1.0);
   double strongest = 0.0;

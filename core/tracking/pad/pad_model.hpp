@@ -9,15 +9,15 @@
 
 namespace ellipse {
 
-/// An edge with less of the expected contrast is not the pad's.
+/// Min contrast of a pad edge, as a share of the expected contrast.
 inline constexpr double kMinContrastShare = 0.25;
 
-/// A circle about the pad's centre where its brightness changes.
+/// A circular edge around the pad's centre.
 struct PadCircle {
   double radius = 1.0;  ///< [radii of the outer circle]
   bool is_bright_outside = true;
   double contrast = 0.0;  ///< [grey levels]
-  bool is_given = false;  ///< Its radius was not learned, so it stays.
+  bool is_given = false;  ///< Its radius is configured and not learned.
 };
 
 /// A straight edge on the pad.
@@ -26,25 +26,23 @@ struct PadLine {
   Eigen::Vector2d to;
   Eigen::Vector2d to_bright;  ///< Unit normal.
   double contrast = 0.0;      ///< [grey levels]
-  int visible = 0;            ///< Frames in which enough of it was inside the picture,
-  int matched = 0;            ///< and was matched.
+  int visible = 0;            ///< Frames with at least two visible samples.
+  int matched = 0;            ///< Of these, frames with at least half of them matched.
 };
 
-/// What a pad shows: the edges by which it is followed.
+/// The edges by which a pad is tracked.
 struct PadModel {
   std::vector<PadCircle> circles;  ///< The outer one first.
   std::vector<PadLine> lines;
 };
 
-/// Learns the circles of a pad from a picture: the median brightness over the angles, as a function
-/// of the radius, has a step at each.
+/// Learns the circles of a pad: steps of the median brightness over all angles as a function of the
+/// radius.
 ///
-/// @param view            With the outer circle on the target's outer edge, within a few percent.
-/// @param ring_ratio      Radius of the circle next inside the outer one, where it is known: it is
-///                        taken for what it is, also where the picture is too coarse to show it.
-///                        0 = is learned.
-/// nullopt where there is no step at the outer circle. Allocates the model, and nothing without
-/// one.
+/// @param view        Projects the outer circle to the target's outer edge, within a few percent.
+/// @param ring_ratio  Radius of the next circle inside the outer one, if known: it is added even if
+///                    the image is too coarse to resolve it. 0 = learned.
+/// @return nullopt if there is no step at the outer circle. Allocates only the model.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
                                                     const PadView& view,
                                                     double ring_ratio = 0.0);

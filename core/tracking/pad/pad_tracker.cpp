@@ -17,41 +17,41 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kTurnNoise = 0.002;    // of the camera, per frame [rad]
-constexpr double kShiftNoise = 0.0015;  // [radii]
-constexpr double kFirstTurn = 0.03;     // a velocity that is not known yet
+constexpr double kTurnNoise = 0.002;    // sigma of the camera's rotation per frame [rad]
+constexpr double kShiftNoise = 0.0015;  // sigma of its translation [radii]
+constexpr double kFirstTurn = 0.03;     // initial sigmas of the velocity, as above
 constexpr double kFirstShift = 0.05;
-constexpr double kUsualShare = 0.35;  // of the expected motion
-constexpr double kInnovationRate = 0.25;
-constexpr double kMinRatio = 0.5;  // by which one frame calms it down
+constexpr double kUsualShare = 0.35;      // typical squared innovation over its predicted variance
+constexpr double kInnovationRate = 0.25;  // smoothing exponent
+constexpr double kMinRatio = 0.5;         // of one frame
 constexpr double kMinInnovationRatio = 0.25;
 constexpr double kMaxInnovationRatio = 64.0;
 constexpr double kEdgeSigmaPx = 0.6;
 constexpr int kFineSamples = 72;
 constexpr int kWideSamples = 128;
-constexpr double kReachPx = 4.0;        // where the prediction is good; elsewhere
-constexpr double kWideReach = 0.14;     // of the radius
-constexpr double kSmallChangePx = 1.0;  // the edges' normals are the same still
+constexpr double kReachPx = 4.0;        // search range near the prediction
+constexpr double kWideReach = 0.14;     // wide search range [radii]
+constexpr double kSmallChangePx = 1.0;  // max RMS change at which normals are not recomputed
 constexpr double kTolerancePx = 1.2;
 constexpr double kToleranceRelative = 0.012;  // of the radius: deformed pads
 constexpr double kMinCoverage = 0.65;
 constexpr double kWeakestCircle = 0.5;
 constexpr int kMinMatched = 10;
-constexpr double kLongestMiss = 12.0;  // thirtieths of a second
+constexpr double kLongestMiss = 12.0;  // [1/30 s]
 constexpr int kHypotheses = 40;
 constexpr int kLockSteps = 3;
-constexpr double kSlowing = 0.8;    // of a motion that is not seen
-constexpr double kGainShare = 0.3;  // of what a frame tells of the contrast
+constexpr double kSlowing = 0.8;    // velocity decay per 1/30 s without a match
+constexpr double kGainShare = 0.3;  // smoothing factor of the contrast, per 1/30 s
 constexpr double kMinGain = 0.3;
 constexpr double kLearningShare = 0.2;  // the same of the radii
 constexpr double kMinVisibleToLearn = 0.5;
 constexpr double kMinRadiusToLearnPx = 24.0;
 constexpr double kGrowthToLearn = 1.4;
-constexpr double kTurnOfLearnedLines = 0.003;  // [rad]
+constexpr double kTurnOfLearnedLines = 0.003;  // sigma of their rotation [rad]
 constexpr int kTrialsOfLine = 6;
 constexpr double kMinMatchedOfLine = 0.5;
-constexpr double kEnoughVisible = 0.15;    // of the outer circle, to tell the centre
-constexpr double kMaxCentreSigma = 0.025;  // [radii], where less is visible
+constexpr double kEnoughVisible = 0.15;    // share of the outer circle that determines the centre
+constexpr double kMaxCentreSigma = 0.025;  // [radii], if less is visible
 constexpr double kSureCoverage = 0.75;
 constexpr double kMinVisibleToRefine = 0.3;
 
@@ -65,15 +65,14 @@ PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
   return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
 }
 
-// How far a change moves the edges.
+// RMS displacement of the edges by a change.
 double rms_px(std::span<const EdgeSample> samples, const HomographyChange& change) {
   double sum = 0.0;
   for (const EdgeSample& sample : samples) sum += std::pow(sample.predicted_px(change), 2);
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
-// The share of a measurement that counts after this time, where `share_of_one` of it counts after a
-// thirtieth of a second.
+// Smoothing factor over this time, from the factor per 1/30 s.
 double share_in(double share_of_one, double frames) {
   return 1.0 - std::pow(1.0 - share_of_one, frames);
 }
@@ -88,9 +87,9 @@ double PadTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
 }
 
-// The outer edge leaves open which way a pad is tilted. Along a wrong view the profile smears the
-// inner circles over several radii: with a camera, the view that shows the sharpest ones is the
-// start.
+// The outer edge leaves the tilt ambiguous, and a wrong tilt blurs the inner circles in the radial
+// profile. With a camera, compares the affine view and both poses of the circle, and keeps the view
+// with the highest total contrast.
 bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) {
   std::array<Eigen::Matrix3d, 3> views;
   std::size_t count = 0;
@@ -155,7 +154,7 @@ HomographyFilter PadTracker::predicted(double frames, double looseness) const {
       innovation_ratio_ * looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
 }
 
-// From a change that is about right: all edges again, near it.
+// Refines an approximate change: places and searches all samples again around it.
 std::optional<PadTracker::Attempt> PadTracker::finish(const LumaWindow& window,
                                                       const Eigen::Matrix3d& start,
                                                       const HomographyPrior& prior,
@@ -185,7 +184,7 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
       search_.visible_fraction()};
 }
 
-// Where the prediction is good, one look tells all.
+// Near a good prediction one search suffices.
 std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& window,
                                                          const Eigen::Matrix3d& start,
                                                          const HomographyCovariance& covariance) {
@@ -212,8 +211,8 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
   return is_good ? attempt : std::nullopt;
 }
 
-// Edges of other things are in reach as well: several hypotheses, each from four edges and what is
-// known of the motion, the best of which is refined.
+// The search range contains clutter: tests several hypotheses, each from four edges and the motion
+// prior, and refines the best.
 std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& window,
                                                          const Eigen::Matrix3d& start,
                                                          const HomographyCovariance& covariance) {
@@ -237,7 +236,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& windo
   return is_good ? attempt : std::nullopt;
 }
 
-// Of all edges in reach at once, and of four of them with any of their candidates each.
+// One hypothesis from all samples, the others from four samples with a random candidate each.
 HomographyChange PadTracker::best_hypothesis(std::span<const EdgeSample> samples,
                                              const HomographyPrior& prior,
                                              double reach_px,
@@ -302,7 +301,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   return told(&*attempt);
 }
 
-// In the surroundings, on a coarse picture. What is known of the motion is worth less afterwards.
+// Searches a coarse image of the surroundings. Inflates the covariances of `before` on success.
 std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& window,
                                                              const Eigen::Matrix3d& prediction,
                                                              HomographyFilter& before) {
@@ -312,7 +311,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& w
   loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
   auto attempt = look_wide(window, shifted(*coarse, window.origin_px), loose);
   if (!attempt) return std::nullopt;
-  // The whole change, from the prediction.
+  // Total change from the prediction.
   const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
   attempt->estimate.change = change_of(between / std::cbrt(between.determinant()));
   before.pose += loose;
@@ -323,8 +322,8 @@ std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& w
 
 void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, double frames) {
   motion_ = before.corrected(attempt.estimate);
-  if (model_.lines.empty()) motion_.leave_turn_open();  // rings look the same from all sides
-  // How far the edges moved, over how far they were expected to.
+  if (model_.lines.empty()) motion_.leave_turn_open();  // rings have no orientation
+  // Squared displacement of the edges over its predicted variance.
   double moved_px = 0.0;
   double expected_px = 0.0;
   for (const EdgeSample& sample : search_.samples()) {
@@ -347,7 +346,7 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, 
   missed_ = 0.0;
 }
 
-// The outer edge told exactly takes the view along, which otherwise falls behind an uneven motion.
+// Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
 void PadTracker::refine(const LumaWindow& window, double visible) {
   if (visible < kMinVisibleToRefine) return;
   const auto exact =
@@ -372,7 +371,7 @@ void PadTracker::measure_inner_edges(const LumaWindow& window) {
   }
 }
 
-// The outer circle is the unit; the matches of the others give their radii.
+// Updates the inner radii from their matches; the outer radius is the unit.
 void PadTracker::learn_radii(const HomographyChange& change, double share) {
   for (std::size_t i = 1; i < model_.circles.size(); ++i) {
     PadCircle& circle = model_.circles[i];
@@ -394,7 +393,7 @@ void PadTracker::learn_radii(const HomographyChange& change, double share) {
   }
 }
 
-// The larger the pad, the finer its lines: they are learned anew as it grows.
+// Learns the lines again as the pad grows in the image and shows finer ones.
 void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   const double radius = radius_px();
   const bool is_time =
@@ -411,7 +410,7 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   motion_.pose(5, 5) += kTurnOfLearnedLines * kTurnOfLearnedLines;
 }
 
-// A line that is often missed is none of the pad's: a shadow, an occluder.
+// Removes lines that are often unmatched, such as edges of shadows or occluders.
 void PadTracker::judge_lines(const HomographyChange& change) {
   const auto circles = static_cast<int>(model_.circles.size());
   const auto samples = search_.samples();

@@ -19,40 +19,41 @@
 
 namespace ellipse {
 
-/// The luma of a part of a frame.
+/// The luma of a frame region.
 struct LumaWindow {
   ImageView luma;
   Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
   Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
-  LensView lens{};                      ///< Of whole frames; its camera outlives the tracking.
-  std::optional<Camera> camera{};       ///< Where it is known.
+  LensView lens{};                      ///< Of whole frames; its lens must outlive the tracker.
+  std::optional<Camera> camera{};       ///< If known.
 };
 
-/// What one frame told.
+/// Tracking result of one frame.
 struct EdgeTrack {
   Ellipse ellipse;          ///< The outer circle [px of the frame's ideal plane].
-  double coverage = 0.0;    ///< Share of the pad's edges in view that were matched.
+  double coverage = 0.0;    ///< Matched share of the pad's visible edges.
   double outline = 0.0;     ///< The same of its outer edge alone.
   double visible = 0.0;     ///< Share of the outer circle inside the frame.
-  bool is_visible = false;  ///< Else its motion was continued.
+  bool is_visible = false;  ///< The matches determine the centre; else it is predicted.
 };
 
-/// Follows a pad by its edges: predicts its view, looks for each edge along its normal, and solves
-/// for the change of the view that explains them best, given what is known of its motion.
+/// Tracks a pad by its edges: predicts its view, searches each edge along its normal, and solves
+/// for the change of the view that explains the matches best, given a motion prior.
 ///
-/// First near the prediction; if that fails, farther away, with several hypotheses; then on a
-/// coarse picture of the surroundings. One object follows one pad, on one thread. Deterministic.
-/// Allocates only while it locks.
+/// Searches near the prediction; if that fails, farther away, with several hypotheses; then in a
+/// coarse image of the surroundings. One object tracks one pad, on one thread. Deterministic.
+/// Allocates only in lock().
 class PadTracker {
  public:
-  /// Learns a pad from its outer edge. Whether its own edges confirm it.
+  /// Learns a pad from its outer edge.
+  /// @return Whether the learned edges match the image.
   [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
 
   /// @param frames  Time since the last call, in thirtieths of a second.
-  /// nullopt where the pad is lost.
+  /// @return nullopt if the pad is lost.
   [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
 
-  /// @param refinement  Of the outer edge in each frame, which the view is then laid upon.
+  /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
   void configure(Refinement refinement, double ring_ratio) {
     refinement_ = refinement;
@@ -61,24 +62,24 @@ class PadTracker {
 
   [[nodiscard]] bool is_locked() const { return is_locked_; }
 
-  /// How well the outer edge is known in the last frame: by its refinement, else by all edges and
+  /// Uncertainty of the outer edge in the last frame: from its refinement, else from all edges and
   /// the motion.
   [[nodiscard]] RingUncertainty uncertainty() const;
-  /// The circles inside the outer edge as the last frame showed them [px of its ideal plane]. Empty
-  /// without a camera, and where they were not measured. Until the next call.
+  /// Inner circles as measured in the last frame [px of its ideal plane]. Empty without a camera or
+  /// a measurement. Valid until the next call.
   [[nodiscard]] std::span<const FittedEllipse> inner_edges() const {
     return {inner_edges_.data(), inner_count_};
   }
   void release() { is_locked_ = false; }
 
-  /// What the next frame must show for track() to look everywhere it may want to [px].
+  /// Region of the next frame to pass to track() [px]; covers its search range.
   [[nodiscard]] Rect region_after(double frames, int width, int height) const;
 
  private:
   struct Attempt {
     Eigen::Matrix3d view;
-    HomographyEstimate estimate;  // of the whole change from the prediction
-    HomographyChange last;        // change, since the samples were placed
+    HomographyEstimate estimate;  // total change from the prediction
+    HomographyChange last;        // change since the samples were placed
     HomographySupport support;
     double visible = 0.0;
   };
@@ -129,10 +130,10 @@ class PadTracker {
   std::size_t inner_count_ = 0;
   Camera camera_;
   LensView lens_;
-  double innovation_ratio_ = 1.0;  // of the motion, against its noise
-  double gain_ = 1.0;              // of the picture's contrast over the model's
-  double missed_ = 0.0;            // time since it was seen [1/30 s]
-  double last_coverage_ = 0.0;     // near the prediction
+  double innovation_ratio_ = 1.0;  // adaptive factor of the motion noise
+  double gain_ = 1.0;              // ratio of image contrast to model contrast
+  double missed_ = 0.0;            // time since the last match [1/30 s]
+  double last_coverage_ = 0.0;     // of the search near the prediction
   bool is_locked_ = false;
 };
 

@@ -7,14 +7,14 @@
 
 namespace ellipse {
 
-/// A place of the pad's plane in the picture.
+/// Image of a point on the pad's plane.
 struct PadPlace {
   Eigen::Vector2d point;  ///< [px]
-  Eigen::Matrix2d slope;  ///< Of the point, by its place on the pad.
+  Eigen::Matrix2d slope;  ///< Jacobian of the point by its pad coordinates.
 };
 
-/// How a picture shows a pad: through a view of its plane in the ideal plane, and from there
-/// through the lens. A view alone is one without a lens. Borrows the lens.
+/// Projection of a pad into an image: a homography into the ideal plane, then the lens distortion.
+/// A homography alone means no distortion. Borrows the lens.
 struct PadView {
   PadView(const Eigen::Matrix3d& view, const LensView& through = {})  // NOLINT: see above
       : ideal_from_pad(view), lens(through) {}
@@ -22,10 +22,10 @@ struct PadView {
   Eigen::Matrix3d ideal_from_pad;
   LensView lens;
 
-  /// nullopt where the place is behind the camera, or is not shown by the lens.
+  /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
   [[nodiscard]] std::optional<PadPlace> at(const Eigen::Vector2d& place) const;
 
-  /// The pad's radius in the picture, about [px].
+  /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;
 };
 

@@ -4,15 +4,15 @@
 
 namespace ellipse {
 
-/// What makes a followed ellipse exact.
+/// Refinement of a tracked ellipse.
 enum class Refinement {
-  kNone,         ///< Nothing: where the edges that it is followed by put it.
-  kEdges,        ///< The gradient maxima along the outer edge.
-  kPhotometric,  ///< The brightness of all pixels along it; gradient maxima where the ring is too
-                 ///< thin.
+  kNone,         ///< None: the ellipse follows from the match of all edges.
+  kEdges,        ///< Fit to the gradient maxima along the outer edge.
+  kPhotometric,  ///< Fit to the brightness of all pixels along it; kEdges for thin rings and
+                 ///< distorted lenses.
 };
 
-/// Their nicks, in their order.
+/// The nicks, in enum order.
 [[nodiscard]] std::span<const char* const> refinement_nicks();
 
 }  // namespace ellipse

@@ -10,8 +10,8 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kMarginPx = 3.0;  // from the border
 constexpr double kFarPx = 1e6;
-constexpr int kBorderSteps = 8;  // of each side of the picture, to follow a distorted one
-constexpr int kHalvings = 6;     // by which the rest of a line is told
+constexpr int kBorderSteps = 8;  // samples per image side to undistort the border
+constexpr int kHalvings = 6;     // bisection steps for the visible end of a line
 
 // A rectangle of the ideal plane.
 struct IdealRect {
@@ -21,8 +21,8 @@ struct IdealRect {
   double bottom;
 };
 
-// All of it is inside the picture. Where the lens distorts the picture's border, it is the part
-// that no side cuts.
+// An upright rectangle that is entirely visible: bounded by the innermost point of each undistorted
+// image side.
 IdealRect inner_rect(const LensView& lens, double right, double bottom) {
   if (!lens.is_distorted()) return {kMarginPx, kMarginPx, right, bottom};
   IdealRect rect{-kFarPx, -kFarPx, kFarPx, kFarPx};
@@ -30,7 +30,7 @@ IdealRect inner_rect(const LensView& lens, double right, double bottom) {
     const double at = static_cast<double>(i) / kBorderSteps;
     const double x = std::lerp(kMarginPx, right, at);
     const double y = std::lerp(kMarginPx, bottom, at);
-    // What the lens maps from nowhere is NaN, which no comparison takes.
+    // Points without an inverse are NaN, which std::max and std::min ignore as second argument.
     rect.left = std::max(rect.left, lens.near_ideal({kMarginPx, y}).x());
     rect.right = std::min(rect.right, lens.near_ideal({right, y}).x());
     rect.top = std::max(rect.top, lens.near_ideal({x, kMarginPx}).y());
@@ -70,7 +70,7 @@ Interval VisiblePart::clip(const Eigen::Vector2d& from, const Eigen::Vector2d& t
   return {farthest(from, to, part.begin, 0.0), farthest(from, to, part.end, 1.0)};
 }
 
-// From a place of a line that is inside towards one of its ends, as far as the lens shows it.
+// The last visible point from a visible point of a line towards one of its ends, by bisection.
 double VisiblePart::farthest(const Eigen::Vector2d& from,
                              const Eigen::Vector2d& to,
                              double inside,

@@ -8,8 +8,8 @@
 
 namespace ellipse {
 
-/// The part of a pad's plane that a picture shows, but for what lies near its border. Borrows the
-/// view. Allocates nothing.
+/// The visible part of a pad's plane, excluding a margin at the image border. Borrows the view.
+/// Allocates nothing.
 class VisiblePart {
  public:
   VisiblePart(const PadView& view, const ImageView& luma);
@@ -20,9 +20,8 @@ class VisiblePart {
     return is_within || (view_.lens.is_distorted() && is_let_in(place));
   }
 
-  /// The part of a line from 0 to 1 that is inside; empty where its end is not above its begin.
-  /// Through a lens within a hundredth or so, and empty where only the distortion of the border
-  /// lets it in.
+  /// The visible part of a line, parameterized from 0 to 1; empty if end <= begin. With distortion
+  /// accurate to 1/64 of the line, and empty for a line outside the undistorted inner rectangle.
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
@@ -33,7 +32,7 @@ class VisiblePart {
                                 double end) const;
 
   const PadView& view_;
-  double right_px_;  // of the last column that counts
+  double right_px_;  // last visible column
   double bottom_px_;
   Eigen::Matrix<double, 4, 3> borders_;  // inside where b . (x, y, 1) >= 0 for all four
 };
