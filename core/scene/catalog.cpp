@@ -179,9 +179,9 @@ void barrel(Scene& scene) {
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
 }
 
-// The pad is half as large as through a lens of 58 degrees: half as far away it is as large, and
-// fills the view at the end of a descent. What leaves the picture has twice as far to go, and stays
-// far enough away to lie before the camera as a whole.
+// The pad appears half as large as through a lens of 58 degrees, so distances are halved and it
+// fills the view at the end of a descent. Sideways motion doubles to leave the wider view; kReenter
+// keeps its distance, so that the whole pad stays in front of the camera.
 void fisheye(Scene& scene) {
   scene.lens = Distortion{LensModel::kFisheye, {}};
   scene.hfov_rad = 2.0 / 3.0 * std::numbers::pi;

@@ -26,7 +26,7 @@ Matrix2d Deformation::slope_at(const Vector2d& seen) const {
 }
 
 Vector2d Deformation::seen_at(const Vector2d& pattern) const {
-  // Each step at least halves the error: 40 reach the last digit.
+  // Each step at least halves the error: 40 reach double precision.
   constexpr int kSteps = 40;
   Vector2d seen = pattern;
   for (int i = 0; i < kSteps && !is_flat(); ++i) {

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr int kStepsPerSigma = 256;
 constexpr int kTableSize = 2 * static_cast<int>(kStepReach) * kStepsPerSigma;
 
-// Linear between the entries: off by less than 1e-6.
+// Linear interpolation between the entries has an error below 1e-6.
 using StepTable = std::array<double, kTableSize + 2>;
 
 StepTable make_step_table() {
@@ -93,7 +93,7 @@ double CircularEdge::coverage(const Vector2d& pixel, double blur_px) const {
   const double slope_at_edge = std::sqrt(discriminant);
   const double distance = 2.0 * value / (slope + slope_at_edge);
 
-  // Blur draws a curved edge inwards by sigma^2 curvature / 2, to second order.
+  // Blur shifts a curved edge inwards by sigma^2 curvature / 2, to second order.
   const Vector2d tangent(-normal.y(), normal.x());
   const double curvature =
       2.0 * tangent.dot(conic_.topLeftCorner<2, 2>() * tangent) / slope_at_edge;

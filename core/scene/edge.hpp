@@ -4,8 +4,8 @@
 
 namespace ellipse {
 
-/// A step of light seen through a lens that blurs like a Gaussian: the share of it that reaches a
-/// point `sigmas` standard deviations outside of the step's edge; 1 deep inside, 0 far outside.
+/// A step edge under Gaussian blur: the share of its light at a point `sigmas` standard deviations
+/// outside the edge; 1 deep inside, 0 far outside.
 [[nodiscard]] double blurred_step(double sigmas);
 
 /// Beyond this many standard deviations blurred_step() is 0 or 1.
@@ -23,7 +23,7 @@ struct StraightEdge {
   }
 };
 
-/// The picture of the half plane normal . p <= offset of a plane; exact, as lines map to lines.
+/// The image of the half plane normal . p <= offset of a plane; exact, as lines map to lines.
 [[nodiscard]] StraightEdge project_half_plane(const Eigen::Matrix3d& plane_from_image,
                                               const Eigen::Vector2d& normal,
                                               double offset);
@@ -45,7 +45,7 @@ struct Band {
                                 double center,
                                 double half_width);
 
-/// A rectangle: the product of two bands, which is exact where their pictures are at right angles.
+/// A rectangle: the product of two bands, which is exact if their images are at right angles.
 struct Box {
   Band along;
   Band across;
@@ -65,14 +65,14 @@ struct Box {
                               double half_length,
                               double half_width);
 
-/// The picture of a circle about a plane's origin: exactly a conic, C' = H^-T C H^-1
+/// The image of a circle about a plane's origin: exactly a conic, C' = H^-T C H^-1
 /// [HartleyZisserman2004] 2.3.
 class CircularEdge {
  public:
   CircularEdge(const Eigen::Matrix3d& plane_from_image, double radius);
 
   [[nodiscard]] double radius() const { return radius_; }
-  /// At pixels of the plane's front side only.
+  /// Valid only at pixels that see the plane's front side.
   [[nodiscard]] double coverage(const Eigen::Vector2d& pixel, double blur_px) const;
 
  private:

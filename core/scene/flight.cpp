@@ -47,7 +47,7 @@ CameraPose approaching(const Flight& flight, double time_s) {
   return pose;
 }
 
-// From a direction given by its angle to the vertical and its azimuth.
+// View from a direction given by its angle to the vertical and its azimuth.
 CameraPose tilted(double distance, double from_vertical_rad, double azimuth_rad, double time_s) {
   CameraPose pose;
   pose.position = distance * Vector3d(std::sin(from_vertical_rad) * std::cos(azimuth_rad),

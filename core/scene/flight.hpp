@@ -14,16 +14,16 @@ struct CameraPose {
   double roll_rad = 0.0;  ///< About the optical axis.
 };
 
-/// How a camera moves. All paths are periodic, and have the small motions of a flying vehicle.
+/// Path of a camera. All paths are periodic and include the small motions of a flying vehicle.
 enum class Path {
-  kApproach,  ///< From `highest` down to `lowest`, drifting in from aside, and up again.
-  kOblique,   ///< At 60 degrees from the vertical, from `highest` to `lowest` away and back.
-  kOrbit,     ///< Around the pad once a period, at 45 degrees, `highest` away.
-  kDash,      ///< To and fro at `lowest`, once a second: 40 px a frame at 640 px and 30 a second.
-  kShake,     ///< Hovering at `lowest` with an airframe that trembles at 7 to 11 Hz.
-  kReenter,   ///< Over the pad and away from it, out of the picture's sides, at `lowest`.
+  kApproach,  ///< From `highest` down to `lowest` and up again, with lateral drift.
+  kOblique,   ///< At 60 degrees from the vertical, from distance `highest` to `lowest` and back.
+  kOrbit,     ///< Around the pad once a period, at 45 degrees, at distance `highest`.
+  kDash,      ///< Side to side at `lowest`, about once a second: 40 px/frame at 640 px, 30 fps.
+  kShake,     ///< Hovering at `lowest` with airframe vibration of 7 to 11 Hz.
+  kReenter,   ///< Over the pad and away at `lowest`, until it leaves the picture.
   kHover,     ///< Swaying at `lowest`.
-  kAside,     ///< From a direction of its own, at `highest` and `lowest` by turns.
+  kAside,     ///< From a given direction, alternating between `highest` and `lowest`.
 };
 
 struct Flight {
@@ -31,18 +31,18 @@ struct Flight {
   double period_s = 20.0;
   double highest = 20.0;  ///< Distance from the pad [radii].
   double lowest = 2.6;    ///< Distance from the pad [radii].
-  double reach = 1.0;     ///< Of kDash, kShake, kReenter and kAside: so many times as far aside.
-  double begins_s = 0.0;  ///< Where on the path it is at time 0.
-  double tilt_rad = 0.0;  ///< Of kAside: from the vertical, and from where.
+  double reach = 1.0;     ///< Factor on the motion of kDash, kShake, kReenter and kAside.
+  double begins_s = 0.0;  ///< Time on the path at time 0.
+  double tilt_rad = 0.0;  ///< Of kAside: view direction from the vertical, and azimuth.
   double azimuth_rad = 0.0;
   double roll_rad = 0.0;               ///< Of kAside.
-  Eigen::Vector3d aim{0.0, 0.0, 0.0};  ///< Of kAside: what it looks at [radii].
+  Eigen::Vector3d aim{0.0, 0.0, 0.0};  ///< Of kAside: the point it looks at [radii].
 };
 
-/// Where the camera is at a time [s]. Deterministic, thread-safe.
+/// Camera pose at a time [s]. Deterministic, thread-safe.
 [[nodiscard]] CameraPose pose_at(const Flight& flight, double time_s);
 
-/// From the pad's plane to pixels of the camera's ideal plane.
+/// Homography from the pad's plane to pixels of the camera's ideal plane.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const CameraPose& pose, const Camera& camera);
 
 /// The same for a pinhole. @param hfov_rad  Horizontal field of view.

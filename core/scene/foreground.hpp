@@ -7,14 +7,14 @@
 
 namespace ellipse {
 
-/// The light that reaches the sensor, row by row.
+/// The light at the sensor, row by row.
 struct LightImage {
   std::span<float> light;
   int width = 0;
   int height = 0;
 };
 
-/// A part of the picture in which the plane is seen by one homography.
+/// A part of the picture in which one homography maps the plane.
 struct Patch {
   int left = 0;  ///< [px]
   int top = 0;
@@ -23,19 +23,19 @@ struct Patch {
   Eigen::Matrix3d plane_from_image;
 };
 
-/// The sun's mirror image in a patch. @param camera  Its place over the plane [radii of the pad].
+/// Adds the sun's reflection in a patch. @param camera  Its position over the plane [pad radii].
 void add_glare(const Glare& glare,
                const Eigen::Vector3d& camera,
                const Patch& patch,
                const LightImage& image);
 
-/// More light on one side than on the other. @param gradient  As Light::gradient.
+/// Applies a linear change of the light. @param gradient  As Light::gradient.
 void add_gradient(const Eigen::Vector2d& gradient, const LightImage& image);
 
-/// Less light towards the corners. @param share  As Light::vignette.
+/// Darkens the corners. @param share  As Light::vignette.
 void add_vignette(double share, const LightImage& image);
 
-/// What is between the camera and the ground.
+/// Draws the bars in front of the camera.
 void add_bars(const Scene& scene, double time_s, const LightImage& image);
 
 }  // namespace ellipse

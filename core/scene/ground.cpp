@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSize = kGroundTileSize;
 constexpr double kExtent = 12.0;     // of the tile [radii of the pad]
-constexpr float kGrainScale = 4.0F;  // how much smaller its texels are
+constexpr float kGrainScale = 4.0F;  // ratio of the tile's texels to the grain's
 
 cv::Mat as_tile(const cv::Mat& picture) {
   if (picture.empty() || picture.type() != CV_8UC1) {
@@ -83,7 +83,7 @@ float GroundTexture::at(float x, float y, float coarseness) const {
     const float half = 0.5F * shrink;
     value += share * (bilinear(levels_[level + 1], u * half - 0.5F, v * half - 0.5F) - value);
   } else if (coarseness < 0.0F) {
-    // Seen from near, the texels are large: a finer grain lies on them.
+    // At close range the texels are large: adds a finer grain.
     const float grain = bilinear(grain_, u * kGrainScale, v * kGrainScale) - 128.0F;
     value += std::min(1.0F, -coarseness) * grain;
   }

@@ -15,25 +15,24 @@ struct Ground {
   cv::Mat picture;        ///< For kPicture: 8-bit grey, shared; covers 12 x 12 radii, repeated.
 };
 
-/// The ground's light, ready to be looked at from any distance: a tile with its smaller copies
-/// [Williams1983].
+/// The ground's texture for sampling at any distance: a tile and its mipmaps [Williams1983].
 class GroundTexture {
  public:
-  /// Throws std::invalid_argument where the picture is not 8-bit grey, or missing.
+  /// Throws std::invalid_argument if the picture is not 8-bit grey, or missing.
   GroundTexture(const Ground& ground, std::uint64_t seed);
 
   [[nodiscard]] bool is_plain() const { return levels_.empty(); }
   [[nodiscard]] double mean() const { return mean_; }
 
-  /// How coarse the ground must be looked at, where a pixel covers `extent` radii of it.
+  /// Mipmap level for pixels that cover `extent` radii of the ground.
   [[nodiscard]] static float coarseness(double extent);
 
-  /// The light of a place on the plane [radii]. Where it is not plain.
+  /// The light at a point of the plane [radii]; not for a plain ground.
   [[nodiscard]] float at(float x, float y, float coarseness) const;
 
  private:
   std::vector<cv::Mat> levels_;  // each half the size of the one before
-  cv::Mat grain_;                // lies on what is seen from near
+  cv::Mat grain_;                // added at close range
   double mean_;
   float contrast_;
   float offset_;

@@ -15,7 +15,7 @@ namespace ellipse {
 /// [Perlin1985].
 void add_noise(cv::Mat& tile, int cells, float amplitude, std::uint64_t seed);
 
-/// Draws shapes on a tile whose borders meet.
+/// Draws shapes on a seamless tile.
 class Painter {
  public:
   explicit Painter(cv::Mat& tile, std::uint64_t seed) : tile_(tile), random_(seed) {}

@@ -49,7 +49,7 @@ std::vector<cv::Point2d> arc(const cv::Point2d& center, double radius, double fr
   return points;
 }
 
-// Painted arcs turn by less than 120 degrees, so that none could pass for a circle.
+// Painted arcs turn by less than 120 degrees, so that none resembles a full circle.
 void arcs(Painter& painter, int count) {
   Random& random = painter.random();
   for (int i = 0; i < count; ++i) {
@@ -132,7 +132,7 @@ void flowers(Painter& painter, int count) {
     std::vector<cv::Point2d> outline;
     for (int k = 0; k < 180; ++k) {
       const double angle = 2.0 * kPi * k / 180.0;
-      // A notch at each petal's tip, without which it would be half an ellipse.
+      // A notch at each petal's tip; without it the petal would be half an ellipse.
       const double across = std::sin(petals * angle / 2.0);
       const double notch = 0.35 * std::exp(-across * across / 0.05);
       const double petal = std::sqrt(1.0 - across * across) * (1.0 - notch);

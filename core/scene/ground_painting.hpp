@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// What lies around the pad. Most hold what resembles an ellipse, none but the circles hold one.
+/// Ground around the pad. Most kinds resemble ellipses in places; only kCircles contains some.
 enum class GroundKind {
   kPlain,
   kAsphalt,   ///< Speckled, with cracks.
@@ -24,16 +24,16 @@ enum class GroundKind {
   kPage,      ///< Lines of straight strokes, as of print.
   kSkin,      ///< Soft, without edges.
   kPolygons,  ///< A clutter of regular polygons, of five corners and more.
-  kPicture,   ///< A picture of one's own.
+  kPicture,   ///< A picture from the caller.
 };
 
-/// Width and height of what draw_ground() gives [texels].
+/// Width and height of the tile from draw_ground() [texels].
 inline constexpr int kGroundTileSize = 1024;
 
-/// A tile of a ground whose borders meet: grey levels relative to the ground's mean, as floats.
+/// A seamless tile of a ground: grey levels relative to the ground's mean, as floats.
 [[nodiscard]] cv::Mat draw_ground(GroundKind kind, std::uint64_t seed);
 
-/// A smaller one of fine grain.
+/// A smaller seamless tile of fine grain.
 [[nodiscard]] cv::Mat draw_ground_grain(std::uint64_t seed);
 
 }  // namespace ellipse

@@ -7,23 +7,23 @@
 
 namespace ellipse {
 
-/// A picture's way into the ideal plane, block by block: in each block the lens is the homography
-/// that is exact at its four corners. Neighbours therefore meet, and at the blocks' size the rest
-/// of the distortion is below .01 px, as far out as 69 degrees from the axis at 640 x 360.
+/// Maps a picture to the ideal plane by one homography per block, which is exact at the block's
+/// four corners. The map is therefore continuous, and its residual distortion is below .01 px up to
+/// 69 degrees from the axis at 640 x 360.
 class LensMap {
  public:
   static constexpr int kBlock = 4;  ///< Pixels.
 
-  /// Allocates, and looks up each corner: O(pixels).
+  /// Allocates; maps each corner: O(pixels).
   explicit LensMap(const Camera& camera);
 
   [[nodiscard]] const Lens& lens() const { return lens_; }
 
-  /// Whether the lens shows something in the whole block.
+  /// Whether the lens maps the whole block.
   [[nodiscard]] bool is_shown(int column, int row) const;
 
-  /// To pixels of the ideal plane, up to a positive factor, from those of the picture. Of a block
-  /// that is shown. Thread-safe; allocates nothing.
+  /// Homography from pixels of the picture to those of the ideal plane, up to a positive factor.
+  /// Only for blocks with is_shown(). Thread-safe; allocates nothing.
   [[nodiscard]] Eigen::Matrix3d ideal_from_picture(int column, int row) const;
 
  private:
@@ -31,8 +31,7 @@ class LensMap {
 
   Lens lens_;
   int corners_across_;
-  std::vector<Eigen::Vector2d>
-      corners_;  // of the blocks, in the ideal plane; NaN where there is none
+  std::vector<Eigen::Vector2d> corners_;  // of the blocks, in the ideal plane; NaN if unmapped
 };
 
 }  // namespace ellipse

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSize = kGroundTileSize;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// Four to six corners at uneven distances: no ellipse covers it well.
+// Four to six corners at uneven distances: no ellipse fits it well.
 std::vector<cv::Point2d> stone(const cv::Point2d& center, double size, Random& random) {
   const int corners = 4 + random.below(3);
   const double turn = random.between(0.0, kTwoPi);

@@ -24,7 +24,7 @@ constexpr double kRimWidth = 0.12;  // of the plate [radii]
 constexpr double kHBarAt = 0.36;    // the H's upright bars, from the middle [radii]
 constexpr int kFirstHarmonic = 3;   // lower ones would move the ellipse itself
 
-// As many as the bullseye has. Made for every view: hence no vector.
+// Capacity for the bullseye. An array, since every view computes it.
 struct Radii {
   std::array<double, 5> values{};
   std::size_t count = 0;
@@ -67,7 +67,7 @@ PadPicture::PadPicture(const Pad& pad, double blur_px, std::uint64_t seed)
   if (pad_.crumple > 0.0) crumple(seed);
 }
 
-// A smooth random curve around the circle, scaled to the wanted amplitude.
+// A smooth random deviation from the circle, scaled to the given amplitude.
 void PadPicture::crumple(std::uint64_t seed) {
   Random random(seed);
   for (std::size_t k = 0; k < kHarmonics; ++k) {
@@ -136,7 +136,7 @@ PadPicture::Layers PadPicture::at(const Vector2d& pixel) const {
   return layers;
 }
 
-// Blur is linear, so what lies in what adds up exactly: a ring is a disc less a smaller disc.
+// Blur is linear, so nested discs combine exactly: a ring is a disc minus a smaller disc.
 double PadPicture::painted(const Vector2d& pixel) const {
   double ring = 0.0;
   double innermost = 0.0;
@@ -190,7 +190,7 @@ bool PadPicture::is_uniform(const Vector2d& center_px,
   if (circles_.empty()) return true;
   const double blur_reach_px = kStepReach * blur_px_;
   const double reach_px = half_px + blur_reach_px;
-  // A block's scale may change within it, hence the margin.
+  // The margin allows for a change of scale within the block.
   const double reach = 1.2 * half * reach_px / half_px;
   const double outermost =
       std::max(1.0 + pad_.crumple, pad_.plate_half_width * std::numbers::sqrt2);

@@ -11,7 +11,7 @@
 
 namespace ellipse {
 
-/// What is painted on the pad.
+/// Painted pattern of a pad.
 enum class Pattern {
   kRingX,     ///< A ring with a free-standing X inside.
   kRing,      ///< A ring alone.
@@ -22,7 +22,7 @@ enum class Pattern {
 };
 
 /// A landing pad. Lengths are in units of the painted circle's radius, levels are grey levels of
-/// the light that it sends back at gain 1.
+/// the reflected light at gain 1.
 struct Pad {
   Pattern pattern = Pattern::kRingX;
   double ring_width = 0.205;       ///< 0 to 1. Also of each of the bullseye's rings.
@@ -31,25 +31,25 @@ struct Pad {
   double plate_half_width = 1.45;  ///< The square plate under the paint; 0 = none.
   double paint_level = 55.0;
   double plate_level = 225.0;
-  double rim_level = 75.0;       ///< Of the plate's painted rim.
-  double crumple = 0.0;          ///< Largest departure of an edge from its circle, smooth; to 0.1.
-  std::vector<double> gaps_rad;  ///< Places where the ring is broken, by angle on the pad.
+  double rim_level = 75.0;  ///< Of the plate's painted rim.
+  double crumple = 0.0;     ///< Largest smooth deviation of an edge from its circle; up to 0.1.
+  std::vector<double> gaps_rad;  ///< Gaps in the ring, by angle on the pad.
   double gap_width_rad = 0.1;
 };
 
-/// Radius of the edge next inside the painted circle; nullopt where the pattern has none.
+/// Radius of the next edge inside the painted circle; nullopt if the pattern has none.
 [[nodiscard]] std::optional<double> inner_radius(const Pad& pad);
 
 /// Radii of all its circular edges, from the outermost.
 [[nodiscard]] std::vector<double> edge_radii(const Pad& pad);
 
-/// A pad in a view: how much of each of its layers reaches a pixel.
+/// A pad in a view: the share of each of its layers in a pixel.
 class PadPicture {
  public:
-  /// @param seed  Of the crumpled shape.
+  /// @param seed  Of the deformed outline.
   PadPicture(const Pad& pad, double blur_px, std::uint64_t seed);
 
-  /// Takes another view. Allocates at the first call only.
+  /// Sets the view. Allocates at the first call only.
   void look(const Eigen::Matrix3d& plane_from_image);
 
   /// Shares of the light, 0 to 1; each layer lies on the one before.
@@ -59,11 +59,11 @@ class PadPicture {
     double paint = 0.0;
   };
 
-  /// @param pixel  Of the plane's front side.
+  /// @param pixel  Must see the plane's front side.
   [[nodiscard]] Layers at(const Eigen::Vector2d& pixel) const;
 
-  /// Whether the layers are surely the same all over a block of pixels.
-  /// @param center_px, half_px  The block's middle, and from there to its farthest corner [px].
+  /// Whether the layers are certainly constant over a block of pixels.
+  /// @param center_px, half_px  The block's middle, and the distance to its farthest corner [px].
   /// @param center, half        The same on the plane.
   [[nodiscard]] bool is_uniform(const Eigen::Vector2d& center_px,
                                 double half_px,
@@ -85,11 +85,11 @@ class PadPicture {
 
   Pad pad_;
   double blur_px_;
-  std::array<double, kHarmonics> cosines_{};  // of the crumpled shape
+  std::array<double, kHarmonics> cosines_{};  // of the deformed outline
   std::array<double, kHarmonics> sines_{};
 
   Eigen::Matrix3d plane_from_image_;
-  std::vector<CircularEdge> circles_;  // from the outermost; paint and no paint in turn
+  std::vector<CircularEdge> circles_;  // from the outermost; paint and gap alternate
   std::vector<Box> bars_;
   std::vector<Wedge> gaps_;
   Box rim_{};

@@ -10,7 +10,7 @@ namespace ellipse {
 namespace {
 
 constexpr std::int64_t kUnit = kPolygonUnitsPerPx;
-constexpr std::int64_t kFine = 4096;  // parts of a unit in which edges advance from row to row
+constexpr std::int64_t kFine = 4096;  // subdivisions of a unit for the steps of edges
 
 struct Point {
   std::int64_t x = 0;
@@ -21,7 +21,7 @@ std::int64_t floor_divided(std::int64_t a, std::int64_t b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }
 
-// A side of the polygon; its ends lie in the middle of a row. In x it is as exact as its corners.
+// A side of the polygon; its ends are rounded to row centres, its x coordinates are exact.
 struct Edge {
   std::int64_t first_row = 0;
   std::int64_t end_row = 0;
@@ -45,7 +45,7 @@ Edge edge_between(const cv::Point& a, const cv::Point& b) {
   return edge;
 }
 
-// Writes a part of a row, both ends included, as far as the tile has it.
+// Writes a part of a row, both ends included, clipped to the tile.
 void write_row(
     cv::Mat& tile, std::int64_t row, std::int64_t left, std::int64_t right, float level) {
   if (row < 0 || row >= tile.rows) return;
@@ -54,8 +54,8 @@ void write_row(
   for (std::int64_t x = std::max<std::int64_t>(left, 0); x <= last; ++x) pixels[x] = level;
 }
 
-// Moves the ends of a line to the range [0, last] of one coordinate, along the line.
-// @return false where no part of it is in there.
+// Clips a line to the range [0, last] of one coordinate.
+// @return false if no part of it is inside.
 bool cut(Point& from,
          Point& to,
          std::int64_t Point::*across,
@@ -73,9 +73,8 @@ bool cut(Point& from,
   return true;
 }
 
-// The nearest pixels along a line [Bresenham1965], from the left; halves go to its beginning.
-// What leaves the tile is cut first, which may move the rest by a pixel: the pictures are those
-// that figures have been measured with.
+// The nearest pixels along a line [Bresenham1965], from the left; ties go to its beginning. Clips
+// to the tile first, which may move the rest by a pixel; kept, as published figures depend on it.
 void write_line(cv::Mat& tile, Point from, Point to, float level) {
   if (!cut(from, to, &Point::y, &Point::x, tile.rows - 1)) return;
   if (!cut(from, to, &Point::x, &Point::y, tile.cols - 1)) return;

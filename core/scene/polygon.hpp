@@ -5,13 +5,13 @@
 
 namespace ellipse {
 
-/// Corners of a polygon are given in these parts of a pixel.
+/// Units of polygon corners per pixel.
 inline constexpr int kPolygonUnitsPerPx = 16;
 
-/// Fills a polygon, its border included, in whole numbers: the same pixels on every machine and
-/// with every version of OpenCV, whose fillPoly() changed between 4.6 and 4.10.
+/// Fills a polygon, its border included, in integer arithmetic: the same pixels on every machine
+/// and with every version of OpenCV, whose fillPoly() changed between 4.6 and 4.10.
 ///
-/// @param tile     One float a pixel. What lies outside is left out.
+/// @param tile     One float per pixel. The polygon is clipped to it.
 /// @param corners  In order, in 1 / kPolygonUnitsPerPx px. May cross itself: even-odd.
 void fill_polygon(cv::Mat& tile, std::span<const cv::Point> corners, float level);
 

@@ -4,7 +4,7 @@
 
 namespace ellipse {
 
-/// A hash that is the same everywhere: SplitMix64 [Steele2014].
+/// A platform-independent hash: SplitMix64 [Steele2014].
 [[nodiscard]] constexpr std::uint64_t hash(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15U;
   x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -12,7 +12,7 @@ namespace ellipse {
   return x ^ (x >> 31U);
 }
 
-/// Random numbers that are the same everywhere.
+/// Platform-independent random numbers.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(hash(seed)) {}

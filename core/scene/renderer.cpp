@@ -19,15 +19,15 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kBlock = 8;            // pixels
-constexpr float kSkyLevel = 200.0F;  // where no ground is
-constexpr double kAllOfIt = 0.999;   // a layer that hides all beneath
-// Instants so near each other in the picture that blurred edges add up to an even ramp: within
-// .1 % at 1.6 standard deviations (the second term of the Gaussian's Fourier series).
+constexpr float kSkyLevel = 200.0F;  // above the horizon
+constexpr double kAllOfIt = 0.999;   // share from which a layer hides all beneath
+// Largest spacing of instants at which blurred edges add up to an even ramp: within .1 % at 1.6
+// standard deviations (the second term of the Gaussian's Fourier series).
 constexpr double kInstantSpacing = 1.6;
-// Mirror-like in both directions at once, a pixel of a tilted plane is seen a little coarser.
+// The mipmap is isotropic: pixels of a tilted plane need a slightly coarser level.
 constexpr double kCoarser = 1.2;
-// Rows of the plane that are seen at one time while the shutter rolls: at 40 px a frame they are
-// within .06 px of their places.
+// Rows of the plane rendered with one view under a rolling shutter: at 40 px a frame the error is
+// below .06 px.
 constexpr int kRollingRows = 2;
 
 }  // namespace
@@ -37,7 +37,7 @@ struct SceneRenderer::Block {
   int top = 0;
   int width = 0;
   int height = 0;
-  int size = 0;  // of those that the picture's border does not cut
+  int size = 0;  // of uncut blocks
   Vector2d middle_px{0.0, 0.0};
   double half_px = 0.0;  // from its middle to its corners
   bool is_in_front = true;
@@ -88,7 +88,7 @@ Truth SceneRenderer::render(double time_s, std::uint64_t frame, const MutableIma
   return target_of(true_ellipses(scene_, time_s, width_, height_));
 }
 
-// Everything that a frame is exposed to around a time.
+// Adds the light of a frame's exposure around a time.
 void SceneRenderer::add_exposure(double time_s) {
   const int instants = instants_at(time_s);
   const float weight = 1.0F / static_cast<float>(instants);
@@ -145,13 +145,13 @@ Matrix3d SceneRenderer::view_at(double time_s) const {
   return image_from_pad(pose_at(scene_.flight, time_s), camera_);
 }
 
-// How the plane's view changes from row to row while the shutter rolls.
+// The row-dependent view of the plane under a rolling shutter; nullopt without one.
 std::optional<SheetView> SceneRenderer::rolling_at(double time_s) const {
   if (scene_.sensor.readout_s == 0.0) return std::nullopt;
   return view_of(Sheet{}, scene_, camera_, time_s);
 }
 
-// How far a place of the picture moves in the picture; 0 where the lens does not show it.
+// Displacement of a point of the picture; 0 if the lens does not map it.
 double SceneRenderer::moved_px(const Matrix3d& end_from_begin, const Vector2d& picture_px) const {
   const auto moved = [&](const Vector2d& p) {
     return Vector2d((end_from_begin * p.homogeneous()).hnormalized());
@@ -162,8 +162,8 @@ double SceneRenderer::moved_px(const Matrix3d& end_from_begin, const Vector2d& p
   return end ? (end->picture_px - picture_px).norm() : 0.0;
 }
 
-// As many as the fastest of the picture's corners needs. A lens may not show them: then also its
-// middle and sides count.
+// Number for the fastest corner of the picture. With a lens, which may not map the corners, the
+// middle and the sides count too.
 int SceneRenderer::instants_at(double time_s) const {
   const double exposure_s = scene_.sensor.exposure_s;
   if (!(exposure_s > 0.0)) return 1;
@@ -181,7 +181,7 @@ int SceneRenderer::instants_at(double time_s) const {
   return static_cast<int>(std::clamp(std::ceil(farthest_px / spacing_px), 1.0, 1e6));
 }
 
-// A lens bends each patch in its own way; without one the picture is one patch.
+// With a lens, each patch has its own homography; without one the picture is one patch.
 template <class Use>
 void SceneRenderer::for_each_patch(const Matrix3d& plane_from_ideal, const Use& use) const {
   if (!lens_map_) return use(Patch{0, 0, width_, height_, plane_from_ideal});

@@ -18,36 +18,35 @@ namespace ellipse {
 
 /// Renders the frames of one scene. One object serves one thread at a time.
 ///
-/// Through a lens, edges are within .01 px of where the lens puts them. What it does not show is
-/// black, in whole blocks of 4 x 4 px. Its blur is of the picture's pixels.
+/// With a lens, edges are within .01 px of their exact positions. Pixels outside the lens's range
+/// are black, in whole blocks of 4 x 4 px. Blur is constant in pixels of the picture.
 class SceneRenderer {
  public:
-  /// Throws std::invalid_argument where the ground's picture is no good, or the lens does not show
-  /// the field of view.
+  /// Throws std::invalid_argument if the ground's picture is invalid or the lens does not cover the
+  /// field of view.
   explicit SceneRenderer(const Scene& scene);
 
-  /// The frame whose exposure has its middle at a time, with its truth at that middle.
-  /// @param frame  Its number: the noise differs from frame to frame.
-  /// Allocates only when frames grow. O(pixels), times the length of the motion's blur.
+  /// Renders the frame with its exposure centred at a time; returns the truth at that time.
+  /// @param frame  Its number: seeds the noise.
+  /// Allocates only when frames grow. O(pixels) times the length of the motion blur.
   Truth render(double time_s, std::uint64_t frame, const MutableImage& picture);
 
-  /// One instant through any view, with sheets and bars where they are at time 0, and the truth of
-  /// the pad alone. The lens, where there is
-  /// one, is that of camera_of().
+  /// Renders one instant in any view, with sheets and bars at time 0; returns the truth of the pad
+  /// alone. Uses the lens of camera_of(), if any.
   Truth render(const View& view, std::uint64_t frame, const MutableImage& picture);
 
-  /// The same, where the pad lies still on the ground, and without the glare.
+  /// The same, with the pad fixed on the ground and without glare.
   Truth render(const Eigen::Matrix3d& image_from_pad,
                std::uint64_t frame,
                const MutableImage& picture);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
-  /// The lens of the last frame, where it distorts the picture; else nullptr. Until the next frame.
+  /// The lens of the last frame, or nullptr without distortion. Valid until the next frame.
   [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
 
  private:
-  struct Block;  // some pixels, and the piece of the plane that they see
+  struct Block;  // some pixels and their footprint on the plane
 
   void start_frame(const MutableImage& picture);
   template <class Use>
@@ -80,7 +79,7 @@ class SceneRenderer {
   SensorReader sensor_;
   Camera camera_;
   std::optional<LensMap> lens_map_;  // for camera_; none for a pinhole
-  std::vector<Band> shadows_;        // in the present patch
+  std::vector<Band> shadows_;        // in the current patch
   Eigen::Matrix3d plane_from_image_;
   double plane_area_ = 0.0;  // determinant of plane_from_image_
   Eigen::Matrix3d ground_from_image_;
@@ -88,7 +87,7 @@ class SceneRenderer {
   int height_ = 0;
   std::vector<float> light_;
   std::vector<SheetPicture> sheets_;
-  std::vector<float> earlier_;  // light of the exposure's earlier instants
+  std::vector<float> earlier_;  // light of earlier instants of the exposure
 };
 
 }  // namespace ellipse

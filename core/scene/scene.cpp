@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// How far from the middle the picture's border lies, at focal length 1.
+// Distance of the picture's border from the middle at focal length 1.
 double border_place(const Distortion& distortion, double hfov_rad) {
   Camera unit{.width = 1, .height = 1, .fx = 1.0, .fy = 1.0};
   unit.lens = distortion.model;
@@ -26,7 +26,7 @@ double border_place(const Distortion& distortion, double hfov_rad) {
   return 0.5 * (right->picture_px.x() - left->picture_px.x());
 }
 
-// An outline as the lens bends it.
+// An outline distorted by the lens.
 class BentOutline {
  public:
   BentOutline(const Camera& camera, const Ellipse& ideal)
@@ -60,7 +60,7 @@ class BentOutline {
     return {anomaly_rad, end_towards(ideal), false};
   }
 
-  // Where the lens ends on the way to a point.
+  // The limit of the lens's range on the way to a point.
   [[nodiscard]] Vector2d end_towards(const Vector2d& ideal) const {
     constexpr int kHalvings = 30;
     double shown = 0.0;
@@ -75,7 +75,7 @@ class BentOutline {
     return picture_px;
   }
 
-  // Even anomalies are uneven lengths in the picture, the more the wider the lens.
+  // Bisects, since evenly spaced anomalies are unevenly spaced in the picture of a wide lens.
   void add(const Place& begin, const Place& end, int halvings) {
     const double length = (end.picture_px - begin.picture_px).norm();
     if (length > 1.0 && halvings > 0) {

@@ -13,7 +13,7 @@ namespace {
 
 using Block = Eigen::Matrix<float, 8, 8>;
 
-// The sum of four uniform bytes, nearly normal, with standard deviation 1 (147.8 is theirs).
+// The sum of four uniform bytes, nearly normal, scaled to standard deviation 1 (from 147.8).
 float nearly_normal(std::uint32_t bits) {
   const std::uint32_t pairs = (bits & 0x00ff00ffU) + ((bits >> 8U) & 0x00ff00ffU);
   const auto sum = static_cast<int>((pairs & 0xffffU) + (pairs >> 16U));
@@ -52,7 +52,7 @@ Block cosine_transform() {
   return transform;
 }
 
-// Blocks over the border repeat its last pixel.
+// Blocks beyond the border repeat its last pixel.
 Block load(const MutableImage& picture, int left, int top) {
   Block block;
   for (int y = 0; y < 8; ++y) {

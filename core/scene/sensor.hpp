@@ -16,21 +16,21 @@ struct MutableImage {
   std::ptrdiff_t stride = 0;  ///< From row to row [bytes].
 };
 
-/// What a camera makes of the light that its lens lets in.
+/// Properties of a camera's sensor and its image processing.
 struct Sensor {
   double gain = 1.0;        ///< Grey levels per unit of light; 0.14 is dusk.
   double bias = 0.0;        ///< Grey levels without light.
   double read_noise = 2.0;  ///< Standard deviation [grey levels].
   double shot_noise = 0.0;  ///< Variance per grey level of light [grey levels].
   double blur_px = 0.6;     ///< Standard deviation of the lens's blur; above 0.
-  double exposure_s = 0.0;  ///< Everything that moves in this time is blurred; 0 = an instant.
-  double readout_s = 0.0;   ///< From the first row's time to the last one's; 0 = all at once.
-  double field_s = 0.0;     ///< The odd rows are so much later than the even ones; 0 = progressive.
-  double gamma = 1.0;       ///< Exponent of the grey levels, of which 255 stays 255.
-  int jpeg_quality = 0;     ///< 1 to 100: as JPEG leaves it at this quality; 0 = no compression.
+  double exposure_s = 0.0;  ///< Causes motion blur; 0 = an instant.
+  double readout_s = 0.0;   ///< Time from the first row to the last; 0 = global shutter.
+  double field_s = 0.0;     ///< Delay of the odd rows after the even ones; 0 = progressive.
+  double gamma = 1.0;       ///< Exponent of the grey levels; 255 stays 255.
+  int jpeg_quality = 0;     ///< 1 to 100: quality of JPEG compression; 0 = none.
 };
 
-/// Turns light into grey levels. Keeps a table of the noise and no more.
+/// Converts light to grey levels. Holds only a noise table.
 class SensorReader {
  public:
   explicit SensorReader(const Sensor& sensor);
@@ -48,9 +48,9 @@ class SensorReader {
   std::array<float, 257> noise_at_level_{};
 };
 
-/// Replaces a picture by what is left of it after JPEG compression of its luma: the cosine
-/// coefficients of 8 x 8 blocks, rounded to multiples of [T.81] table K.1. No file is made.
-/// @param quality  1 to 100, as libjpeg counts.
+/// Applies the loss of JPEG compression to the luma: rounds the cosine coefficients of 8 x 8 blocks
+/// to multiples of [T.81] table K.1. Creates no file.
+/// @param quality  1 to 100, as in libjpeg.
 void compress_jpeg(const MutableImage& picture, int quality);
 
 }  // namespace ellipse

@@ -37,7 +37,7 @@ double egg_radius(double angle_rad, double amount) {
   return low;
 }
 
-// The third to the ninth harmonic: lower ones would move the ellipse itself.
+// The third to the ninth harmonic; lower ones would change the ellipse itself.
 struct Waves {
   static constexpr std::size_t kCount = 7;
   std::array<double, kCount> amplitudes{};
@@ -167,7 +167,7 @@ double ShapeEdge::mesh_coverage(const Vector2d& place,
     const double spacing_px = 1.0 / place_per_px.row(axis).norm();
     const double sigma = std::hypot(blur_px / spacing_px, softness_);
     double share = 2.0 * amount_;
-    // Wires nearer to each other than this are seen as an even grey.
+    // Wires closer to each other than this blur to an even grey.
     if (sigma < 0.4) {
       const double d = std::abs(place(axis) - std::round(place(axis)));
       const auto wire = [&](double off) {

@@ -9,18 +9,18 @@ namespace ellipse {
 
 /// The outline of a shape, in its own frame.
 enum class Outline {
-  kEllipse,       ///< The unit circle: with its place, any ellipse.
+  kEllipse,       ///< The unit circle; `place` makes it any ellipse.
   kSuperellipse,  ///< |x|^amount + |y|^amount = 1.
   kEgg,           ///< The unit circle, wider towards +x: y is multiplied by 1 + amount x.
-  kWavy,          ///< The unit circle, off by up to `amount` at random, smoothly.
+  kWavy,          ///< The unit circle with smooth random deviations up to `amount`.
   kPolygon,       ///< Through `corners`, grown by `amount` on all sides. Two corners: a stroke.
   kMesh,          ///< Wires at all whole x and y, of half the width `amount`.
 };
 
-/// How light comes back from a shape.
+/// Reflectance of a shape.
 struct Paint {
   double level = 128.0;               ///< Grey level of the light at gain 1.
-  double opacity = 1.0;               ///< Share of what lies beneath that it hides.
+  double opacity = 1.0;               ///< Share of the light beneath that it hides.
   double texture = 0.0;               ///< Amplitude of a random texture [grey levels].
   double grain = 8.0;                 ///< Cells of the texture per unit of the sheet.
   Eigen::Vector2d slope{0.0, 0.0};    ///< Relative change of the light per unit of the shape.
@@ -30,43 +30,43 @@ struct Paint {
 /// A painted shape. A value.
 struct Shape {
   Outline outline = Outline::kEllipse;
-  double amount = 0.0;  ///< As the outline says.
+  double amount = 0.0;  ///< Parameter of the outline.
   std::vector<Eigen::Vector2d> corners;
   Eigen::Affine2d place = Eigen::Affine2d::Identity();  ///< From its frame to the sheet.
-  double hole = 0.0;      ///< The shape has a hole of its own form, so many times as large.
+  double hole = 0.0;      ///< Scale of a hole of the same form; 0 = none.
   double softness = 0.0;  ///< Standard deviation of its edge's ramp [units of the shape].
   Paint paint;
   std::uint64_t seed = 1;
   bool is_listed = false;  ///< The truth lists its outline, and that of its hole, as ellipses.
-  bool is_target = false;  ///< Its outer outline is what is searched for.
+  bool is_target = false;  ///< Its outer outline is a target.
 };
 
-/// A shape that is ready to be looked at.
+/// A shape prepared for sampling.
 class ShapeEdge {
  public:
   explicit ShapeEdge(const Shape& shape);
 
-  /// Nearness to an outline in the shape's frame.
+  /// Distance to an outline in the shape's frame.
   struct Nearness {
     double distance = 0.0;               ///< Above 0 outside; to first order.
     Eigen::Vector2d gradient{1.0, 0.0};  ///< Of the distance.
   };
   [[nodiscard]] Nearness at(const Eigen::Vector2d& place) const;
 
-  /// Share of the light at a place that comes from the shape.
+  /// Share of the light at a point that comes from the shape.
   /// @param place_per_px  Derivative of the place by the picture's pixels.
   [[nodiscard]] double coverage(const Eigen::Vector2d& place,
                                 const Eigen::Matrix2d& place_per_px,
                                 double blur_px) const;
 
-  /// No edge is nearer than this; above 0 where nothing is painted, below 0 in the paint. 0 = not
-  /// known.
+  /// Signed lower bound of the distance to the next edge: above 0 outside the paint, below 0
+  /// inside; 0 = unknown.
   [[nodiscard]] double clearance(const Eigen::Vector2d& place) const;
 
-  /// A point on the outline in a direction, of all but polygons and meshes.
+  /// The point on the outline in a direction; not for polygons and meshes.
   [[nodiscard]] Eigen::Vector2d outline_at(double angle_rad) const;
 
-  /// Nothing of it is farther from the frame's origin; infinite for a mesh.
+  /// Largest distance of the shape from the frame's origin; infinite for a mesh.
   [[nodiscard]] double extent() const { return extent_; }
 
  private:
@@ -85,9 +85,9 @@ class ShapeEdge {
   double hole_;
   double softness_;
   double extent_ = 1.0;
-  double inner_ = 1.0;  // nothing of the outline is nearer to the origin
+  double inner_ = 1.0;  // smallest distance of the outline from the origin
   std::vector<Eigen::Vector2d> corners_;
-  std::vector<float> radii_;  // by direction, of outlines that are no circles
+  std::vector<float> radii_;  // by direction, of noncircular outlines
 };
 
 }  // namespace ellipse

@@ -24,7 +24,7 @@ Matrix3d moved_frame(const Sheet& sheet, double time_s) {
   return frame;
 }
 
-// The unit circle becomes the ellipse, and x stays to the right.
+// Maps the unit circle to the ellipse and keeps x to the right.
 Matrix3d upright(const Ellipse& e) {
   const Matrix2d turn = Eigen::Rotation2Dd(e.angle_rad).toRotationMatrix();
   Matrix3d image_from_circle = Matrix3d::Identity();
@@ -63,7 +63,7 @@ std::optional<Ellipse> project_ball(const Camera& camera,
                                     double radius) {
   const double rest = from_camera.squaredNorm() - radius * radius;
   if (!(rest > 0.0) || !(from_camera.z() > radius)) return std::nullopt;
-  // A ray x touches the ball with its middle in c where (x . c)^2 = (|c|^2 - r^2) |x|^2: a cone,
+  // A ray x touches the ball centred at c if (x . c)^2 = (|c|^2 - r^2) |x|^2: a cone,
   // hence a conic in the picture.
   const Matrix3d cone = from_camera * from_camera.transpose() - rest * Matrix3d::Identity();
   const Matrix3d inverse = camera.matrix().inverse();
@@ -87,7 +87,7 @@ std::optional<Matrix3d> image_from_sheet(const Sheet& sheet,
     if (!outline) return std::nullopt;
     return upright(*outline);
   }
-  // On the ground the pad's own view is exact for any camera, also for none.
+  // On the ground, the pad's homography is exact, even without a known camera.
   if (frame.row(2).isZero(0.0)) {
     Matrix3d pad_from_sheet = frame;
     pad_from_sheet.row(2) << 0.0, 0.0, 1.0;

@@ -18,9 +18,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kBlock = 8;          // pixels
-constexpr double kMargin = 1.3;    // by which the scale may change within a block
-constexpr double kOpaque = 0.5;    // a shape hides what is beneath it from this opacity on
-constexpr double kAmbient = 0.35;  // light on the side of a ball that the sun does not reach
+constexpr double kMargin = 1.3;    // largest ratio of scales within a block
+constexpr double kOpaque = 0.5;    // smallest opacity at which a shape hides others
+constexpr double kAmbient = 0.35;  // light on the shaded side of a ball
 
 // Random in [-1, 1] at the corners of a lattice, smooth between them [Perlin1985].
 double lattice_noise(const Vector2d& at, std::uint64_t seed) {
@@ -97,7 +97,7 @@ struct SheetPicture::Sample {
     const Matrix3d m = view.at_row(y);
     const Vector3d q = m * px;
     const Vector3d per_y = m.col(1) + view.per_row * px;
-    // Nearer to the sheet's horizon than the blur reaches, distances are not linear in pixels.
+    // Within the blur's reach of the sheet's horizon, distances are not linear in pixels.
     const double horizon = (kStepReach * picture.blur_px_ + 1.0) * std::hypot(m(2, 0), per_y.z());
     is_in_front = q.z() > horizon;
     if (!is_in_front) return;
@@ -129,7 +129,7 @@ Vector2d SheetPicture::to_shape(std::size_t shape, const Vector2d& seen) const {
   return shape_from_sheet_[shape] * deformation_.pattern_at(seen);
 }
 
-// Whether CircularEdge renders it, exactly.
+// Whether CircularEdge renders the shape exactly.
 bool SheetPicture::is_exact(std::size_t shape) const {
   return sheet_.shapes[shape].outline == Outline::kEllipse && deformation_.is_flat();
 }
@@ -141,7 +141,7 @@ void SheetPicture::paint(const SheetView& view, const Patch& patch, const LightI
   }
 }
 
-// The part of a patch that the shape may reach.
+// The part of a patch that the shape may cover.
 Patch SheetPicture::bounds(const SheetView& view, std::size_t shape, const Patch& patch) const {
   const double extent = edges_[shape].extent();
   if (!std::isfinite(extent) || patch.width <= kBlock) return patch;
@@ -198,7 +198,7 @@ void SheetPicture::paint_shape(std::size_t shape,
   }
 }
 
-// nullopt where the coverage differs within the block, or may differ.
+// nullopt if the coverage may vary within the block.
 std::optional<double> SheetPicture::even_coverage(std::size_t shape,
                                                   const SheetView& view,
                                                   const Patch& block) const {
@@ -219,7 +219,7 @@ std::optional<double> SheetPicture::even_coverage(std::size_t shape,
   half *= kMargin;
   const double half_px = 0.5 * std::hypot(block.width, block.height);
   const double softness = sheet_.shapes[shape].softness;
-  // The longest of a pixel's directions counts, of which a block that is cut may miss one.
+  // Uses the longest direction of a pixel's footprint, which a cut block may not contain.
   const double per_px = half / std::min(half_px, 0.5 * std::min(block.width, block.height));
   const double reach = half + kStepReach * std::hypot(blur_px_ * per_px, softness);
   const double clearance = edges_[shape].clearance(at);
@@ -291,7 +291,7 @@ std::optional<Vector2d> SheetPicture::outline_at(const SheetView& view,
   const Vector2d pattern =
       sheet_.shapes[shape].place * Vector2d(factor * edges_[shape].outline_at(angle_rad));
   const Vector3d seen = deformation_.seen_at(pattern).homogeneous();
-  // Where the shutter rolls, the row depends on the place: the rows' views differ little.
+  // With a rolling shutter the row depends on the result; iterates, as views of rows differ little.
   const int steps = view.is_rolling() ? 8 : 1;
   Vector2d px(0.0, 0.0);
   for (int i = 0; i < steps; ++i) {

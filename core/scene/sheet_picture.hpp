@@ -9,7 +9,7 @@
 
 namespace ellipse {
 
-/// A sheet in a view: paints its shapes, and tells where they are.
+/// A sheet in a view: paints its shapes and locates their outlines.
 class SheetPicture {
  public:
   /// @param lens_blur_px  Standard deviation of the lens's blur.
@@ -17,25 +17,25 @@ class SheetPicture {
 
   [[nodiscard]] const Sheet& sheet() const { return sheet_; }
 
-  /// Paints what is seen of the sheet in a rectangle of the picture; the patch's own homography is
-  /// not used.
+  /// Paints the visible part of the sheet in a rectangle of the picture; ignores the patch's
+  /// homography.
   void paint(const SheetView& view, const Patch& patch, const LightImage& image) const;
 
-  /// Whether a shape from this one on hides what is behind a place of the picture.
+  /// Whether any shape from index `from` on hides the scene behind a point of the picture.
   [[nodiscard]] bool hides(const SheetView& view,
                            const Eigen::Vector2d& px,
                            std::size_t from) const;
 
   /// The outline of a shape, or of its hole, in the picture.
   /// @param factor  1, or Shape::hole.
-  /// nullopt where it is not seen from its front side.
+  /// nullopt if its front side is not visible.
   [[nodiscard]] std::optional<Eigen::Vector2d> outline_at(const SheetView& view,
                                                           std::size_t shape,
                                                           double factor,
                                                           double angle_rad) const;
 
  private:
-  struct Sample;  // what a pixel sees of a shape
+  struct Sample;  // a pixel's position on the sheet and the shape
 
   [[nodiscard]] Patch bounds(const SheetView& view, std::size_t shape, const Patch& patch) const;
   void paint_shape(std::size_t shape,

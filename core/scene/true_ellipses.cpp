@@ -14,13 +14,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 
-// How a sheet is seen in a frame: once, or by each of two fields.
+// The views of a sheet in a frame: one, or one for each of two fields.
 struct Seen {
   SheetPicture picture;
   std::vector<SheetView> views;
 };
 
-// Enough that the ellipse through them is exact far below .01 px.
+// The error of the fitted ellipse is far below .01 px.
 constexpr int kSamples = 180;
 constexpr int kFitSteps = 4;
 constexpr std::size_t kMinVisibleSamples = 2;
@@ -31,7 +31,7 @@ std::vector<double> field_times(const Scene& scene, double time_s) {
   return {time_s - half_s, time_s + half_s};
 }
 
-// The pad's edges. They hide nothing: those inside others are on the same paint.
+// The pad's edges. They occlude nothing, since inner ones are on the same paint.
 Sheet edges_of(const Pad& pad) {
   Sheet sheet;
   for (const double radius : edge_radii(pad)) {
@@ -58,7 +58,7 @@ std::vector<Seen> look_at_all(const Scene& scene, const Camera& camera, double t
   return all;
 }
 
-// The share of an outline that is in the frame and hidden by no sheet.
+// The share of an outline inside the frame that no sheet hides.
 class Visibility {
  public:
   Visibility(const Camera& camera, const std::vector<Seen>& seen)
@@ -108,7 +108,7 @@ class Visibility {
   const std::vector<Seen>& seen_;
 };
 
-// Points of a shape's outline in the frame; empty where a part of it is not before the camera.
+// Points of a shape's outline in the frame; empty if a part of it is not in front of the camera.
 std::vector<Vector2d> outline_of(const Seen& seen, std::size_t shape, double factor) {
   std::vector<Vector2d> points;
   for (const SheetView& view : seen.views) {
@@ -122,7 +122,7 @@ std::vector<Vector2d> outline_of(const Seen& seen, std::size_t shape, double fac
   return points;
 }
 
-// The ellipse with the least sum of squared distances, and the largest distance.
+// The least-squares ellipse and its largest distance.
 std::optional<TrueEllipse> best_fit(const std::vector<Vector2d>& outline) {
   std::optional<Ellipse> ellipse = fit_ellipse(outline);
   for (int i = 0; i < kFitSteps && ellipse; ++i) {

@@ -9,7 +9,7 @@
 
 namespace ellipse {
 
-/// What a wild scene is about.
+/// Theme of a wild scene.
 enum class WildTheme {
   kPad,       ///< Landing pads of all kinds, flat, bent, on cloth, with people around.
   kEye,       ///< A pupil in an iris, lids, lashes, glints, blinks.
@@ -21,21 +21,21 @@ enum class WildTheme {
   kTextures,  ///< No ellipse: meshes, fences, foliage, stones, print, roads, rooms, closed eyes.
 };
 
-/// A random scene and the camera's format that it is made for.
+/// A random scene and its camera's format.
 struct Wild {
   Scene scene;
   WildTheme theme = WildTheme::kPad;
   int width = 640;
   int height = 360;
   double frames_per_second = 30.0;
-  /// What occurs in it: "ring", "hand", "rolling-shutter" and so on, each at most once. The
+  /// Tags of its content: "ring", "hand", "rolling-shutter" and so on, each at most once. The
   /// strings are static.
   std::vector<std::string_view> things;
 };
 
-/// A random scene. Everything in it follows from the seed alone; the first frame, at time 0, is as
-/// good as any other. All ellipses in it are listed by true_ellipses(), and it shows nothing else
-/// that is as round. Scenes of the last two themes have no ellipse.
+/// A random scene, determined by the seed alone; the first frame, at time 0, is as representative
+/// as any other. true_ellipses() lists all its ellipses, and nothing else in it is as round. Scenes
+/// of the last two themes have no ellipse.
 [[nodiscard]] Wild make_wild(std::uint64_t seed);
 
 /// The scene alone, for pictures of any size.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What may stand around, lie about or come between in any wild scene.
+// Clutter and occluders for any wild scene.
 #include <algorithm>
 #include <numbers>
 
@@ -34,7 +34,7 @@ void Draft::limb() {
                                 to + width * across,
                                 to - width * across},
                                skin));
-  // The hand: a palm and fingers, which are nowhere round.
+  // The hand: a palm and fingers, none of them round.
   const Vector2d palm = to + width * along;
   arm.shapes.push_back(
       box(palm, {1.2 * width, 1.1 * width}, std::atan2(along.y(), along.x()), skin, 0.3 * width));
@@ -136,7 +136,7 @@ void Draft::people(double distance, double height, double azimuth_rad) {
       person.shapes.push_back(stroke({1.3 * lean + 0.12 * side, -0.78}, hand, 0.06, shirt));
       person.shapes.push_back(stroke(hand, hand + Vector2d(0.03 * side, 0.03), 0.05, skin));
     }
-    // A head with hair or a cap: together no ellipse.
+    // A head with hair or a cap, which together are not an ellipse.
     const Vector2d head(1.5 * lean, -0.91);
     person.shapes.push_back(box(head, {0.055, 0.075}, 0.0, skin, 0.03));
     person.shapes.push_back(box(

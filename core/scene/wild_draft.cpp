@@ -18,7 +18,7 @@ struct Size {
   int height;
 };
 
-// Common ones several times.
+// Common sizes are listed several times.
 constexpr std::array kSizes = {Size{226, 180},
                                Size{320, 240},
                                Size{320, 240},
@@ -76,7 +76,7 @@ void Draft::choose_sensor() {
     note("gamma");
   }
   sensor.blur_px = log_between(0.4, 1.4);
-  // A contrast below three times the noise is seldom filmed.
+  // Contrasts below three times the noise are rare in footage.
   sensor.read_noise = std::min(log_between(0.4, 12.0), contrast_ / 3.0);
   if (sensor.read_noise > 6.0) note("noise");
   sensor.shot_noise = chance(0.4) ? log_between(0.01, 0.2) : 0.0;

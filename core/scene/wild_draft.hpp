@@ -16,10 +16,10 @@ struct Greys {
   double around = 0.0;
 };
 
-/// A wild scene in the making.
+/// Builder of a wild scene.
 class Draft {
  public:
-  /// The camera is there: format, sensor, field of view.
+  /// Sets the camera: format, sensor, field of view.
   Draft(std::uint64_t seed, WildTheme theme);
 
   Wild wild;
@@ -27,7 +27,7 @@ class Draft {
 
   [[nodiscard]] Scene& scene() { return wild.scene; }
   [[nodiscard]] bool chance(double probability) { return random.unit() < probability; }
-  /// In [low, high), even in the logarithm.
+  /// In [low, high), log-uniform.
   [[nodiscard]] double log_between(double low, double high) {
     return low * std::pow(high / low, random.unit());
   }
@@ -37,34 +37,34 @@ class Draft {
   [[nodiscard]] double sign() { return chance(0.5) ? 1.0 : -1.0; }
   void note(std::string_view thing);
 
-  /// The light that the camera shows as a grey level, without vignette.
+  /// The light that gives a grey level in the picture, without vignette.
   [[nodiscard]] double light(double grey) const;
   [[nodiscard]] Paint paint(double grey, double texture_greys = 0.0, double grain = 8.0) const;
-  /// Two levels with a contrast, which is drawn from 8 grey levels on; bright on dark or reverse.
+  /// Two levels with a random contrast of at least 8 grey levels; bright on dark or reverse.
   [[nodiscard]] Greys greys();
 
   [[nodiscard]] double focal_px() const;
   /// Puts a plane under the camera.
   /// @param contrast  Of its texture; 1 = about 20 grey levels.
   void ground(GroundKind kind, double grey, double contrast);
-  /// The camera looks at the world's origin, where a unit is so many pixels, from aside; the origin
-  /// is anywhere in the picture's middle part.
+  /// Points the camera at the world's origin, at a scale of `unit_px` per unit there; the origin is
+  /// anywhere in the picture's middle part.
   /// @param off_middle  0 = exactly in the middle, 1 = up to the picture's border.
   void look(double unit_px, double tilt_rad, double azimuth_rad, double off_middle = 0.7);
 
   Sheet& sheet(const Eigen::Matrix3d& frame);
-  Sheet& picture_sheet();  ///< One that belongs to the picture, in its widths.
+  Sheet& picture_sheet();  ///< A new sheet in the picture's frame [widths].
 
-  // What may be in any scene.
+  // Content for any scene.
   void limb();     ///< A hand, an arm or a leg that reaches into the picture.
-  void netting();  ///< A mesh, a net or a fence before the camera.
+  void netting();  ///< A mesh, a net or a fence in front of the camera.
   void cable();    ///< Thin lines across.
   void shadow();   ///< A shadow with straight or uneven edges on the ground.
   void weather();  ///< Uneven light.
   void people(double distance, double height, double azimuth_rad);
   void boxes(int count, double reach, double size);  ///< Lying around on the ground.
 
-  /// Defocus that shapes of this semi-minor axis stand.
+  /// Random defocus at which shapes of this semi-minor axis stay visible.
   void defocus(double semi_minor_px);
 
  private:

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kHalfWidth = 12.0;  // of the face that is shown
+constexpr double kHalfWidth = 12.0;  // of the modelled face
 
 // Grey levels of an eye in infrared light.
 struct Tones {
@@ -39,7 +39,7 @@ Tones choose_tones(Draft& draft) {
   return tones;
 }
 
-// The eyeball turns: what lies on it is seen from aside.
+// The frame of an eyeball that is turned sideways.
 Matrix3d gaze_frame(Draft& draft) {
   const double aside = draft.random.between(0.0, 0.6);
   const double direction = draft.random.between(0.0, kTwoPi);
@@ -47,7 +47,7 @@ Matrix3d gaze_frame(Draft& draft) {
   const Matrix3d turn = Eigen::AngleAxisd(aside, axis).toRotationMatrix();
   Matrix3d frame;
   frame << turn.col(0), -turn.col(1), Vector3d(0.0, 0.0, 0.0);
-  // As far as an eyeball of twice the iris's size moves it.
+  // Shift of the iris by an eyeball of twice its size.
   const Vector3d normal = turn.col(2);
   frame.col(2).head<2>() = 1.6 * normal.head<2>();
   return frame;
@@ -81,7 +81,7 @@ void add_eyeball(Draft& draft, const Tones& tones) {
   draft.note("pupil");
 }
 
-// Lamps mirrored in the cornea: they stay where they are while the eye moves.
+// Lamps reflected in the cornea; they stay in place while the eye moves.
 void add_reflections(Draft& draft) {
   Random& random = draft.random;
   Sheet& cornea = draft.sheet(level_frame({0.0, 0.0, 0.0}, 1.0, 0.0));
@@ -135,7 +135,7 @@ void add_lid(Draft& draft, const Tones& tones, double side, double opening, doub
     const double x = random.between(-2.8, 2.8);
     const Vector2d root(x, edge(x));
     const double length = random.between(0.3, 0.9);
-    // Upper lashes hang over the eye as often as they point away.
+    // Some lashes hang over the eye instead of pointing away.
     const double towards = draft.chance(0.35) ? -side : side;
     const Vector2d tip =
         root + length * Vector2d(0.25 * x + random.between(-0.3, 0.3), 0.8 * towards);

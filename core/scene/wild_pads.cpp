@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Wild scenes of landing pads, and of what resembles one but for its corners.
+// Wild scenes of landing pads, and of polygons that resemble one.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -40,7 +40,7 @@ void listed(Shape& shape, bool is_target) {
   shape.is_target = is_target;
 }
 
-// An outline that is no circle on the pad, within what passes for an ellipse.
+// Makes the pad's outlines slightly noncircular, still close to an ellipse.
 void distort(Draft& draft, std::vector<Shape>& shapes, std::size_t from) {
   if (!draft.chance(0.14)) return;
   const bool is_egg = draft.chance(0.4);
@@ -128,7 +128,7 @@ void add_disc(Draft& draft, Sheet& sheet, const Greys& greys) {
   sheet.shapes.push_back(shape);
 }
 
-// Light and dirt on the edge.
+// Glints and dirt on the edge.
 void add_glints(Draft& draft, Sheet& sheet) {
   if (!draft.chance(0.3)) return;
   draft.note("glint");
@@ -149,7 +149,7 @@ void deform(Draft& draft, Sheet& sheet) {
   if (!draft.chance(0.35)) return;
   const bool is_cloth = draft.chance(0.6);
   draft.note(is_cloth ? "folds" : "bend");
-  // Steepest change of the displacement: below one half in all.
+  // Largest slope of the displacement: below one half in total.
   double room = is_cloth ? draft.random.between(0.06, 0.3) : draft.random.between(0.08, 0.2);
   for (int i = is_cloth ? 2 + draft.random.below(3) : 1; i > 0; --i) {
     const double length =
@@ -204,7 +204,7 @@ void add_occluders(Draft& draft, double azimuth_rad) {
   if (draft.chance(0.12)) draft.netting();
 }
 
-// Corners must show: the sides of a polygon lie inside of its circle by more than its blur.
+// Keeps corners visible: the sides of a polygon are inside its circle by more than the blur.
 int most_corners(double radius_px, double blur_px) {
   int corners = 12;
   while (corners > 5 &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Wild scenes of boards, balls, large ellipses, and of places without any ellipse.
+// Wild scenes of boards, balls and large ellipses, and scenes without any ellipse.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -72,7 +72,7 @@ void make_room(Draft& draft) {
   draft.note("room");
 }
 
-// A balloon is an egg that hangs on its string, its blunt end up.
+// A balloon: an egg on a string, its blunt end up.
 Shape balloon(Draft& draft, Sheet& sheet, const Paint& paint) {
   sheet.shapes.push_back(
       stroke({0.0, 0.9}, {draft.random.between(-0.4, 0.4), 3.0}, 0.03, draft.paint(60.0)));

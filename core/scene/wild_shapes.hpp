@@ -5,7 +5,7 @@
 
 #include "core/scene/sheet.hpp"
 
-// Shapes and frames that wild scenes are made of.
+// Shapes and frames for wild scenes.
 namespace ellipse::wild {
 
 [[nodiscard]] Shape disc(const Eigen::Vector2d& center, double radius, const Paint& paint);
@@ -26,7 +26,7 @@ namespace ellipse::wild {
 [[nodiscard]] std::vector<Eigen::Vector2d> regular_corners(int count, double turn_rad);
 /// Wires of a mesh with square meshes of this size, sheared by an angle.
 [[nodiscard]] Shape mesh(double spacing, double wire_width, double shear_rad, const Paint& paint);
-/// A blot without a form: 20 % and more off any ellipse.
+/// An irregular blot that deviates from any ellipse by at least 20 %.
 [[nodiscard]] Shape blot(const Eigen::Vector2d& center,
                          double radius,
                          const Paint& paint,
@@ -40,7 +40,7 @@ void place(std::vector<Shape>& shapes, const Eigen::Vector2d& to, double scale, 
 
 /// A frame on the ground, or level above it.
 [[nodiscard]] Eigen::Matrix3d level_frame(const Eigen::Vector3d& at, double scale, double turn_rad);
-/// One that stands: x horizontal, seen from an azimuth from left to right, y down.
+/// An upright frame: x horizontal, left to right as seen from an azimuth, y down.
 [[nodiscard]] Eigen::Matrix3d upright_frame(const Eigen::Vector3d& at,
                                             double scale,
                                             double azimuth_rad);

@@ -43,7 +43,7 @@ void add_vehicle(Draft& draft, Sheet& sheet, const Vehicle& car) {
                                  0.05));
   for (const double x : {-car.at_front, car.at_front}) {
     draft.note("wheel");
-    // The body's arch lies around the wheel: a box, that nothing round is there but the wheel.
+    // The wheel arch is a box, so that only the wheel is round.
     sheet.shapes.push_back(box({x, -0.3}, {1.25 * car.wheel, 0.32}, 0.0, dark));
     Shape tyre = disc({x, -car.wheel}, car.wheel, draft.paint(random.between(45.0, 80.0)));
     Shape rim = disc({x, -car.wheel}, 0.65 * car.wheel, draft.paint(random.between(110.0, 220.0)));
