@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a frame asks of the heap once everything has its size: nothing, outside of OpenCV.
+// Heap allocations per frame in the steady state: none, outside OpenCV.
 #include "tests/bench/allocations.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::int64_t allocations_of(const Call& call) {
   return meter.allocations();
 }
 
-// What the last of some calls allocates: the others let everything grow to its size.
+// Allocations of the last of four calls; the first three let the buffers grow.
 template <class Call>
 std::int64_t steady_allocations_of(const Call& call) {
   for (int i = 0; i < 3; ++i) call();
@@ -62,7 +62,7 @@ PixelView bgr_view(const std::vector<std::uint8_t>& bytes, int width, int height
 
 class Allocations : public testing::Test {
  protected:
-  Allocations() { cv::setNumThreads(1); }  // Jobs for threads are allocated.
+  Allocations() { cv::setNumThreads(1); }  // Thread jobs allocate.
 };
 
 TEST_F(Allocations, AreCounted) {
@@ -72,7 +72,7 @@ TEST_F(Allocations, AreCounted) {
 TEST_F(Allocations, PeakIsTheMostAtATime) {
   const bench::HeapMeter meter;
   for (int i = 0; i < 3; ++i) {
-    void* volatile block = std::malloc(100'000);  // Volatile: the compiler may not leave it out.
+    void* volatile block = std::malloc(100'000);  // volatile: keeps the call
     std::free(block);
   }
   const std::int64_t peak_bytes = meter.peak_bytes();
@@ -191,7 +191,7 @@ TEST_F(Allocations, OfContourDetectorAreThoseOfOpenCv) {
   }
 }
 
-// A detector that costs nothing, so that what is left is the tracker's.
+// A detector without allocations, which leaves only those of the tracker.
 class OneEllipse final : public Detector {
  public:
   std::span<const Detection> detect(const ImageView&, const Thresholds&) override {
@@ -216,7 +216,7 @@ TEST_F(Allocations, NoneInTrackerAroundItsDetector) {
   }
 }
 
-// Scenes whose pads have lines and have none, grow, and leave the picture.
+// Scenes with pads that have lines or none, that grow, and that leave the picture.
 struct Film {
   const char* scene;
   double from_s;
@@ -266,7 +266,7 @@ TEST_F(Allocations, NoneWhereEdgesAreNotMet) {
   }
 }
 
-// The second time that it sees the same frames: the detector's buffers have their sizes.
+// Counts in the second run over the same frames, when the detector's buffers have grown.
 TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
   constexpr int kFirstFrames = 10;  // in which it locks
   TrackerSettings settings;
@@ -290,7 +290,7 @@ TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
   }
 }
 
-// A lens so weak that it shows the films as they are.
+// A lens so weak that the films need no distortion.
 TEST_F(Allocations, NoneThroughALens) {
   TrackerSettings settings;
   settings.camera = Camera::with_hfov(1.012, 640, 360);

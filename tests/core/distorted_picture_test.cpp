@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A circle that the lens distorts out of an ellipse is found, followed and told in the ideal plane.
+// Detects, tracks and reports, in the ideal plane, circles that the lens distorts to non-ellipses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Shot {
 
 class DistortedPicture : public testing::TestWithParam<const char*> {
  protected:
-  // Of the flight's lowest place, where the pad is large.
+  // At the flight's lowest point, where the pad is large.
   Shot shot(double time_s) {
     Shot shot;
     shot.truth = SceneRenderer(scene_).render(time_s, 7, shot.picture.writable());
@@ -61,7 +61,7 @@ TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
   }
 }
 
-// What the lens is for: without it the ellipse in the picture is not that of the ideal plane.
+// Without the lens, the ellipse in the picture differs from that in the ideal plane.
 TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
   ArcDetector detector;
   const Shot seen = shot(1.0);
@@ -73,7 +73,7 @@ TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
 TEST_P(DistortedPicture, ContoursAreTakenToTheIdealPlane) {
   ContourDetector detector;
   detector.set_lens(lens_);
-  scene_.flight.lowest *= 4.0;  // so small that the lens leaves it nearly an ellipse
+  scene_.flight.lowest *= 4.0;  // so small that its distorted image is nearly an ellipse
   const Shot seen = shot(1.0);
   const auto target = select_target(detector.detect(seen.picture.view(), {}));
   ASSERT_TRUE(target && seen.truth.outer_edge);

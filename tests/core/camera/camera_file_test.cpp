@@ -16,7 +16,7 @@
 namespace ellipse {
 namespace {
 
-// A temporary folder each.
+// Creates a temporary folder for each test.
 class CameraFile : public testing::Test {
  protected:
   void SetUp() override {
@@ -31,7 +31,7 @@ class CameraFile : public testing::Test {
     std::ofstream(path(name)) << text;
     return path(name);
   }
-  // What read_camera() says of a file that it refuses, without its folder.
+  // The error of read_camera() for a rejected file, without its folder.
   std::string refusal(const char* name, const std::string& text) {
     try {
       (void)read_camera(file(name, text));
@@ -211,7 +211,7 @@ TEST_F(CameraFile, RefusesALensThatIsNotOneToOne) {
   }
 }
 
-// Beyond the middle half a lens may turn back: this one does 1.5 times as far out.
+// A lens may be non-monotonic beyond the middle half; this one is, from 1.5 times as far out.
 TEST_F(CameraFile, TakesALensThatTurnsBackFartherOut) {
   const std::string text =
       with("-0.337586, 0.111344, -0.00069, -0.0003, 0.0", "-0.3, 0., 0., 0., 0.");
@@ -239,7 +239,7 @@ TEST_F(CameraFile, RefusesAKeyWithoutLetters) {
   EXPECT_EQ(refusal("a.yaml", "header:\n  sec: 17\n  :\n"), "a.yaml: is no calibration");
 }
 
-// OpenCV's parser would read beyond it.
+// OpenCV's parser would read past the end.
 TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
   for (const char* text : {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=",
                            "{\"camera_matrix\": [1, 2"}) {
@@ -247,7 +247,7 @@ TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
   }
 }
 
-// A broken line of YAML is told by its number.
+// The error names the line number of broken YAML.
 TEST_F(CameraFile, NamesTheLineOfBrokenYaml) {
   const std::string message = refusal("broken.yaml", with("data: [ 430.5", "data: [ 430.5 }"));
   EXPECT_EQ(message.rfind("broken.yaml:8: is no calibration", 0), 0U) << message;

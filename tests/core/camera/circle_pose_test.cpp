@@ -23,7 +23,7 @@ Camera camera_640() {
   return Camera::with_hfov(1.012, 640, 360);
 }
 
-// A circle whose centre is seen at a place, its normal tilted from the line of sight.
+// A circle with its centre at a given image point and its normal tilted from the line of sight.
 CirclePose circle_at(const Vector2d& place_px, double distance, double tilt_rad, double turn_rad) {
   const Camera camera = camera_640();
   const Vector3d bearing = (camera.matrix().inverse() * place_px.homogeneous()).normalized();
@@ -36,7 +36,7 @@ double angle(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// The solution that is nearer to the truth.
+// The solution closer to the truth.
 const CirclePose& nearer(const std::array<CirclePose, 2>& poses, const CirclePose& truth) {
   return angle(poses[0].normal, truth.normal) < angle(poses[1].normal, truth.normal) ? poses[0]
                                                                                      : poses[1];
@@ -98,7 +98,7 @@ TEST(CirclePoses, ThinnestEllipsesAreNoError) {
   }
 }
 
-// A point of the edge lies off by what the five parameters say, in whichever view.
+// The five parameters predict the displacement of an edge point in any view.
 TEST(RingChanges, AreTheSameChangeInAnotherView) {
   const CirclePose pose = circle_at({400.0, 120.0}, 4.0, 0.8, 0.7);
   const Matrix3d view = image_from_pad(camera_640(), pose);
@@ -132,7 +132,7 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   double sum = 0.0;
   int inside = 0;
   for (int n = 0; n < kPoses; ++n) {
-    // One after the other: compilers differ in which argument of a call they draw first.
+    // Separate statements: the evaluation order of arguments differs among compilers.
     const double x = 160.0 + 320.0 * uniform(random);
     const double y = 90.0 + 180.0 * uniform(random);
     const double distance = std::exp(std::lerp(std::log(2.0), std::log(20.0), uniform(random)));

@@ -87,7 +87,7 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
     const auto place = view.picture_from_ideal(origin + ideal[k]);
     ASSERT_TRUE(place);
     EXPECT_LT((origin + Vector2d(x[k], y[k]) - place->picture_px).norm(), 5e-4);
-    // A step along the curve stays along it; one across it moves it by so much.
+    // A step along the curve stays along it; a step across it scales by `across`.
     const Vector2d tangent = place->slope * Vector2d(-normal[k].y(), normal[k].x());
     const Vector2d bent_normal(nx[k], ny[k]);
     EXPECT_NEAR(bent_normal.norm(), 1.0, 1e-5);
@@ -108,7 +108,8 @@ TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
 
 TEST_P(EachLensView, WhatIsBentIsUnbent) {
   const LensView view(lens_);
-  const Ellipse small{250.0, 200.0, 9.0, 6.0, 0.4};  // so small that the lens keeps it an ellipse
+  const Ellipse small{
+      250.0, 200.0, 9.0, 6.0, 0.4};  // so small that its distorted image is an ellipse
   const auto seen = distorted(view, small);
   ASSERT_TRUE(seen);
   const auto back = undistorted(view, *seen);
@@ -124,7 +125,7 @@ TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
 
 TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
   const LensView view(lens_);
-  // Its picture is outside of the frame, though the ideal plane's first row goes through it.
+  // Its image is outside the frame, although the ideal plane's first row crosses it.
   EXPECT_EQ(visible_fraction(view, {320.0, 180.0, 40.0, 30.0, 0.0}, 640, 360), 1.0);
   const auto left = view.ideal_from_picture({-0.5, 180.0});
   ASSERT_TRUE(left);
@@ -146,7 +147,7 @@ TEST_P(EachLensView, EdgesMoveAsTheirRowsSay) {
   ASSERT_GT(search.samples().size(), 40U);
   constexpr double kStep = 1e-5;
   for (const EdgeSample& sample : search.samples()) {
-    // The place on the pad that is shown there.
+    // The point on the pad visible there.
     const auto ideal = view.ideal_from_picture(sample.view.point);
     ASSERT_TRUE(ideal);
     const Vector2d place = (pose.inverse() * ideal->homogeneous()).hnormalized();

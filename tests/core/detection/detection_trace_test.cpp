@@ -79,7 +79,7 @@ bool has(const Look& look, Reason reason) {
 
 class DetectionTraceOf : public testing::TestWithParam<DetectorKind> {
  protected:
-  // The first verdict for this reason; accepted where there is none.
+  // The first verdict with this reason; accepted if there is none.
   static Verdict verdict_for(Reason reason,
                              const Picture& picture,
                              const Change& change = {},
@@ -224,7 +224,7 @@ TEST_P(DetectionTraceOf, SaysThatAnotherSetHasMore) {
   EXPECT_LT(verdict.measured, verdict.limit);
 }
 
-// A detector that gives probabilities chooses by them.
+// A detector with probabilities selects by them.
 TEST(DetectionTrace, OfContoursSaysThatWhatIsAloneDoesNotCount) {
   const Look look = look_at(DetectorKind::kContours, of_scene("approach", 5.5));
   EXPECT_TRUE(has(look, Reason::kSingle));

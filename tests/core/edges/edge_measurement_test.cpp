@@ -55,7 +55,7 @@ TEST(EdgeMeasurer, TellsItsStandardDeviation) {
     for (const double blur : {0.6, 1.0, 1.5}) {
       EXPECT_NEAR(errors_over_sigma(blur, noise), 1.01, 0.11) << blur << ' ' << noise;
     }
-    // Edges so soft that noise makes several maxima of one.
+    // Edges so soft that noise splits one maximum into several.
     EXPECT_NEAR(errors_over_sigma(2.5, noise), noise < 8.0 ? 1.0 : 1.2, 0.12) << noise;
   }
 }

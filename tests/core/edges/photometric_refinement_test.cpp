@@ -38,9 +38,9 @@ Ellipse nudged(Ellipse e, Random& random, double max_px) {
   return e;
 }
 
-// The Cramer-Rao bound of a coordinate of the centre [px], for any estimate that knows neither the
-// ellipse nor the two levels nor the blur: from the Fisher information of all pixels along the edge
-// [Kay1993] 3.7, integrated around the perimeter and across it.
+// The Cramer-Rao bound of a coordinate of the centre [px] with unknown ellipse, levels and blur:
+// from the Fisher information of all pixels along the edge [Kay1993] 3.7, integrated around the
+// perimeter and across it.
 double bound_px(const Ellipse& e, double blur_px, double noise) {
   using Vector8d = Eigen::Matrix<double, 8, 1>;
   Eigen::Matrix<double, 8, 8> information = Eigen::Matrix<double, 8, 8>::Zero();

@@ -49,14 +49,14 @@ TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
     const double width = edges.outer.semi_major - edges.inner.semi_major;
     EXPECT_LT(width, outer.semi_major - inner.semi_major) << ratio;
     EXPECT_GT(width, 0.0) << ratio;
-    // Its middle stays.
+    // The middle line stays in place.
     EXPECT_NEAR(edges.outer.semi_major + edges.inner.semi_major, 14.0 * (1.0 + ratio), 1e-3);
     EXPECT_EQ(edges.outer.center(), outer.center());
   }
 }
 
 TEST(RingEdges, KeepsTheRingThatCannotBeTold) {
-  // Gradient maxima nearer than those of a line: noise. The ring has no width then.
+  // Noise puts the gradient maxima closer together than those of a line: the ring has no width.
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.0};
   const RingEdges edges = without_repulsion({outer, grown(outer, -1.5)});
   EXPECT_NEAR(edges.outer.semi_major, 13.25, 0.01);

@@ -85,7 +85,7 @@ TEST(Homography, GivesBackAChange) {
   change << 0.01, -0.02, 0.005, 0.003, -0.004, 0.02, 0.001, -0.002;
   const Matrix3d view = tilted_view();
   const Matrix3d ratio = view.inverse() * moved(view, change);
-  // To first order, but for the scale of the matrix.
+  // To first order, up to the scale of the matrix.
   const Matrix3d generator = ratio / std::cbrt(ratio.determinant());
   EXPECT_LT((change_of(generator) - change).norm(), 1e-3);
 }

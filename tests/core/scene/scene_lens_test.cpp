@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Scenes seen through a lens that distorts the picture.
+// Scenes with lens distortion.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -51,7 +51,7 @@ TEST_P(SceneLens, FieldOfViewIsFromBorderToBorder) {
   }
 }
 
-// The largest distance in the picture between the lens and its blocks of homographies.
+// The largest error in the picture of the block homographies against the lens.
 TEST_P(SceneLens, BlocksBendAsTheLensDoes) {
   const LensMap map(camera());
   double farthest_px = 0.0;
@@ -70,8 +70,8 @@ TEST_P(SceneLens, BlocksBendAsTheLensDoes) {
   RecordProperty("farthest_px", std::to_string(farthest_px));
 }
 
-// What share of a blurred edge's light says about the place of the edge, in standard deviations:
-// the inverse of the normal distribution, by bisection.
+// The distance from a blurred edge at a share of its light, in standard deviations: the inverse of
+// the normal distribution, by bisection.
 double sigmas_of(double share) {
   double low = -4.0;
   double high = 4.0;
@@ -95,10 +95,10 @@ double distance_px(const Lens& lens, const Ellipse& e, const Vector2d& pixel) {
 
 struct EdgeErrors {
   std::vector<double> all;
-  std::vector<double> at_corners;  // in the outer third of the way there
+  std::vector<double> at_corners;  // in the outer third of the picture's half diagonal
 };
 
-// By each pixel in which the edge lies: how far off its grey level is from what the truth says.
+// The error of the edge's position against the truth, from the grey level of each edge pixel.
 EdgeErrors edge_errors(const Scene& scene, const Picture& picture, const Ellipse& truth) {
   const Lens lens(camera_of(scene, picture.width, picture.height));
   const Vector2d middle(0.5 * (picture.width - 1), 0.5 * (picture.height - 1));
@@ -126,7 +126,7 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-// Discs whose outlines pass the picture's middle, its sides and its corners.
+// Discs with outlines through the picture's middle, sides and corners.
 TEST_P(SceneLens, TruthIsWhatThePixelsShow) {
   const Scene scene = plain_disc();
   const Lens lens(camera());
@@ -227,8 +227,8 @@ TEST(LensOfAScene, WithoutDistortionIsAPinhole) {
   EXPECT_EQ(lens.pixels, pinhole.pixels);
 }
 
-// All that a scene has, drawn patch by patch: textures, shadows, glare, bars, motion blur. Only the
-// coarseness of a ground near the horizon, which is even from block to block, may differ.
+// All scene content, drawn patch by patch: textures, shadows, glare, bars, motion blur. Only the
+// mipmap level of the ground near the horizon, constant within a block, may differ.
 TEST(LensOfAScene, ThatHardlyBendsShowsWhatAPinholeShows) {
   for (const NamedScene& named : scene_catalog()) {
     Scene scene = named.make(1);
@@ -277,7 +277,7 @@ TEST(LensOfAScene, HasAName) {
 TEST(LensOfAScene, RefusesAFieldOfViewThatItDoesNotShow) {
   Scene scene;
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
-  scene.hfov_rad = 110.0 * std::numbers::pi / 180.0;  // beyond where its polynomial turns back
+  scene.hfov_rad = 110.0 * std::numbers::pi / 180.0;  // beyond the turning point of its polynomial
   EXPECT_THROW((void)camera_of(scene, 640, 360), std::invalid_argument);
   EXPECT_THROW(SceneRenderer{scene}, std::invalid_argument);
 }
@@ -286,7 +286,7 @@ TEST(LensOfAScene, AnOutlineBeyondItsEndIsNotInTheFrame) {
   Scene scene;
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
   const Camera camera = camera_of(scene, 640, 360);
-  // Two thirds of this circle are farther out than the lens shows.
+  // Two thirds of this circle are beyond the lens's range.
   const Ellipse circle{320.0 + 1000.0, 180.0, 900.0, 900.0, 0.0};
   const Truth truth = truth_of(scene.pad, image_from_pad(circle), camera);
   EXPECT_GT(truth.visible_fraction, 0.05);

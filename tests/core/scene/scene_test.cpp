@@ -103,7 +103,7 @@ TEST(Scene, SeedAndFrameDecideTheNoise) {
   EXPECT_NE(a.pixels, support::rendered(scene, e, 80, 80, 3).pixels);
 }
 
-// The standard deviation of an even grey that the sensor sees.
+// The standard deviation of a uniform grey after the sensor.
 double measured_noise(const Sensor& sensor, double light) {
   Scene scene = support::plain_ring();
   scene.ground.level = light;
@@ -211,7 +211,7 @@ TEST(Renderer, GlareSaturatesAndFadesAway) {
   EXPECT_EQ(picture.at(2, 2), 200);
 }
 
-// How the ground beneath a pad that has moved on it compares with the same ground seen there.
+// Compares the ground beneath a moved pad with the same ground under a moved camera.
 TEST(Renderer, TheGroundPassesBeneathAPadThatMoves) {
   Scene scene = scene_by_name("approach");
   scene.pad.pattern = Pattern::kNone;
@@ -384,9 +384,9 @@ struct Fingerprint {
   std::uint64_t value;
 };
 
-// On Debian 12 and 13, with OpenCV 4.6 and 4.10, whatever instructions OpenCV and the C library
-// choose for the processor. Whoever changes a scene changes every figure that was measured with it:
-// say so in CHANGELOG.md.
+// Equal on Debian 12 and 13, with OpenCV 4.6 and 4.10, for any instruction set that OpenCV and the
+// C library select. Changing a scene changes every figure measured with it: note it in
+// CHANGELOG.md.
 constexpr Fingerprint kFingerprints[] = {
     {"approach", 0xf2d325fb58e82ca3U},
     {"oblique", 0xae3bf7adc26f972aU},

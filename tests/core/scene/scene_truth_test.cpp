@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The truth is what the picture shows: an estimate that shares nothing with the renderer, fitted to
-// the grey levels around the edges, finds the ellipses that the truth gives.
+// Checks the truth against the picture: an estimate independent of the renderer, fitted to the grey
+// levels around the edges, finds the true ellipses.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -82,7 +82,7 @@ TEST(Sheet, AnUprightSheetStandsOnTheGround) {
   // Its foot is in the origin, which the camera looks at.
   EXPECT_NEAR(e.cx, 159.5, 0.5);
   EXPECT_NEAR(e.cy + half_extent(e).y(), 119.5, 1.0);
-  // Seen from 1.2 rad off the vertical, it is nearly as high as wide, and above the origin.
+  // From 1.2 rad off the vertical, its image is nearly as high as wide, and above the origin.
   EXPECT_NEAR(half_extent(e).y() / half_extent(e).x(), 1.0, 0.1);
   EXPECT_LT(e.cy, 100.0);
 }

@@ -23,7 +23,7 @@ Picture render(const Wild& wild, std::uint64_t frame = 0, double time_s = 0.0) {
   return picture;
 }
 
-// A shape of a wild scene alone on an even ground, seen by the same camera without its faults.
+// A single shape of a wild scene on a uniform ground, by the same camera with an ideal sensor.
 Wild alone(const Wild& wild, const Sheet& sheet, const Shape& shape) {
   Wild one = wild;
   one.scene.ground.kind = GroundKind::kPlain;
@@ -38,7 +38,7 @@ Wild alone(const Wild& wild, const Sheet& sheet, const Shape& shape) {
   Shape& only = one.scene.sheets[0].shapes[0];
   only.paint = Paint{one.scene.pad.paint_level};
   only.softness = 0.0;
-  // The sky is no even ground.
+  // The sky is not uniform ground.
   one.scene.flight.tilt_rad = std::min(wild.scene.flight.tilt_rad, 1.0);
   one.scene.sheets[0].spin_rad_s = 0.0;
   for (Fold& fold : one.scene.sheets[0].folds) fold.shade = 0.0;
@@ -51,7 +51,7 @@ bool is_within(const Ellipse& e, const Wild& wild, double margin_px) {
          e.cy < wild.height - half.y();
 }
 
-// Calls use(lone shape, its ellipses) for listed shapes that are whole in the picture.
+// Calls use(lone shape, its ellipses) for listed shapes that are entirely in the picture.
 template <class Wanted, class Use>
 void for_lone_shapes(int count, const Wanted& is_wanted, const Use& use) {
   int found = 0;
@@ -104,7 +104,7 @@ double bilinear(const Picture& picture, const Eigen::Vector2d& p) {
                    p.y() - y);
 }
 
-// How far the outline lies outside of an ellipse along its normals, by its half-way grey level.
+// Distance of the outline outside an ellipse along its normals, at the mid grey level.
 std::vector<double> offsets_from(const Ellipse& e, const Picture& picture, double reach_px) {
   std::vector<double> offsets;
   walk_perimeter(e, [&](const PerimeterStep& step) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
-// Says the same of every outline.
+// Returns the same odds for every outline.
 class CountingDetector final : public Detector {
  public:
   std::span<const Detection> detect(const ImageView&, const Thresholds&) override { return {}; }

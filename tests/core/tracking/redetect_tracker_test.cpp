@@ -145,8 +145,8 @@ TEST_F(ScriptedRedetectTracker, FollowsALowerLimitOfTheScale) {
 }
 
 TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
-  // Still pictures, so that only scale and region change from frame to frame; several places, so
-  // that the grain of the pixels averages away and what is left is the compensation.
+  // Still pictures, so that only scale and region change from frame to frame; several positions, so
+  // that pixel quantization averages out and only the compensation remains.
   Scene scene = plain_ring();
   scene.sensor.read_noise = 0.0;
   scene.sensor.blur_px = 2.0;

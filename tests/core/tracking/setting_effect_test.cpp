@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the matrix of settings claims, held against what the tracker does.
+// Checks the documented effect of each setting against the tracker's behaviour.
 #include "core/tracking/setting_effect.hpp"
 
 #include <gtest/gtest.h>
@@ -40,8 +40,8 @@ Sequence sequence_of(const char* name, double start_s) {
   return frames;
 }
 
-// A target that is far, one that is near and leaves the scale, edges that leave their ellipse, and
-// one that other things hide.
+// A distant target, a near one that changes the scale, one with deformed edges, and one that is
+// occluded.
 const std::vector<Sequence>& sequences() {
   static const std::vector<Sequence> kSequences = {sequence_of("approach", 1.0),
                                                    sequence_of("approach", 6.5),
@@ -50,7 +50,7 @@ const std::vector<Sequence>& sequences() {
   return kSequences;
 }
 
-// All numbers of what a tracker says of a sequence.
+// All numeric outputs of a tracker on a sequence.
 using Answers = std::vector<double>;
 
 void add(Answers& answers, const Ellipse& e) {
@@ -89,7 +89,7 @@ Answers answers_to(const Sequence& frames, const TrackerSettings& settings, int 
   return answers;
 }
 
-// Settings that act only beside others: a focal length.
+// Settings that act only with others: a focal length.
 TrackerSettings base_for(const std::string& name, DetectorKind detector, TrackingMode tracking) {
   TrackerSettings settings;
   settings.detector = detector;
@@ -100,7 +100,7 @@ TrackerSettings base_for(const std::string& name, DetectorKind detector, Trackin
   return settings;
 }
 
-// With each of some values of a setting, from one end of its range to the other.
+// Settings with several values of one setting over its whole range.
 std::vector<TrackerSettings> variants_of(const std::string& name, const TrackerSettings& base) {
   std::vector<TrackerSettings> variants;
   const auto add_if_valid = [&](const std::string& value) {
@@ -109,7 +109,7 @@ std::vector<TrackerSettings> variants_of(const std::string& name, const TrackerS
     try {
       variant.validate();
     } catch (const std::invalid_argument&) {
-      return;  // on the wrong side of its pair
+      return;  // conflicts with the other setting of its pair
     }
     if (variant != base) variants.push_back(variant);
   };
@@ -186,7 +186,7 @@ TEST_P(SettingEffectOf, IsWhatTheTrackerDoes) {
   }
 }
 
-// The reason for elsewhere_above, on every scene once a second.
+// Justifies elsewhere_above, on every scene once a second.
 TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
   const auto arcs = make_detector(DetectorKind::kArcs);
   Thresholds thresholds;
@@ -207,7 +207,7 @@ TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
   EXPECT_GT(count, 200);
 }
 
-// A search that the element makes coarser under load stops at max-scale.
+// The element coarsens the search under load, up to max-scale.
 TEST(SettingEffect, OfMaxScaleIsThereUnderLoad) {
   EXPECT_STREQ(effect_of("max-scale").otherwise, "max-processing-time");
   for (const DetectorKind detector : kDetectors) {

@@ -13,7 +13,7 @@ namespace ellipse {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMemory_s = 0.3;  // as measured on footage
+constexpr double kMemory_s = 0.3;  // measured on footage
 
 TEST(TargetOdds, BelieveAFirstFrameTheLessTheLongerNoTargetWasThere) {
   TargetOdds unknown;

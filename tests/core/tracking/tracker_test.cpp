@@ -144,7 +144,7 @@ TEST(Tracker, TheSameFramesGiveTheSameTargets) {
 
 constexpr std::int64_t kFrameNs = 33'333'333;
 
-// The darker of two pictures: paint of either on one bright ground.
+// The pixel-wise minimum of two pictures: the paint of both on one bright ground.
 Picture both(const Picture& a, const Picture& b) {
   Picture result = a;
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
@@ -153,7 +153,7 @@ Picture both(const Picture& a, const Picture& b) {
   return result;
 }
 
-// Pictures of one pad at a place that moves, frame after frame.
+// Pictures of one pad that moves from frame to frame.
 class Film {
  public:
   explicit Film(const Scene& scene) : scene_(scene) {}
@@ -195,7 +195,7 @@ TEST(FollowingTracker, TellsItsState) {
   EXPECT_EQ(tracker.state(), TrackerState::kSearching);
 }
 
-// Half a disc alone may be anything; the more of it comes into view, the surer it is.
+// Half a disc alone is ambiguous; the probability grows as more of it becomes visible.
 TEST(FollowingTracker, ConfirmsOverFrames) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
@@ -216,7 +216,7 @@ TEST(FollowingTracker, ConfirmsOverFrames) {
   EXPECT_GE(target->probability, 0.98);
 }
 
-// A hexagon in the place of a disc has most of its edges within reach of the disc's.
+// A hexagon in place of a disc has most of its edges within reach of the disc's outline.
 TEST(FollowingTracker, GivesUpWhatIsNoEllipseAnyMore) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
@@ -260,7 +260,7 @@ TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {
   const auto back = tracker.process(film.at(25).view(), 25 * kFrameNs);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->id, 1U);
-  // Gone for longer it was lost: what comes then is another one.
+  // After a longer absence the target is lost; the next one gets a new id.
   for (int frame = 26; frame < 60; ++frame) {
     EXPECT_FALSE(tracker.process(film.empty().view(), frame * kFrameNs)) << frame;
   }

@@ -92,7 +92,7 @@ TEST(ArcDetector, FindsCrumpledRings) {
   }
 }
 
-// Dark discs in rows, each at another place between the pixels.
+// Dark discs in rows, each at a different sub-pixel position.
 Picture board_of_discs(int columns, int rows, double radius) {
   const int pitch = static_cast<int>(3.0 * radius);
   Picture picture(columns * pitch, rows * pitch);

@@ -27,10 +27,10 @@ Thresholds tracking() {
   return t;
 }
 
-// A target 12 px in radius is drawn with a ring 2.5 px wide, whose edges push each other apart.
+// In a target of 12 px radius the ring is 2.5 px wide; blur drives its gradient maxima apart.
 constexpr double kFound = 0.9;
 
-// The best match with the outer edge among all that is found.
+// The detection closest to the outer edge.
 double best_iou(const Picture& picture, const Ellipse& truth, const Thresholds& thresholds) {
   ContourDetector detector;
   double best = 0.0;
@@ -162,7 +162,7 @@ TEST(ContourDetector, TellsTheEdgeThresholdsThatItChose) {
     return detector.edge_thresholds();
   };
   EXPECT_NEAR(of_noise(12.0).high / of_noise(6.0).high, 2.0, 0.15);
-  EXPECT_EQ(of_noise(0.0).high, 1.0);  // never below the steps of rounding
+  EXPECT_EQ(of_noise(0.0).high, 1.0);  // never below quantization noise
   EXPECT_LT(of_noise(6.0).low, of_noise(6.0).high);
   Thresholds asked;
   asked.edge_low = 3.0;
@@ -265,7 +265,7 @@ TEST(TargetSelection, WhileTrackingOnlyWhatCanBeTheSame) {
   EXPECT_FALSE(select_target(found, Ellipse{160.0, 100.0, 38.0, 30.0, 0.0}));
   EXPECT_FALSE(select_target(found, Ellipse{100.0, 100.0, 90.0, 80.0, 0.0}));
   EXPECT_FALSE(select_target(found, Ellipse{100.0, 100.0, 15.0, 12.0, 0.0}));
-  // Nor does a larger one come in as a member of a smaller one's set.
+  // Nor is a larger one accepted as a member of a smaller one's set.
   const std::vector<Detection> set = {{{100.0, 100.0, 25.0, 24.0, 0.0}, 1.0, 1.0, 100.0},
                                       {{100.0, 100.0, 19.0, 18.0, 0.0}, 1.0, 1.0, 100.0}};
   EXPECT_EQ(select_target(set, Ellipse{100.0, 100.0, 10.0, 9.0, 0.0})->ellipse.semi_major, 19.0);

@@ -81,7 +81,7 @@ TEST_P(LearnCircles, FindsAllOfThemInBothPolarities) {
       const PadCircle& circle = model->circles[i];
       EXPECT_NEAR(circle.radius, GetParam().radii[i], 0.01) << is_bright << i;
       EXPECT_EQ(circle.is_bright_outside, (i % 2 == 0) != is_bright) << i;
-      // The lens leaves less of it.
+      // Blur reduces it.
       EXPECT_NEAR(circle.contrast, 0.75 * contrast, 0.2 * contrast) << is_bright << i;
     }
   }
@@ -127,7 +127,7 @@ TEST(LearnCirclesFrom, AThinRingsOuterEdge) {
 }
 
 TEST(LearnCirclesFrom, AGivenRingRatioWins) {
-  // Too coarse to tell that it is a ring.
+  // Too coarse to resolve the ring.
   Scene scene = scene_of(Pattern::kRing, false);
   scene.pad.ring_width = 0.06;
   const Ellipse small{160.0, 120.0, 14.0, 12.0, 0.3};
@@ -139,7 +139,7 @@ TEST(LearnCirclesFrom, AGivenRingRatioWins) {
   EXPECT_EQ(given->circles[1].radius, 0.94);
   EXPECT_TRUE(given->circles[1].is_given);
   EXPECT_NE(given->circles[1].is_bright_outside, given->circles[0].is_bright_outside);
-  // Where it can be told, it is not doubled.
+  // A resolved ring does not get a second inner circle.
   const Picture large = rendered(scene_of(Pattern::kRing), kPad);
   const auto model = learn_circles(large.view(), image_from_pad(kPad), kInner + 0.004);
   ASSERT_TRUE(model);
@@ -173,7 +173,7 @@ TEST(LearnCirclesFrom, NothingFromAnEllipseBelowAPixel) {
 
 // -- LineLearner
 
-// Whether a place is on the strokes inside the ring, by the numbers of Pad.
+// Whether a point is on the strokes inside the ring, by the dimensions of Pad.
 bool is_on_mark(Pattern pattern, const Vector2d& place) {
   const Pad pad;
   const double half_width = 0.5 * pad.mark_width;
@@ -271,7 +271,7 @@ TEST(LineLearner, ReplacesTheLinesOfBefore) {
   EXPECT_TRUE(learned.model.lines.empty());
 }
 
-// Each part is of another frame, in which the pad is elsewhere.
+// Each part is from a different frame, with the pad at another position.
 TEST(LineLearner, PutsThePadTogetherFromFramesInWhichItMoves) {
   const Learned at_once(scene_of(Pattern::kRingX));
   Learned in_motion(scene_of(Pattern::kRingX));
@@ -302,7 +302,7 @@ TEST(LineLearner, KeepsTheLongestOfMany) {
   for (const PadLine& line : learned.model.lines) {
     shortest = std::min(shortest, (line.to - line.from).norm());
   }
-  // The ones in the middle are left out.
+  // The middle ones are omitted.
   EXPECT_GT(shortest, 30.0 / 90.0 - 0.04);
 }
 
@@ -438,7 +438,7 @@ TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
   covariance(0, 0) = covariance(1, 1) = std::pow(0.05, 2);  // 3 px
   EXPECT_GT(met_at_sides(covariance, 12.0), 10);
   EXPECT_EQ(met_at_sides(covariance, 4.0), 0);
-  // No covariance can be like this, but for rounding.
+  // Only rounding can produce such a covariance.
   covariance = -HomographyCovariance::Identity();
   EXPECT_EQ(met_at_sides(covariance, 12.0), 0);
 }
@@ -470,7 +470,7 @@ TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
 }
 
 TEST(EdgeSearch, StaysInsideLargePictures) {
-  // The steps along a normal are added up in floats, which are coarse down there.
+  // Steps along a normal accumulate in floats, which are coarse at large coordinates.
   Picture picture(31, 12'000, 200);
   for (int y = 11'960; y < 12'000; ++y) {
     for (int x = 0; x < 31; ++x) picture.at(x, y) = 40;
@@ -512,7 +512,7 @@ HomographyPrior weak_prior() {
   return prior;
 }
 
-// A ring, looked for where a change would have it.
+// A ring, searched at a position displaced by a change.
 struct Looked {
   explicit Looked(const HomographyChange& off, double reach_px = 10.0)
       : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
@@ -552,7 +552,7 @@ TEST(SolvePose, TellsHowWellItKnows) {
   const HomographyCovariance fine = at(0.5) - weak_prior().information;
   const HomographyCovariance coarse = at(1.0) - weak_prior().information;
   EXPECT_NEAR(fine(2, 2) / coarse(2, 2), 4.0, 1e-4);
-  // Rings do not tell how they are turned.
+  // Rings carry no information on their rotation.
   EXPECT_LT(fine(5, 5), 1e-3 * fine(2, 2));
 }
 
@@ -641,7 +641,7 @@ TEST(Support, TellsTheLight) {
     search.look(picture.view(), gain, 4.0);
     const HomographySupport support =
         support_of(search.samples(), HomographyChange::Zero(), 1.5, 2);
-    // Circles are learned from levels farther apart than those that a sample compares.
+    // Circles are learned from levels at larger distances than those that a sample compares.
     EXPECT_NEAR(support.gain / gain, 1.0, 0.2) << gain;
   }
   EXPECT_EQ(support_of({}, HomographyChange::Zero(), 1.5, 1).coverage, 0.0);
@@ -673,7 +673,7 @@ TEST(CoarseSearch, FindsAPadThatIsARadiusAwayAndOfAnotherSize) {
         EXPECT_NEAR(found->semi_major / truth.semi_major, 1.0, 0.12) << angle << ' ' << size;
       }
     }
-    // Half a cell to no side in particular.
+    // The error is up to half a cell, without bias.
     EXPECT_LT((sum / 15.0).norm(), 0.03 * e.semi_major);
   }
 }

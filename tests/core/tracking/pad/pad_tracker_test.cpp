@@ -135,12 +135,12 @@ TEST(PadTracker, LocksOnAnotherPadAfterOne) {
   ASSERT_TRUE(tracker.lock(whole(frame_of(other, disc)), other));
   const auto track = tracker.track(whole(frame_of(other, disc, 9)), 1.0);
   ASSERT_TRUE(track && track->is_visible);
-  // What was learned of the first one is not missed.
+  // Edges learned from the first target are not expected on the second.
   EXPECT_GT(track->coverage, 0.95);
   EXPECT_LT(max_difference_px(track->ellipse, other), 0.15);
 }
 
-// To and fro, once in 30 frames, at up to this speed.
+// Back and forth with a period of 30 frames, at up to this speed.
 Ellipse dashing(int i, double px_per_frame, double radius_px) {
   const double swing = 30.0 * px_per_frame / (2.0 * std::numbers::pi);
   const double at = std::cos(2.0 * std::numbers::pi * i / 30.0);
@@ -333,7 +333,7 @@ TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
     if (!track || !track->is_visible) continue;
     ++seen;
     const double off_px = (track->ellipse.center() - truth.outer_edge->center()).norm();
-    // With nothing of the ring in view the camera may look beside the centre.
+    // With the ring out of view, the camera may aim off the centre.
     const double most = truth.visible_fraction > 0.0 ? 0.05 : 0.1;
     EXPECT_LT(off_px / truth.outer_edge->semi_major, most) << i;
   }
@@ -441,7 +441,7 @@ TEST(PadTracker, SurvivesEmptyAndTinyWindows) {
     const auto track = tracker.track(part(picture, region), 1.0);
     ASSERT_TRUE(track) << size;
     EXPECT_FALSE(track->is_visible) << size;
-    // And finds it again.
+    // Then recovers it.
     const auto again = tracker.track(whole(picture), 1.0);
     ASSERT_TRUE(again && again->is_visible) << size;
     EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3) << size;
