@@ -8,7 +8,7 @@
 namespace ellipse {
 namespace {
 
-// Lengths as they are where pixels are smaller by `scale`.
+// Converts lengths to pixels that are smaller by `scale`; other units stay.
 Verdict magnified(Verdict verdict, int scale) {
   if (reason_info(verdict.reason).unit != std::string_view("px")) return verdict;
   verdict.measured *= scale;

@@ -20,80 +20,80 @@ struct TracedPoint {
   int y = 0;
 };
 
-/// Points in a row: [begin, end) of TracedPass::points.
+/// Consecutive points: [begin, end) of TracedPass::points.
 struct TracedPiece {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
-/// One look of a detector at a picture: its stages, in pixels of what was looked at.
+/// The stages of a detector's pass at one scale, in pixels of the reduced picture.
 struct TracedPass {
-  Rect region;            ///< What was looked at [px of the frame]; `scale` times as large.
-  int scale = 1;          ///< Pixels of the frame in one of the pass, each way.
+  Rect region;            ///< The searched region [px of the frame].
+  int scale = 1;          ///< Frame pixels per pixel of the pass, in each direction.
   int width = 0;          ///< [px]
   int height = 0;         ///< [px]
-  double edge_low = 0.0;  ///< The thresholds of edges as they were used [grey levels / px].
+  double edge_low = 0.0;  ///< Edge thresholds in use [grey levels / px].
   double edge_high = 0.0;
-  std::vector<std::uint8_t> luma;   ///< What was looked at, row by row.
+  std::vector<std::uint8_t> luma;   ///< The input picture, row by row.
   std::vector<std::uint8_t> edges;  ///< The same size: 255 on a thinned edge, else 0.
   std::vector<TracedPoint> points;
   /// `contours`: the contours. `arcs`: the chains of gradient maxima.
   std::vector<TracedPiece> chains;
-  /// `contours`: the parts of contours between their corners, where these were tried. `arcs`: the
-  /// best arcs, of which the guesses are made.
+  /// `contours`: the parts of contours between corners, if these were tried. `arcs`: the best
+  /// arcs, which form the candidates.
   std::vector<TracedPiece> arcs;
 };
 
-/// Something that was taken for an ellipse, and what became of it.
+/// A candidate and its verdict.
 struct TracedCandidate {
   std::size_t pass = 0;
-  std::vector<TracedPiece> pieces;  ///< What it was made of: one or two chains or arcs of its pass.
-  std::optional<Ellipse> ellipse;   ///< As it was judged [px of the frame].
+  std::vector<TracedPiece> pieces;  ///< Its source: one or two chains or arcs of its pass.
+  std::optional<Ellipse> ellipse;   ///< The judged ellipse [px of the frame].
   Verdict verdict;                  ///< Lengths in px of the frame.
-  double contour_overlap = 0.0;     ///< [Keipour2021] Eq. (1); of what was found only.
-  double ellipse_overlap = 0.0;     ///< [Keipour2021] Eq. (2); of what was found only.
-  double score = 0.0;               ///< As in Detection; of what was found only.
-  double probability = 0.0;         ///< That it is an ellipse; 0 where nothing was measured.
-  Features features{};              ///< What that was computed from.
-  Features contributions{};         ///< What each of them adds to the log odds.
-  bool is_target = false;           ///< By select_target().
+  double contour_overlap = 0.0;     ///< [Keipour2021] Eq. (1); detections only.
+  double ellipse_overlap = 0.0;     ///< [Keipour2021] Eq. (2); detections only.
+  double score = 0.0;               ///< As in Detection; detections only.
+  double probability = 0.0;         ///< Of being an ellipse; 0 if not measured.
+  Features features{};              ///< Inputs of the probability.
+  Features contributions{};         ///< Term of each feature in the log odds.
+  bool is_target = false;           ///< Chosen by select_target().
 };
 
-/// What a detector saw in one picture, step by step, and why it refused what it refused: for
-/// people who calibrate its thresholds, see Detector::set_trace(), Tracker::set_trace().
+/// Records a detector's stages on one picture and the verdict on each candidate, for calibrating
+/// thresholds; see Detector::set_trace(), Tracker::set_trace().
 ///
-/// The tests themselves write down what they say; none is made a second time. Allocates as it
-/// grows. One object serves one thread at a time.
+/// Holds the verdicts of the detector's own tests; no test runs twice. Allocates as it grows. One
+/// object serves one thread at a time.
 class DetectionTrace {
  public:
-  /// The last one is that which the detections come from. `arcs` looks at half the size first.
+  /// In order of the search. `contours` makes one pass; `arcs` one per scale, half the size first.
   [[nodiscard]] std::span<const TracedPass> passes() const { return passes_; }
   [[nodiscard]] std::span<const TracedCandidate> candidates() const { return candidates_; }
 
-  // What follows is for those who detect.
+  // For detectors and trackers only.
 
   void clear();
   TracedPass& begin_pass(const ImageView& luma, int scale);
   [[nodiscard]] TracedPass& pass() { return passes_.back(); }
 
   /// @param ellipse, verdict  In pixels of the pass.
-  /// @return The candidate's number.
+  /// @return The candidate's index.
   int add(std::span<const TracedPiece> pieces,
           const std::optional<Ellipse>& ellipse,
           const Verdict& verdict);
-  /// What was measured of it, after it was brought to the edges [px of the picture].
+  /// Records the ellipse fitted to the edges [px of the picture], its features and probability.
   void measure(int candidate,
                const Ellipse& ellipse,
                const Features& features,
                const EvidenceTable& table);
-  /// A later test has the last word, in pixels of the picture. Does nothing for candidate -1.
+  /// Replaces the verdict after a later test [px of the picture]. Does nothing for candidate -1.
   void revise(int candidate, const Verdict& verdict);
-  /// What is found in the end [px of the picture]; anything else was crowded out.
+  /// Records the final detections [px of the picture]; other accepted ones become kCrowdedOut.
   void report(std::span<const Detection> detections);
-  /// Does nothing for candidate -1.
+  /// Marks the target. Does nothing for candidate -1.
   void choose(int candidate);
-  /// All that is said in pixels of the picture becomes pixels of the frame that it is a region of,
-  /// reduced by `scale`; ellipses, found in the ideal plane, are distorted as the frame shows them.
+  /// Converts all from the picture, a region of the frame reduced by `scale`, to pixels of the
+  /// frame; distorts the ellipses, which are in the ideal plane.
   void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
 
  private:

@@ -9,10 +9,10 @@ namespace ellipse {
 
 enum class DetectorKind {
   kContours,  ///< [Keipour2021] Algorithm 1.
-  kArcs,      ///< Arcs of edges, fitted together.
+  kArcs,      ///< Ellipses fitted to single arcs and pairs of arcs.
 };
 
-/// Their nicks, in their order.
+/// Nicks in the order of DetectorKind.
 [[nodiscard]] std::span<const char* const> detector_nicks();
 
 [[nodiscard]] std::unique_ptr<Detector> make_detector(DetectorKind kind);

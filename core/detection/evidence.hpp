@@ -10,51 +10,50 @@
 
 namespace ellipse {
 
-/// ln(p / (1 - p)). Finite for 0 and 1 too, so that sums are: -27.6 and 27.6.
+/// ln(p / (1 - p)). Clamped, so that 0 and 1 give the finite values -27.6 and 27.6.
 [[nodiscard]] inline double log_odds(double probability) {
   const double p = std::clamp(probability, 1e-12, 1.0 - 1e-12);
   return std::log(p / (1.0 - p));
 }
 
-/// ln(p / (1 - p)) = log_odds.
+/// Inverse of ln(p / (1 - p)).
 [[nodiscard]] inline double probability_of(double log_odds) {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-/// What is measured along a candidate's outline. Each is a number that grows or falls with the
-/// odds of an ellipse.
+/// Measurements along a candidate's outline: the inputs of the logistic regression.
 enum class Feature : std::size_t {
-  kTurnSupport,  ///< Share of the outline's turn inside the picture that has edges on it, 0 to 1.
+  kTurnSupport,     ///< Share of the outline's turn inside the picture matched by edges, 0 to 1.
   kDirectionError,  ///< ln of the median angle between the gradient and the normal [rad].
-  kCoverage,        ///< ln of turn support x (1 - longest part of the perimeter without an edge).
+  kCoverage,        ///< ln of turn support x (1 - longest gap between edges, as a share).
   kLength,          ///< ln(1 + length of the outline inside the picture) [px].
   kDeviation,       ///< ln of the RMS distance of the edges from the outline [radii].
   kRadius,          ///< ln of the radius sqrt(ab) [px].
-  kContrast,        ///< ln of the mean gradient over the noise.
-  kStraight,        ///< Share of edges that do not turn with the outline, 0 to 1.
+  kContrast,        ///< ln of the mean gradient over the gradient's noise.
+  kStraight,        ///< Share of edges whose gradient does not turn with the outline, 0 to 1.
 };
 inline constexpr std::size_t kFeatures = 8;
 
 using Features = std::array<double, kFeatures>;
 
-/// A feature as programs show it to people.
+/// Texts of a feature for display.
 struct FeatureInfo {
   const char* nick;         ///< In kebab-case.
   const char* description;  ///< A noun phrase.
 };
 
-/// Valid for ever; thread-safe.
+/// Static lifetime; thread-safe.
 [[nodiscard]] std::span<const FeatureInfo, kFeatures> feature_infos();
 
 /// Logistic regression: the log odds of an ellipse are bias + sum of weight x (feature - mean).
 struct EvidenceTable {
   Features weights{};
-  Features means{};  ///< Of the candidates that it was fitted to; a contribution is relative to it.
+  Features means{};  ///< Over the training candidates; contributions are relative to them.
   double bias = 0.0;
 
   [[nodiscard]] double log_odds(const Features& features) const;
   [[nodiscard]] double probability(const Features& features) const;
-  /// What each feature adds to the log odds.
+  /// The term of each feature in the log odds.
   [[nodiscard]] Features contributions(const Features& features) const;
 
   bool operator==(const EvidenceTable&) const = default;
@@ -64,10 +63,10 @@ struct EvidenceTable {
 [[nodiscard]] const EvidenceTable& built_in_evidence();
 
 /// Reads lines "FEATURE WEIGHT MEAN" and "bias VALUE"; # begins a comment. Throws
-/// std::invalid_argument that names file and line where one is wrong, missing or there twice.
+/// std::invalid_argument that names the file if an entry is wrong, missing or duplicate.
 [[nodiscard]] EvidenceTable read_evidence(const std::filesystem::path& file);
 
-/// The same form.
+/// Writes the format of read_evidence().
 void write_evidence(std::ostream& out, const EvidenceTable& table);
 
 }  // namespace ellipse

@@ -10,21 +10,21 @@
 namespace ellipse {
 namespace {
 
-// Two fits to one edge, from its two sides, differ by less than this.
+// Largest difference of two fits to the two sides of one edge.
 constexpr Tolerance kOneEdge{1.5, 0.01};
 
-// From frame to frame.
+// Largest ratio of the major axes in two successive frames.
 constexpr double kMaxGrowth = 2.0;
 
 constexpr double kMinShareOfBestScore = 0.25;
 
-// To leave one target for another.
+// Minimum advantage of a new target: ratio of the major axes, or of the scores.
 constexpr double kFartherOut = 1.1;
-constexpr double kMuchBetter = 1.5;  // in score
+constexpr double kMuchBetter = 1.5;
 
-// What is known of the set of all ellipses that are concentric with one.
+// Evidence of all detections that are concentric with one ellipse.
 struct ConcentricSet {
-  double probability = 0.0;  // the largest; the same of all where a detector does not say
+  double probability = 0.0;  // the largest; all are 1 without probabilities
   bool has_two_edges = false;
   double score = 0.0;
   double best_score = 0.0;
@@ -35,7 +35,7 @@ struct ConcentricSet {
   }
 };
 
-// The set around an ellipse, which need not be one of the detections.
+// The ellipse itself need not be one of the detections.
 ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
   ConcentricSet set;
   for (const Detection& other : detections) {
@@ -59,8 +59,8 @@ Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
   return at_most(Reason::kOtherSize, axis, last_axis * kMaxGrowth);
 }
 
-// Beside another member of the same set, both with enough of the set's best score: only the better
-// one is accepted.
+// Compares two members of one set. The better score wins on the same edge, the larger ellipse
+// otherwise.
 Verdict judge_beside(const Detection& member, const Detection& other) {
   const bool is_edge = is_same(other.ellipse, member.ellipse, kOneEdge);
   const double own = is_edge ? member.score : 2.0 * member.ellipse.semi_major;
@@ -69,7 +69,7 @@ Verdict judge_beside(const Detection& member, const Detection& other) {
   return {is_edge ? Reason::kSameEdge : Reason::kInnerEdge, own, others};
 }
 
-// Of a set that is not the best.
+// Why a set that is not the best is rejected.
 Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
   if (set.probability < best.probability) {
     return {Reason::kWeakerSet, set.score, best.score};
@@ -78,7 +78,7 @@ Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
   return {Reason::kWeakerSet, set.score, best.score};
 }
 
-// By itself.
+// Independent of the other detections.
 Verdict judge_alone(const Detection& detection, const std::optional<Ellipse>& last_target) {
   if (!detection.as_target.is_accepted() || !last_target) return detection.as_target;
   return judge_as_same_target(detection.ellipse, *last_target);
@@ -88,7 +88,7 @@ void reject(const Detection& detection, const Verdict& verdict, DetectionTrace* 
   if (trace != nullptr) trace->revise(detection.candidate, verdict);
 }
 
-// The first member of the best set; nullptr where nothing can be the target.
+// The first member of the best set; nullptr if no detection can be the target.
 const Detection* seed_of_best_set(std::span<const Detection> detections,
                                   const std::optional<Ellipse>& last_target,
                                   DetectionTrace* trace) {
@@ -142,7 +142,7 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
 bool is_better_target(const Ellipse& chosen,
                       const Ellipse& followed,
                       std::span<const Detection> detections) {
-  // An edge of the same target, farther out: an inner edge was followed.
+  // A concentric edge farther out: an inner edge of the same target was tracked.
   if (are_concentric(chosen, followed) && chosen.semi_major > kFartherOut * followed.semi_major) {
     return true;
   }

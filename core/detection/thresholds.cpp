@@ -8,7 +8,7 @@
 namespace ellipse {
 namespace {
 
-// The shortest contour that says anything of an ellipse, at whatever scale.
+// Floor of a scaled min_contour_size: shorter contours do not determine an ellipse.
 constexpr int kMinContourSizePx = 12;
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// The values that a setting may take. NaN is in no range.
+/// Valid range of a setting, bounds included. NaN is in no range.
 struct Range {
   double min = 0.0;
   double max = 0.0;
@@ -19,11 +19,11 @@ inline constexpr Range kAxisRatioRange{1.0, 100.0};
 inline constexpr Range kContourSizeRangePx{5.0, 2147483647.0};
 inline constexpr Range kEdgeRange{0.0, 1e4};
 
-/// Throws std::invalid_argument that names the field, the value and the range, where it is outside.
+/// Throws std::invalid_argument that names field, value and range if the value is outside.
 void check_range(const char* field, double value, const Range& range);
 
-/// What a detection is judged by, with the names and the defaults of [Keipour2021] Table I and
-/// III.A (detecting).
+/// Thresholds of a detector, with the names and the defaults of [Keipour2021] Table I and III.A
+/// (detecting).
 struct Thresholds {
   double contour_overlap = 0.95;  ///< Eq. (1), smallest accepted share, 0 to 1.
   double ellipse_overlap = 0.95;  ///< Eq. (2), smallest accepted share, 0 to 1.
@@ -33,21 +33,21 @@ struct Thresholds {
   int min_contour_size = 50;      ///< minContourSize: shortest accepted contour [px].
   double edge_low = 0.0;          ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
   double edge_high = 0.0;         ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
-  double min_probability = 0.5;   ///< That an ellipse is one, where the detector says; 0 to 1.
-  bool wants_all = false;         ///< All ellipses, not just what a target is chosen from.
+  double min_probability = 0.5;   ///< Smallest accepted, if the detector has one; 0 to 1.
+  bool wants_all = false;         ///< Report all ellipses, not only those that may be a target.
 
-  /// Throws std::invalid_argument that names the field, where a value is NaN, out of its range, or
-  /// a pair is the wrong way round.
+  /// Throws std::invalid_argument that names the field if a value is NaN, out of its range, or a
+  /// minimum exceeds its maximum.
   void validate() const;
 
-  /// Whether both axes of an ellipse and their ratio are within the limits: too large, too small,
-  /// too flat, in this order.
+  /// Tests both axes and their ratio against the limits: too large, too small, too flat, in this
+  /// order.
   [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;
   [[nodiscard]] bool admit_axes_of(const Ellipse& e) const {
     return judge_axes_of(e).is_accepted();
   }
 
-  /// The thresholds for a picture whose pixels are `scale` times larger: lengths shrink with it.
+  /// The thresholds for a picture reduced by `scale`: lengths are divided by it.
   [[nodiscard]] Thresholds at_scale(int scale) const;
 
   bool operator==(const Thresholds&) const = default;

@@ -18,7 +18,7 @@ constexpr Color kFound = {255, 196, 64};
 constexpr Color kTarget = {72, 230, 140};
 constexpr Color kRefused = {232, 88, 96};
 
-// Hues a golden angle apart: neighbours in number are far apart in colour.
+// Hues a golden angle apart: consecutive indices have clearly different colours.
 Color color_of(std::size_t i) {
   const double hue = static_cast<double>(i) * std::numbers::pi * (3.0 - std::sqrt(5.0));
   Color color;
@@ -74,7 +74,7 @@ void draw_pieces(Sheet& sheet, std::span<const TracedPiece> pieces) {
   for (std::size_t i = 0; i < pieces.size(); ++i) sheet.draw_piece(pieces[i], color_of(i));
 }
 
-// What is refused lies under what is found.
+// Draws rejected candidates first, so that found ones cover them.
 void draw_candidates(Sheet& sheet, const DetectionTrace& trace, std::size_t pass) {
   const auto draw = [&](const Color& color, const auto& counts) {
     for (const TracedCandidate& candidate : trace.candidates()) {

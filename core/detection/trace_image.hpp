@@ -9,19 +9,19 @@
 
 namespace ellipse {
 
-/// What of a pass is drawn.
+/// The stage of a pass to draw.
 enum class Stage {
-  kLuma,        ///< What was looked at.
+  kLuma,        ///< The input picture.
   kEdges,       ///< The thinned edges.
-  kChains,      ///< Contours or chains, each in a colour of its own; contours too short in grey.
-  kArcs,        ///< What guesses are made of, each in a colour of its own, before the rest in grey.
-  kCandidates,  ///< All ellipses over the luma: found, the target, refused.
+  kChains,      ///< Contours or chains, one colour each; contours too short in grey.
+  kArcs,        ///< The arcs used for candidates, one colour each, over all chains in grey.
+  kCandidates,  ///< All ellipses over the dimmed luma: rejected, found, the target.
 };
 
-/// Their nicks, in their order. Valid for ever; thread-safe.
+/// Nicks in the order of Stage. Static lifetime; thread-safe.
 [[nodiscard]] std::span<const char* const> stage_nicks();
 
-/// 8 bits each of red, green and blue, row by row without gaps.
+/// Red, green and blue with 8 bits each, row by row without padding.
 struct RgbPicture {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -29,7 +29,7 @@ struct RgbPicture {
 };
 
 /// Draws one stage of a pass, in pixels of the pass.
-/// @param pass  Its number; empty picture where there is none.
+/// @param pass  Index of the pass; the picture is empty if it does not exist.
 /// Thread-safe; allocates the picture.
 [[nodiscard]] RgbPicture draw_stage(const DetectionTrace& trace, std::size_t pass, Stage stage);
 

@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// Why an ellipse is not found, or found and not the target.
+/// Why a candidate is rejected, or why a detection is not the target.
 enum class Reason {
   kAccepted,
   // The tests of [Keipour2021] Algorithm 1.
@@ -16,29 +16,29 @@ enum class Reason {
   kTooFlat,          ///< Above maxAxisRatio.
   kContourOverlap,   ///< Eq. (1) too low.
   kEllipseOverlap,   ///< Eq. (2) too low.
-  kKnown,            ///< The same ellipse was found before, or is better seen elsewhere.
-  kCrowdedOut,       ///< There are too many, and better ones.
-  // Those of the arcs besides.
-  kPoorFit,      ///< Its arcs are not of one ellipse.
-  kFarOutside,   ///< Its centre is farther from the picture than the picture is large.
-  kRefused,      ///< The same was refused before, by as many edges.
-  kTooFewEdges,  ///< Along its normals.
-  kUnlikely,     ///< Its edges are not those of an ellipse.
-  // Those of SelectTarget, [Keipour2021] Algorithm 3.
-  kOtherPlace,  ///< Away from where the target was.
-  kOtherSize,   ///< Of another size than the target was.
-  kSingle,      ///< Alone, while there are concentric ones; II.4.
-  kWeakerSet,   ///< Its set has less evidence than another.
-  kWeakInSet,   ///< It has little evidence beside others of its set.
-  kInnerEdge,   ///< Inside of the target.
-  kSameEdge,    ///< The target's edge, from its other side, with less evidence.
+  kKnown,            ///< Duplicates an ellipse found before, or found better at another scale.
+  kCrowdedOut,       ///< Dropped for better ones: too many detections.
+  // Further tests of the arc detector.
+  kPoorFit,      ///< RMS distance of its arcs from the ellipse too large.
+  kFarOutside,   ///< Its centre is more than one picture size outside.
+  kRefused,      ///< Duplicates a candidate rejected before.
+  kTooFewEdges,  ///< Too few edges match its outline.
+  kUnlikely,     ///< Probability of an ellipse too low.
+  // The tests of SelectTarget, [Keipour2021] Algorithm 3.
+  kOtherPlace,  ///< Too far from the last target.
+  kOtherSize,   ///< Size differs too much from the last target's.
+  kSingle,      ///< Single, while another set has two edges; II.4.
+  kWeakerSet,   ///< Its concentric set has less evidence than another.
+  kWeakInSet,   ///< Score too low compared to the best of its set.
+  kInnerEdge,   ///< An edge inside the target's.
+  kSameEdge,    ///< A second fit to the target's edge, with a lower score.
 };
 
-/// What a test says of an ellipse.
+/// Result of a test.
 struct Verdict {
   Reason reason = Reason::kAccepted;
-  double measured = 0.0;  ///< In the unit of ReasonInfo; 0 where nothing is measured.
-  double limit = 0.0;     ///< The setting's value, where a setting changes it.
+  double measured = 0.0;  ///< In the unit of ReasonInfo; 0 if nothing is measured.
+  double limit = 0.0;     ///< The bound that `measured` violates, in the same unit.
 
   [[nodiscard]] bool is_accepted() const { return reason == Reason::kAccepted; }
   bool operator==(const Verdict&) const = default;
@@ -52,21 +52,21 @@ struct Verdict {
   return measured <= limit ? Verdict{} : Verdict{reason, measured, limit};
 }
 
-/// A reason as programs show it to people.
+/// Texts of a reason for display.
 struct ReasonInfo {
   const char* nick;         ///< In kebab-case.
   const char* description;  ///< A clause, without a full stop.
-  const char* quantity;     ///< What is measured; empty where nothing is.
-  const char* unit;         ///< "px", "rad", "nats", or empty.
-  /// The name among setting_infos() that changes the limit, without "detect-" and "track-";
-  /// empty where none does.
+  const char* quantity;     ///< Name of the measured value, or empty.
+  const char* unit;         ///< "px" or empty.
+  /// Name in setting_infos() of the setting for the limit, without "detect-" or "track-"; or
+  /// empty.
   const char* setting;
 };
 
-/// Valid for ever; thread-safe.
+/// Static lifetime; thread-safe.
 [[nodiscard]] const ReasonInfo& reason_info(Reason reason);
 
-/// All of them, in the order of Reason.
+/// In the order of Reason.
 [[nodiscard]] std::span<const ReasonInfo> reason_infos();
 
 /// A verdict in words: "too flat: axis ratio 6.1, at most 5".

@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kLongestWalk = 16384;  // pixels
 constexpr int kClosingGap = 3;               // pixels
 
-// For each octant of an edge the codes, as bits, by which a walk may go on: of free gradient maxima
-// whose edge turns by an eighth at most.
+// For each octant of an edge, the codes that may follow, as a bit set: free gradient maxima whose
+// edge direction differs by at most one octant.
 constexpr std::array<std::uint32_t, 8> kOpen = [] {
   std::array<std::uint32_t, 8> open{};
   for (unsigned octant = 0; octant < 8; ++octant) {
@@ -26,7 +26,7 @@ constexpr std::array<std::uint32_t, 8> kOpen = [] {
 
 }  // namespace
 
-// Walks along an edge, or against it, over gradient maxima where no walk has been yet.
+// Walks along an edge, or against it, over unvisited gradient maxima.
 class ChainTracer::Walk {
  public:
   Walk(GradientMap& map, bool is_forward) : maxima_(map.maxima()), gradients_(map.gradients()) {
@@ -38,7 +38,7 @@ class ChainTracer::Walk {
     }
   }
 
-  // Writes the pixels after the seed to `out`; returns its end.
+  // Writes the pixels after the seed to `out`; returns their end.
   std::int32_t* run(std::int32_t seed, std::int32_t* out) const {
     const std::int32_t* const last = out + kLongestWalk;
     std::int32_t at = seed;
@@ -55,7 +55,7 @@ class ChainTracer::Walk {
   }
 
  private:
-  // Whether a pixel has one of the codes that are open to a walk.
+  // Whether a pixel's code is in the bit set `open`.
   [[nodiscard]] bool is_open(std::int32_t pixel, std::uint32_t open) const {
     return ((open >> (maxima_[pixel] & (maximum::kFree | maximum::kOctant))) & 1U) != 0;
   }
@@ -64,7 +64,7 @@ class ChainTracer::Walk {
     return std::abs(gradients_[pixel].x) + std::abs(gradients_[pixel].y);
   }
 
-  // Straight on, else to the stronger side, else over a gap of one pixel. -1: the end.
+  // Prefers straight ahead, then the stronger side, then a gap of one pixel. -1 at the end.
   [[nodiscard]] std::int32_t next_of(std::int32_t at, unsigned octant) const {
     const std::uint32_t open = kOpen[octant];
     const std::int32_t ahead = at + steps_[octant + 1U];
@@ -83,7 +83,7 @@ class ChainTracer::Walk {
 
   std::uint8_t* maxima_;
   const Gradient* gradients_;
-  std::array<std::int32_t, 10> steps_;  // to the left of octant k, then ahead, then to the right
+  std::array<std::int32_t, 10> steps_;  // from k on: left of octant k, ahead, right
 };
 
 namespace {
@@ -93,8 +93,8 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
          std::abs(a / stride - b / stride) <= kClosingGap;
 }
 
-// Calls use(index) for each seed where no walk has been yet, until it says no. Most blocks have
-// none any more.
+// Calls use(index) for each unvisited seed until it returns false. Skips blocks without seeds,
+// which are most of them.
 template <class Use>
 void for_each_seed(const GradientMap& map, const Use& use) {
   constexpr std::uint64_t kAllSeeds = 0x0101010101010101U * maximum::kSeed;
@@ -113,7 +113,7 @@ void for_each_seed(const GradientMap& map, const Use& use) {
 
 }  // namespace
 
-// The walk against the edge comes first, so that the one along it can follow it in place.
+// Walks against the edge first and reverses these pixels, so that the walk along it follows them.
 void ChainTracer::add_chain(std::int32_t seed,
                             std::uint8_t* maxima,
                             const Walk& against,

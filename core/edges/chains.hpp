@@ -8,24 +8,23 @@
 
 namespace ellipse {
 
-/// Neighbouring gradient maxima, one after the other along their edge: bright on the same side all
-/// the way.
+/// Gradient maxima in order along their edge, with the bright side on the left.
 struct Chain {
   std::span<const std::int32_t> pixels;  ///< Indices into the maps.
-  bool is_closed = false;                ///< Its end is where its begin is.
+  bool is_closed = false;                ///< Whether its ends are within 3 px.
 };
 
-/// Links gradient maxima to chains. Each gradient maximum is in one chain at most.
+/// Links gradient maxima into chains. Each gradient maximum is in at most one chain.
 class ChainTracer {
  public:
-  static constexpr std::size_t kMinLength = 14;  ///< Of a chain [pixels].
+  static constexpr std::size_t kMinLength = 14;  ///< Shortest chain kept [pixels].
 
-  /// Makes room for as many chains. Without it there is as much as there ever were.
+  /// Reserves capacity for chains. Otherwise capacity grows to the largest count seen.
   void reserve(std::size_t chains);
 
   /// Marks the gradient maxima of chains with maximum::kChained. Allocates only when the picture
-  /// grows, or has more chains than there is room for. A picture with more gradient maxima than a
-  /// quarter of its pixels keeps the chains of its upper part.
+  /// grows or its chains exceed the capacity. Stops once the chains hold a quarter of the pixels,
+  /// which leaves out the lower part of the picture.
   void trace(GradientMap& map);
 
   [[nodiscard]] std::size_t size() const { return begins_.empty() ? 0 : begins_.size() - 1; }

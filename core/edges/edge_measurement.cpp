@@ -9,18 +9,18 @@ namespace ellipse {
 namespace {
 
 constexpr float kMinSquaredCosine = 0.75F;  // 30 degrees
-constexpr int kReachOnPicture = 2;          // pixels to both sides
-constexpr float kVertexError = 0.017F;      // of an edge in focus without noise [px]
+constexpr int kReachOnPicture = 2;          // pixels to each side
+constexpr float kVertexError = 0.017F;      // sigma of an edge in focus without noise [px]
 constexpr auto kShift = static_cast<float>(kMaximumShift);
 
-// A gradient maximum beside a sample, on the row or column of pixels that is closest to the normal.
+// A gradient maximum near a sample, on the pixel row or column closest to the normal.
 struct FoundMaximum {
   Eigen::Vector2f gradient;
   float along_px;  // from the sample's pixel
   float sharpness;
 };
 
-// Whether a gradient points along a direction.
+// Whether a gradient is within 30 degrees of a direction.
 bool agrees(const Gradient& g, const Eigen::Vector2f& direction) {
   const float gx = g.x;
   const float gy = g.y;
@@ -28,17 +28,17 @@ bool agrees(const Gradient& g, const Eigen::Vector2f& direction) {
   return along > 0.0F && along * along >= kMinSquaredCosine * (gx * gx + gy * gy);
 }
 
-// @param offset  Of the maximum's pixel from the sample's.
+// @param offset  From the sample's pixel to the maximum's, in steps.
 FoundMaximum maximum_at(const Gradient* here, std::ptrdiff_t step, std::ptrdiff_t offset) {
   const SubpixelMaximum vertex = subpixel_maximum(here, static_cast<int>(step));
   return {{here->x, here->y}, static_cast<float>(offset) + vertex.offset_px, vertex.sharpness};
 }
 
-// The variance of a parabola's vertex -b / 2c, with b = h(1) - h(-1) and c = h(-1) - 2 h(0) + h(1)
-// of values that share noise, is (var b / 4 + offset^2 var c) / c^2 by propagation of errors. The
-// kernels of GradientMap correlate neighbours by .4 along their difference and .8 along their
-// smoothing, and the next but one by -.4 and .4. Offsets within a pixel have a mean square of 1/12.
-// A noisy maximum is picked where noise makes it sharper: by var c in the square.
+// Propagation of errors gives the variance of a parabola's vertex -b / 2c, with b = h(1) - h(-1)
+// and c = h(-1) - 2 h(0) + h(1), as (var b / 4 + offset^2 var c) / c^2. The kernels of GradientMap
+// correlate the noise of neighbours by .4 along their difference and .8 along their smoothing, and
+// of second neighbours by -.4 and .4. Offsets within a pixel have a mean square of 1/12. Selecting
+// maxima favours noise that sharpens them, which raises the mean of c^2 by var c.
 float vertex_variance(float noise, float cosine, float curvature) {
   const float along = cosine * cosine;
   const float var_c = 0.4F + 1.6F * along;
@@ -59,7 +59,7 @@ EdgeMeasurement measured(const OutlineSamples& outline,
   const float contrast = gradient.norm();
   const float across = gradient.y() * normal.x() - gradient.x() * normal.y();
   const float sine = sign * across / contrast;
-  // Beside its foot the outline falls back behind its tangent.
+  // The outline curves away from its tangent to both sides of the sample.
   const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
   const float curvature = outline.curvature(k);
   const float distance = from_sample.dot(normal) + curvature * (0.5F * aside * aside + kShift);
@@ -68,13 +68,13 @@ EdgeMeasurement measured(const OutlineSamples& outline,
           normal,
           {outline.anomaly(k), outline.px_per_unit(k), distance},
           0.0F,
-          sine * (1.0F + sine * sine / 6.0F),  // below 30 degrees within .003
+          sine * (1.0F + sine * sine / 6.0F),  // arc sine, within .003 up to 30 degrees
           contrast,
           outline.length_px(k),
           outline.px_per_ideal(k)};
 }
 
-// The rectangle of pixels around whose places a search has room, from an outline's origin.
+// The pixels whose search stays inside the picture: a rectangle relative to an outline's origin.
 class Room {
  public:
   Room(int width, int height, int margin, const Eigen::Vector2i& origin)
@@ -95,7 +95,7 @@ class Room {
   unsigned height_;
 };
 
-// Looks in a map for the nearest chained gradient maximum, first on one side, then on the other.
+// Finds the nearest chained gradient maximum in a map, alternating between both sides.
 class MapSearch {
  public:
   MapSearch(const GradientMap& map, const Eigen::Vector2i& origin, int reach_px)
@@ -131,7 +131,7 @@ class MapSearch {
   std::ptrdiff_t reach_;
 };
 
-// Looks on the picture for the highest gradient maximum.
+// Finds the highest gradient maximum on the picture.
 class PictureSearch {
  public:
   PictureSearch(const ImageView& luma, const Eigen::Vector2i& origin, double min_gradient)
@@ -170,8 +170,8 @@ class PictureSearch {
 
 }  // namespace
 
-// One outline is as sharp all around: the mean tells better than the noisy curvature of each edge.
-// No edge lies beyond the reach, so that even a chance one has a standard deviation.
+// Uses the mean sharpness of the outline, since the sharpness of a single edge is noisy. Limits the
+// variance to that of a uniform distribution over the reach, which chance matches follow.
 void EdgeMeasurer::tell_sigmas(float noise, float reach_px) {
   const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -14,49 +14,49 @@
 
 namespace ellipse {
 
-/// Edges that an ellipse of five parameters is fitted to, and judged by, at least.
+/// Minimum number of edges to fit and judge an ellipse, which has five parameters.
 inline constexpr std::size_t kMinEdgesOfEllipse = 8;
 
-/// An edge that an outline meets, in the picture as the lens shows it.
+/// An edge matched to a sample of an outline, in the distorted picture.
 struct EdgeMeasurement {
-  int sample = 0;                    ///< Its number around the outline.
-  Eigen::Vector2f point;             ///< The edge itself, from the outline's origin [px].
-  Eigen::Vector2f normal;            ///< Of the outline there, outwards.
+  int sample = 0;                    ///< Index of the sample.
+  Eigen::Vector2f point;             ///< Position of the edge, from the outline's origin [px].
+  Eigen::Vector2f normal;            ///< Outward normal of the outline at the sample.
   PerimeterOffset offset;            ///< Of the edge; the anomaly is the sample's.
-  float sigma_px = 0.0F;             ///< Standard deviation of the offset; 0 where not told.
-  float direction_error_rad = 0.0F;  ///< From the normal to the gradient.
+  float sigma_px = 0.0F;             ///< Standard deviation of the offset; 0 if not computed.
+  float direction_error_rad = 0.0F;  ///< Angle from the normal to the gradient.
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
-  float length_px = 0.0F;            ///< Of the outline that it stands for.
-  float px_per_ideal = 1.0F;         ///< Pixels of the picture per one of the ideal plane, across.
+  float length_px = 0.0F;            ///< Length of the outline that the sample represents.
+  float px_per_ideal = 1.0F;         ///< As OutlineSamples::px_per_ideal().
 };
 
-/// How much of an outline meets edges.
+/// Share of an outline that is matched by edges.
 struct OutlineSupport {
   double inside_px = 0.0;        ///< Length of the outline inside the picture.
-  double inside_fraction = 0.0;  ///< Of the outline.
-  double support = 0.0;          ///< Share of the inside length that meets edges.
-  double turn_support = 0.0;     ///< The same, of the inside turn of the outline.
+  double inside_fraction = 0.0;  ///< The same, as a share of the outline.
+  double support = 0.0;          ///< Matched share of the inside length.
+  double turn_support = 0.0;     ///< Matched share of the outline's turn inside.
 };
 
-/// Measures where an ellipse's outline meets edges: at even samples it looks along the normal for
-/// the nearest or the highest gradient maximum whose gradient is within 30 degrees of the normal
-/// and has the right sign, places it below a pixel [Devernay1995], and undoes what smoothing does
-/// to a curved edge.
+/// Matches edges to an ellipse's outline: searches at each sample, along the row or column closest
+/// to the normal, for the nearest or highest gradient maximum within 30 degrees of the normal and
+/// of the right sign. Locates it to sub-pixel accuracy [Devernay1995] and corrects the shift of
+/// curved edges by smoothing.
 ///
 /// One object serves one thread. Allocates nothing; O(samples x reach).
 class EdgeMeasurer {
  public:
-  /// The nearest chained gradient maxima of a map, in its ideal plane.
+  /// Matches the nearest chained gradient maxima of a map; `e` is in its ideal plane.
   /// @param samples   As of OutlineSamples.
-  /// @param reach_px  How far from the outline an edge may lie.
+  /// @param reach_px  Largest distance searched, along the row or column.
   OutlineSupport measure(const GradientMap& map,
                          const Ellipse& e,
                          Polarity polarity,
                          std::size_t samples,
                          int reach_px);
 
-  /// The highest gradient maxima within two pixels, on the picture itself: no gradient is computed
-  /// elsewhere. The standard deviations are not told: that needs the noise.
+  /// Matches the highest gradient maxima within two pixels on the picture itself; computes no
+  /// gradient elsewhere. Leaves the standard deviations at 0, since the noise is unknown.
   /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
   OutlineSupport measure(const ImageView& luma,
                          const LensView& lens,
@@ -65,9 +65,9 @@ class EdgeMeasurer {
                          std::size_t samples,
                          double min_gradient);
 
-  /// Of the last call, around the outline.
+  /// Of the last call, in order around the outline.
   [[nodiscard]] std::span<const EdgeMeasurement> edges() const { return {edges_.data(), count_}; }
-  /// Of the last call: what EdgeMeasurement::point is counted from [px of the picture].
+  /// Of the last call: the origin of EdgeMeasurement::point [px of the picture].
   [[nodiscard]] Eigen::Vector2d origin() const { return origin_; }
 
  private:

@@ -9,8 +9,8 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinVariance = 1e-4;                      // of an edge's offset [px^2]
-constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // [px]
+constexpr double kMinVariance = 1e-4;  // prior of an edge's offset, of weight 1 [px^2]
+constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // of each step [px]
 
 }  // namespace
 

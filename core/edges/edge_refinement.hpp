@@ -10,25 +10,24 @@
 
 namespace ellipse {
 
-/// An ellipse on the picture.
+/// An ellipse refined on the picture.
 struct RefinedEllipse {
   Ellipse ellipse;
   RingUncertainty uncertainty;
-  double support = 0.0;   ///< Share of the perimeter inside the picture that meets the edge.
-  double gradient = 0.0;  ///< Mean of these gradient maxima [units of Gradient].
+  double support = 0.0;   ///< Share of the perimeter inside the picture matched by edges.
+  double gradient = 0.0;  ///< Mean gradient of these edges [units of Gradient].
 };
 
 inline constexpr std::size_t kRefinementSamples = 96;
 
-/// Refines an ellipse that is known within a pixel or two, on the picture itself: looks for the
-/// gradient maximum across its perimeter at some samples, and computes no gradient elsewhere.
+/// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient
+/// maximum across its perimeter at each sample and computes no gradient elsewhere.
 ///
-/// @param samples  As of OutlineSamples. With fewer it is faster, and the noise tells more.
+/// @param samples  As of OutlineSamples. Fewer samples are faster and noisier.
 /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
-/// @param lens    The ellipse is of the ideal plane, before and after; the perimeter is searched as
-///                the lens distorts it.
-/// @return nullopt where too few gradient maxima are near. Allocates nothing; the time depends on
-/// no size.
+/// @param lens    Distorts the perimeter for the search; `e` and the result are in the ideal plane.
+/// @return nullopt if too few gradient maxima are near or the fit fails. Allocates nothing;
+///         O(samples).
 [[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(
     const ImageView& luma,
     const Ellipse& e,

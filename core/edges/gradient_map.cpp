@@ -11,23 +11,23 @@ namespace {
 
 using Int = std::int16_t;
 
-constexpr int kPadLeft = 16;   // buffers begin before the first pixel,
-constexpr int kPadRight = 64;  // and go on behind the last one, so that blocks may overrun
+constexpr int kPadLeft = 16;   // padding of rows before the first pixel,
+constexpr int kPadRight = 64;  // and after the last one, so that blocks may overrun
 constexpr int kBlock = GradientMap::kBlock;
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kNoiseRows = 16;  // about
+constexpr int kNoiseRows = 16;  // approximate number of sampled rows
 constexpr double kNoiseQuantile = 0.3;
 constexpr double kLowOverNoise = 3.0;
 constexpr double kHighOverLow = 2.0;  // [Canny1986]: two to three
 constexpr double kMinLow = 1.25;      // [grey levels / px]
-constexpr double kMinNoise = 20.0;    // rounding to grey levels alone makes as much
+constexpr double kMinNoise = 20.0;    // from rounding to grey levels alone
 constexpr int kHistogramBins = 1536;
 constexpr int kHistogramShift = 4;
 constexpr double kMaxGradient = 24480.0;
 
-// These loops are plain: the compiler makes vectors of them, twice on x86-64, and of NEON's kind on
-// AArch64. Sixteen bits are enough: the largest gradient is 16 x 255 x 6 = 24480.
+// The compiler vectorizes these plain loops, for SSE2 and AVX2 on x86-64 and for NEON on AArch64.
+// Sixteen bits suffice: the largest component is 16 x 255 x 3 = 12240.
 
 ELLIPSE_INLINE void filter_columns_body(const std::uint8_t* const* rows,
                                         Int* __restrict smooth,
@@ -69,7 +69,7 @@ ELLIPSE_INLINE void filter_rows_body(const Int* __restrict smooth,
   }
 }
 
-// The rows around the one whose gradient maxima are wanted.
+// Gradients of a row, and magnitudes of it and its neighbours.
 struct MaximaRows {
   const Int* gx;
   const Int* gy;
@@ -84,7 +84,7 @@ struct Levels {
   Int high;
 };
 
-// The direction of a gradient in eighths of a turn. `is_flat`: -1 where it lies along the row.
+// The direction of the edge, as maximum::kOctant. `is_flat`: -1 if the gradient is along the row.
 ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_flat) {
   const Int larger = ax > ay ? ax : ay;
   const Int smaller = ax > ay ? ay : ax;
@@ -98,8 +98,8 @@ ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_flat) {
   return static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
 }
 
-// Also lists the blocks that have gradient maxima, as distances from the first pixel; returns how
-// many.
+// Also lists the blocks with a magnitude above `low`, as distances from the first pixel; returns
+// their number.
 ELLIPSE_INLINE int mark_maxima_body(
     const MaximaRows& rows, std::uint8_t* codes, Levels levels, int n, std::int32_t* blocks) {
   const Int low = levels.low;
@@ -122,7 +122,7 @@ ELLIPSE_INLINE int mark_maxima_body(
     for (int i = 0; i < kBlock; ++i) {
       const Int ax = static_cast<Int>(gx[i] < 0 ? -gx[i] : gx[i]);
       const Int ay = static_cast<Int>(gy[i] < 0 ? -gy[i] : gy[i]);
-      const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient lies along the row
+      const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient is along the row
       const Int before = static_cast<Int>((m[i - 1] & is_flat) | (up[i] & ~is_flat));
       const Int after = static_cast<Int>((m[i + 1] & is_flat) | (down[i] & ~is_flat));
       const Int octant = octant_of(gx[i], gy[i], ax, ay, is_flat);
@@ -174,7 +174,7 @@ bool is_saturated(std::uint8_t level) {
   return level < 2 || level > 253;
 }
 
-// Pictures of two sizes may take turns: what is too long stays so.
+// Never shrinks, since pictures of two sizes may alternate.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
   values.resize(std::max(values.size(), size));
@@ -248,8 +248,8 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
       smooth, difference, row_of(x_, y), row_of(y_, y), row_of(magnitude_, y), out, width_);
 }
 
-// The gradient of noise is Rayleigh distributed, whose quantile q is sigma sqrt(-2 ln(1 - q))
-// [Rosin1997]; a quantile so low that edges have no part in it tells sigma.
+// The gradient of noise is Rayleigh distributed with the quantile q at sigma sqrt(-2 ln(1 - q))
+// [Rosin1997]; a quantile low enough to exclude edges gives sigma.
 void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
@@ -259,7 +259,7 @@ void GradientMap::measure_noise(const ImageView& luma) {
     const Int* m = row_of(magnitude_, y);
     const std::uint8_t* levels = luma.row(y);
     for (int x = 2; x < width_ - 2; x += 2) {
-      if (is_saturated(levels[x])) continue;  // without noise, whatever the sensor's is
+      if (is_saturated(levels[x])) continue;  // clipping hides the noise
       ++histogram_[static_cast<std::size_t>(std::min(m[x] >> kHistogramShift, kHistogramBins - 1))];
       ++samples;
     }

@@ -12,35 +12,35 @@
 
 namespace ellipse {
 
-/// The gradient at a pixel, from dark to bright. A slope of one grey level per pixel is
-/// kGradientGain.
+/// The gradient at a pixel, from dark to bright, in units of 1 / kGradientGain grey levels per
+/// pixel.
 struct Gradient {
   std::int16_t x = 0;
   std::int16_t y = 0;
 };
 
-/// What the 5 x 5 kernels make of a slope of one grey level per pixel.
+/// Response of the 5 x 5 kernels to a slope of one grey level per pixel.
 inline constexpr double kGradientGain = 128.0;
-/// And, at most, of a step of one grey level between two pixels.
+/// Their largest response to a step of one grey level between two pixels.
 inline constexpr double kGradientOfStep = 48.0;
 
-/// The gradient maxima: one byte a pixel, 0 where there is none. The low three bits hold the
-/// direction of the edge, which is the gradient turned by 90 degrees from x
-/// to y, in eighths of a turn from +x to +y.
+/// Codes of gradient maxima: one byte per pixel, 0 elsewhere. The low three bits hold the direction
+/// of the edge, which is the gradient turned by 90 degrees from x to y, in eighths of a turn from
+/// +x to +y.
 namespace maximum {
 inline constexpr std::uint8_t kOctant = 0x07;
-inline constexpr std::uint8_t kFree = 0x08;     ///< No walk has been here yet.
+inline constexpr std::uint8_t kFree = 0x08;     ///< Not visited by a walk.
 inline constexpr std::uint8_t kSeed = 0x10;     ///< Above the high threshold, and free.
-inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain that was kept.
+inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain.
 }  // namespace maximum
 
-/// The gradients of some pixels, at most kLongestLine, as GradientMap computes them: from (x, y) on
-/// to the right, or down. All at least two pixels from the border.
+/// Computes the gradients of a line of pixels as GradientMap does: from (x, y) to the right, or
+/// down. At most kLongestLine pixels, all at least two pixels from the border.
 void gradients_along(
     const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
 inline constexpr std::size_t kLongestLine = 16;
 
-/// Hysteresis [Canny1986]: an edge begins above the high threshold, and goes on above the low one
+/// Hysteresis [Canny1986]: an edge begins above the high threshold and continues above the low one
 /// [grey levels / px].
 struct EdgeThresholds {
   double low = 0.0;
@@ -57,20 +57,20 @@ class GradientMap {
  public:
   explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}
 
-  /// @param thresholds  0 = by the other one; both 0 = by the picture's noise.
+  /// @param thresholds  0 = derived from the other one; both 0 = from the picture's noise.
   /// Allocates only when the picture grows. O(pixels).
   void compute(const ImageView& luma, const EdgeThresholds& thresholds = {});
 
-  /// Through what lens the picture is seen; none by default.
+  /// Sets the lens of the picture; none by default.
   void set_lens(const LensView& lens) { lens_ = lens; }
   [[nodiscard]] const LensView& lens() const { return lens_; }
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  /// From row to row, of both maps [pixels].
+  /// Row stride of both maps [pixels].
   [[nodiscard]] int stride() const { return stride_; }
 
-  /// Where a pixel of the maps lies in the ideal plane [px].
+  /// Position of a pixel of the maps in the ideal plane [px].
   [[nodiscard]] Eigen::Vector2d point_of(std::int32_t pixel) const {
     const Eigen::Vector2d in_picture(pixel % stride_, pixel / stride_);
     return lens_.near_ideal(in_picture);
@@ -79,23 +79,23 @@ class GradientMap {
   [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }
   [[nodiscard]] const std::uint8_t* maxima() const { return maxima_.data(); }
   [[nodiscard]] std::uint8_t* maxima() { return maxima_.data(); }
-  /// Where the runs of kBlock pixels begin that have gradient maxima: indices into the maps,
-  /// ascending.
+  /// First pixels of the runs of kBlock pixels with a gradient above the low threshold: indices
+  /// into the maps, ascending.
   [[nodiscard]] std::span<const std::int32_t> blocks() const {
     return {blocks_.data(), block_count_};
   }
 
   /// Standard deviation of the gradient's noise in one direction [units of Gradient].
   [[nodiscard]] double noise() const { return noise_; }
-  /// What was used.
+  /// Thresholds used by compute().
   [[nodiscard]] const EdgeThresholds& thresholds() const { return thresholds_; }
 
-  /// No gradient maximum is nearer to the border: the kernels reach beyond it [pixels].
+  /// Border without gradient maxima, where the kernels reach outside the picture [pixels].
   static constexpr int kBorder = 3;
   static constexpr int kBlock = 32;  // pixels
 
  private:
-  static constexpr int kRows = 3;  // of magnitudes that a gradient maximum is judged by
+  static constexpr int kRows = 3;  // of gradients kept for non-maximum suppression
 
   void resize(const ImageView& luma);
   void compute_row(const ImageView& luma, int y);

@@ -11,9 +11,9 @@
 
 namespace ellipse {
 
-/// Samples around an ellipse of the ideal plane at even eccentric anomalies, as a lens shows them.
+/// Samples an ellipse of the ideal plane at evenly spaced eccentric anomalies, distorted by a lens.
 ///
-/// Coordinates are counted from the pixel next to the ellipse's centre, so that single precision
+/// Coordinates are relative to the pixel nearest to the ellipse's centre, so that single precision
 /// suffices: 6e-8 of its axes. Allocates nothing.
 class OutlineSamples {
  public:
@@ -24,11 +24,11 @@ class OutlineSamples {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Eigen::Vector2i& origin() const { return origin_; }
-  /// From the origin [px of the picture].
+  /// Relative to the origin [px of the picture].
   [[nodiscard]] Eigen::Vector2f point(std::size_t k) const { return {x_[k], y_[k]}; }
-  /// Outwards, of length 1.
+  /// Outward unit normal.
   [[nodiscard]] Eigen::Vector2f normal(std::size_t k) const { return {nx_[k], ny_[k]}; }
-  /// The pixel nearest to the sample, from the origin.
+  /// The pixel nearest to the sample, relative to the origin.
   [[nodiscard]] Eigen::Vector2i nearest(std::size_t k) const {
     return {static_cast<int>(std::lrint(x_[k])), static_cast<int>(std::lrint(y_[k]))};
   }
@@ -36,27 +36,27 @@ class OutlineSamples {
   [[nodiscard]] bool is_flat(std::size_t k) const { return std::abs(nx_[k]) > std::abs(ny_[k]); }
   /// Cosine and sine of the eccentric anomaly.
   [[nodiscard]] Eigen::Vector2d anomaly(std::size_t k) const { return around_[k].cast<double>(); }
-  /// Of the outline that the sample stands for.
+  /// Length of the outline that the sample represents.
   [[nodiscard]] float length_px(std::size_t k) const { return step_rad_ * speed_[k]; }
   /// Pixels of the picture per pixel of the ideal plane, across the outline.
   [[nodiscard]] float px_per_ideal(std::size_t k) const {
     return is_distorted_ ? px_per_ideal_[k] : 1.0F;
   }
-  /// How far the outline moves in the picture if the axes grow by their own length [px].
+  /// Shift of the outline in the picture per relative growth of the axes [px].
   [[nodiscard]] float px_per_unit(std::size_t k) const {
     return axes_product_ / ideal_speed(k) * px_per_ideal(k);
   }
-  /// [1 / px]; what the lens itself bends is far less.
+  /// In the picture [1/px]; neglects the much smaller curvature added by the lens.
   [[nodiscard]] float curvature(std::size_t k) const {
     return px_per_unit(k) / (speed_[k] * speed_[k]);
   }
-  /// The turn of the normal that the sample stands for, but for a factor common to all.
+  /// Turn of the normal that the sample represents, up to a factor common to all samples.
   [[nodiscard]] float turn(std::size_t k) const { return 1.0F / (speed_[k] * speed_[k]); }
 
  private:
   using PerSample = std::array<float, kMaxSamples>;
 
-  // Length per eccentric anomaly.
+  // Length per eccentric anomaly, in the ideal plane.
   [[nodiscard]] float ideal_speed(std::size_t k) const {
     return is_distorted_ ? ideal_speed_[k] : speed_[k];
   }

@@ -16,27 +16,27 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
-constexpr int kBefore = 6;  // of these, before the edge's own
+constexpr int kBefore = 6;  // of these, before the pixel nearest to the edge
 constexpr std::size_t kMaxSectors = 80;
 constexpr double kUsualSectors = 64.0;
 constexpr double kShortestSector = 6.0;  // lines
-constexpr double kLongestPx = 1e6;       // perimeter that lines are counted of
+constexpr double kLongestPx = 1e6;       // limit of the perimeter in the count of lines
 constexpr double kFewLines = 96.0;
 constexpr double kMaxLines = 800.0;
 constexpr std::size_t kMinSectors = 8;
-constexpr std::size_t kNeighbours = 3;  // on each side, that share the two levels
+constexpr std::size_t kNeighbours = 3;  // sectors on each side that share the two levels
 constexpr double kUsualStepPx = 2.3;    // half the width of the blurred step
 constexpr double kMinStepPx = 1.8;
 constexpr double kMaxStepPx = 5.0;
-constexpr double kAlike = 9.0;       // chi-square, of two levels
-constexpr double kNoiseFloor = 1.0;  // of a sector [grey levels^2]
+constexpr double kAlike = 9.0;       // largest chi-square of shared levels
+constexpr double kNoiseFloor = 1.0;  // variance in a sector [grey levels^2]
 constexpr double kTukeyReachPx = 1.0;
 constexpr double kTukeyOfSigma = 4.7;
-constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution's absolute values
+constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
 constexpr double kMinShare = 0.5;
 
-// What is summed over a sector's pixels: the step s of height 1 between the two levels, its slope
-// g, its change w as it gets narrower, and the brightness i.
+// Sums over a sector's pixels of products of: the unit step s between the two levels, its slope g,
+// its change w as it gets narrower, and the brightness i.
 enum Sum { k1, kS, kSS, kI, kIS, kII, kG, kGS, kGG, kIG, kW, kWS, kWG, kWW, kIW, kSums };
 using Sums = Eigen::Array<double, kSums, 1>;
 
@@ -69,7 +69,7 @@ struct LaneSums {
   alignas(32) float of[kSums][kLanes] = {};
 };
 
-// For every processor, and once more for those with wider registers: the same numbers.
+// Compiled for the baseline processor and for AVX2, with identical results.
 template <bool kWithWidth>
 ELLIPSE_INLINE void add_line(const Crossing& crossing,
                              float inside_px,
@@ -82,7 +82,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
     const float t = static_cast<float>(lane - kBefore) - crossing.offset;
     const float distance = t * (crossing.slope + crossing.bend * t);
     const float one = distance >= -inside_px && distance <= kOutsidePx ? 1.0F : 0.0F;
-    // Its slope is (1 - x^2)^3: much like a Gaussian's, without an exponential.
+    // The step's slope is (1 - x^2)^3: close to a Gaussian, without an exponential.
     const float x = std::min(1.0F, std::max(-1.0F, distance * inverse_step));
     const float xx = x * x;
     const float rest = 1.0F - xx;
@@ -159,12 +159,12 @@ class Accumulator {
 };
 
 struct Pass {
-  double max_lines = 0.0;  // others are left out
+  double max_lines = 0.0;  // above it, lines are subsampled
   bool tells_width = false;
   double step_px = 0.0;
 };
 
-// The pixels beside an ellipse, sector by sector around it.
+// Sums over the pixels along an ellipse's perimeter, by sector.
 class Band {
  public:
   Band(const ImageView& luma, const Ellipse& e, double inside_px, const Pass& pass)
@@ -183,15 +183,15 @@ class Band {
 
   [[nodiscard]] std::span<const Sector> sectors() const { return {sectors_.data(), count_}; }
 
-  // Where the perimeter has this normal.
+  // The point of the perimeter with this normal.
   [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector2d& outwards) const {
     const Eigen::Vector2d along = shape_ * outwards;
     return center_ + along / std::sqrt(outwards.dot(along));
   }
 
  private:
-  // The quarter whose normals are within 45 degrees of an axis, by lines of pixels along it: the
-  // top one by columns from left to right, the right one by rows downwards, and so on around.
+  // Reads the quarter whose normals are within 45 degrees of an axis by lines of pixels along it:
+  // the top one by columns from left to right, the right one by rows downwards, and so on.
   void read(int quarter) {
     const int axis = quarter % 2;  // from line to line
     const int other = 1 - axis;
@@ -266,7 +266,7 @@ class Band {
   int lines_of_sector_ = 0;
 };
 
-// The two levels and the step between them that explain a sector's pixels best.
+// Least-squares fit of two levels and the step between them to a sector's pixels.
 struct Step {
   // Level inside, contrast, and contrast x (offset inwards, narrower).
   Eigen::Vector4d values = Eigen::Vector4d::Zero();
@@ -309,16 +309,16 @@ double squares(const Sums& sums, const Eigen::Vector4d& values) {
       sums[kII] - 2.0 * values.dot(right_side(sums)) + values.dot(normal_matrix(sums) * values));
 }
 
-// What a sector tells of the edge.
+// A sector's measurement of the edge.
 struct Edge {
   const Sector* sector = nullptr;
   double offset_px = 0.0;  // outwards
   double variance = 0.0;
-  double narrower = 0.0;  // than it was taken for: change of the width's logarithm
+  double narrower = 0.0;  // decrease of the width's logarithm from the assumed one
 };
 
-// The neighbours tell the levels better than the sector alone, unless they show something else: a
-// shadow, or what is in front of the target.
+// Fits the levels together with the neighbours, which is more precise, unless the neighbours differ
+// because of a shadow or an occluder.
 std::optional<Edge> edge_of(std::span<const Sector> sectors,
                             std::size_t i,
                             double brighter_outside,
@@ -332,7 +332,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
   const Step alone = fitted(own);
   if (!(brighter_outside * alone.values[1] >= min_contrast)) return std::nullopt;
   Step shared = fitted(near);
-  // The offset is its own.
+  // Fits the offset to this sector's pixels only.
   shared.values[2] = (own[kIG] - shared.values[0] * own[kG] - shared.values[1] * own[kGS] -
                       shared.values[3] * own[kWG]) /
                      own[kGG];
@@ -347,7 +347,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
               shared.values[3] / values[1]};
 }
 
-// Edges that are not quite elliptical scatter more than their pixels' noise lets them.
+// Outlines that are not exactly elliptical scatter more than pixel noise explains.
 double scatter_of(std::span<const Edge> edges) {
   std::array<double, kMaxSectors> distances;
   for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = std::abs(edges[i].offset_px);
@@ -357,7 +357,7 @@ double scatter_of(std::span<const Edge> edges) {
   return kSigmaOfMedian * *middle;
 }
 
-// One step of the ellipse. Returns half the width of the blurred step between the levels [px].
+// One Gauss-Newton step. Returns half the width of the blurred step between the levels [px].
 std::optional<double> fit_edges(const Band& band,
                                 std::span<const Edge> edges,
                                 FittedEllipse& refined) {

@@ -9,22 +9,22 @@
 
 namespace ellipse {
 
-/// How far from an edge a pixel may be to tell anything of its place [px].
+/// Largest distance from an edge at which pixels carry information on its position [px].
 inline constexpr double kPhotometricBandPx = 3.8;
-/// A band that is narrower on its inside does not tell the edge from what lies there [px].
+/// Smallest `inside_px`: in a narrower band the edge is not separable from the next one [px].
 inline constexpr double kMinPhotometricBandPx = 2.8;
 
 /// Refines an ellipse that is known within about half a pixel, from the brightness of every pixel
 /// beside its perimeter: a step between two levels, blurred by the lens.
 ///
-/// One Gauss-Newton step towards the least squares of brightness, by sectors: each has two levels
-/// that it shares with its neighbours, and an offset of its own. An ellipse is laid through the
-/// offsets with Tukey's weights, so that sectors that show something else do not count. Within 1.6
-/// times the Cramer-Rao bound of the centre for edges in focus, from 12 px on.
+/// Two Gauss-Newton steps on the brightness residuals by sectors; the first also fits the blur.
+/// Each sector shares two levels with its neighbours and has its own offset. An ellipse is fitted
+/// to the offsets with Tukey's weights, which reject outliers. Within 1.6 times the Cramer-Rao
+/// bound of the centre for edges in focus, from 12 px on.
 ///
-/// @param inside_px       No other edge of the target is as near to the perimeter, inside it.
-/// @param min_contrast  Of the two levels [grey levels].
-/// @return nullopt where fewer than half of the sectors inside the picture show the step, or where
+/// @param inside_px     Distance to the target's next edge inside the perimeter.
+/// @param min_contrast  Smallest difference of the two levels [grey levels].
+/// @return nullopt if fewer than 8 or than half of the sectors inside the picture show the step, or
 ///         the band is too narrow. Allocates nothing; O(perimeter), up to a few hundred pixels.
 [[nodiscard]] std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
                                                                    const Ellipse& e,

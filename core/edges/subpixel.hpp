@@ -13,24 +13,24 @@ enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
   return polarity == Polarity::kDarkInside ? Polarity::kBrightInside : Polarity::kDarkInside;
 }
 
-/// Where the gradient maximum lies within its pixel, and how sharp it is.
+/// Sub-pixel position and sharpness of a gradient maximum.
 struct SubpixelMaximum {
   float offset_px = 0.0F;  ///< Along the axis, from the pixel's centre.
-  float sharpness = 0.0F;  ///< Curvature of the gradient across it, over its height [1/px^2].
+  float sharpness = 0.0F;  ///< Negative second derivative over the height [1/px^2].
 };
 
-/// Of the blur of a lens that is in focus [px^2].
+/// Variance of the blur of a lens in focus [px^2].
 inline constexpr double kLensVariance = 0.36;
 
-/// How far inside a curved edge its gradient maximum lies [px], per curvature [1/px]: smoothing of
+/// Inward shift of a curved edge's gradient maximum [px] per curvature [1/px]: smoothing of
 /// variance v moves the maximum of an edge of curvature k inwards by v k / 2, to first order (own
 /// derivation from the mean of a disc's edge over a Gaussian).
 /// The 5 x 5 kernels have a variance of 1 along the edge.
 inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
 
 /// The vertex of the parabola through three pixels along the axis closest to the gradient
-/// [Devernay1995] 2. The gradients' projections on the middle one count.
-/// @param here  The middle one's gradient in a map; its neighbours are `step` before and behind.
+/// [Devernay1995] 2. Projects the neighbours' gradients on the middle one.
+/// @param here  The middle gradient in a map; its neighbours are `step` before and after.
 [[nodiscard]] inline SubpixelMaximum subpixel_maximum(const Gradient* here, int step) {
   constexpr float kFarthest = 0.7F;
   const float gx = here->x;

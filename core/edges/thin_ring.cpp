@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t kDirections = 8;  // over half a turn, see maxima_distances()
 constexpr double kLensBlur = 0.6;       // standard deviation [px], in focus
-constexpr double kWidest = 6.0;         // that is corrected [px]
+constexpr double kWidest = 6.0;         // largest corrected gap [px]
 constexpr std::size_t kWidths = 31;     // in the table, from 0 to kWidest
-constexpr int kPhases = 8;              // of the pixels against the bar
+constexpr int kPhases = 8;              // sub-pixel positions of the bar to average over
 constexpr int kHalvings = 20;
 
 using PerWidth = std::array<double, kWidths>;
@@ -23,14 +23,14 @@ Eigen::Vector2d direction(std::size_t i) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// A bright bar, blurred by the lens, at a distance from its middle.
+// Brightness of a bar, blurred by the lens, at a distance from its middle.
 double bar_at(double distance, double width) {
   const double scale = 1.0 / (std::numbers::sqrt2 * kLensBlur);
   return 0.5 *
          (std::erf((0.5 * width + distance) * scale) + std::erf((0.5 * width - distance) * scale));
 }
 
-// What the 5 x 5 kernels of GradientMap make of the bar, along its normal, at a pixel beside it.
+// Response of GradientMap's 5 x 5 kernels to the bar at pixel (x, 0), against its normal.
 double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
   constexpr std::array<double, 5> kSmooth = {1, 4, 6, 4, 1};
   constexpr std::array<double, 5> kDifference = {-1, -2, 0, 2, 1};
@@ -46,8 +46,8 @@ double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
   return -slope;
 }
 
-// Distance of the gradient maximum from the bar's middle, as the vertex of a parabola through
-// the pixel with the largest gradient and its neighbours, in the mean over where the pixels lie.
+// Distance of the gradient maximum from the bar's middle: vertex of a parabola through the pixel
+// with the largest gradient and its neighbours, averaged over sub-pixel positions of the bar.
 double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
   double sum = 0.0;
   for (int phase = 0; phase < kPhases; ++phase) {
@@ -65,8 +65,8 @@ double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
   return normal.x() * sum / kPhases;
 }
 
-// How far apart the gradient maxima of bars are, by the bar's width; for normals at 0, 1/16 and 1/8
-// of a turn from an axis: the kernels are the same in all octants.
+// Distance between a bar's gradient maxima by its width, for normals at 0, 1/16 and 1/8 of a turn
+// from an axis. The kernels are symmetric, so that the other octants follow.
 const std::array<PerWidth, 3>& maxima_distances() {
   static const auto kTable = [] {
     std::array<PerWidth, 3> table{};
@@ -106,10 +106,10 @@ RingEdges without_repulsion(const RingEdges& maxima) {
   const Eigen::Matrix2d outer = stretch_of(maxima.outer);
   const Eigen::Matrix2d inner = stretch_of(maxima.inner);
   const Eigen::Matrix2d middle = 0.5 * (outer + inner);
-  std::array<double, kDirections> radii;  // of the line in the ring's middle [px]
+  std::array<double, kDirections> radii;  // of the ring's middle line [px]
   double gaps = 0.0;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    // The distance of an ellipse's tangent from its centre.
+    // Distance of an ellipse's tangent from its centre: |M normal|.
     const Eigen::Vector2d normal = direction(i);
     radii[i] = (middle * normal).norm();
     const double gap = (outer * normal).norm() - (inner * normal).norm();
@@ -118,8 +118,7 @@ RingEdges without_repulsion(const RingEdges& maxima) {
   }
   if (!(gaps > 0.0)) return maxima;
 
-  // The ring's width over its middle radius: the larger it is, the farther apart the gradient
-  // maxima.
+  // Bisects the ring's width over its middle radius; the predicted gaps grow with it.
   double low = 0.0;
   double high = 2.0;
   for (int step = 0; step < kHalvings; ++step) {
@@ -137,7 +136,6 @@ RingEdges without_repulsion(const RingEdges& maxima) {
   return {at(1.0 + 0.5 * low, maxima.outer), at(1.0 - 0.5 * low, maxima.inner)};
 }
 
-// Same centre and shape, another radius, as the two edges of a ring at least this thick.
 bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio) {
   const double larger = std::max(a.semi_major, b.semi_major);
   const double ratio = std::min(a.semi_major, b.semi_major) / larger;

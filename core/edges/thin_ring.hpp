@@ -12,23 +12,23 @@ struct RingEdges {
 
 /// Removes the blur bias that separates a thin ring's two gradient maxima.
 ///
-/// Smoothing draws the two edges of a bar apart, the more, the thinner it is: a bar without width
-/// has its gradient maxima two standard deviations of the blur from each other. What lies between
-/// them stays in place, and the share of the ring in its radius is the same all around; so one
-/// number tells both edges. Edges that are far apart stay as they are. The paint is taken to be as
-/// different from what is inside as from what is outside, and the lens to be in focus, as for
-/// kMaximumShift.
+/// Blur separates the gradient maxima of a bar, more so for thinner bars: at zero width they are
+/// two standard deviations of the blur apart. Their middle line stays in place, and the width of
+/// the ring is a constant share of its radius, so that one parameter determines both edges. Edges
+/// that are far apart are returned unchanged. Assumes equal contrast on both sides of the ring and
+/// a lens in focus, as for kMaximumShift.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 [[nodiscard]] RingEdges without_repulsion(const RingEdges& maxima);
 
-/// Computes the table that without_repulsion() otherwise computes in its first call.
+/// Computes the table that the first call of without_repulsion() needs.
 void prepare_repulsion();
 
-/// A ring cannot be thinner than this to be told from a line: inner over outer radius.
+/// Largest ratio of inner to outer radius at which a ring is distinguished from a line.
 inline constexpr double kMaxRingRatio = 0.97;
 
-/// Same centre and shape, another radius, as the two edges of a ring at least this thick.
+/// Whether two ellipses may be the edges of one ring: concentric, with a ratio of semi-major axes
+/// from 1/4 to `largest_ratio`.
 [[nodiscard]] bool are_partners(const Ellipse& a,
                                 const Ellipse& b,
                                 double largest_ratio = kMaxRingRatio);

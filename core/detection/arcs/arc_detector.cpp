@@ -13,14 +13,14 @@
 namespace ellipse {
 namespace {
 
-constexpr int kScales[] = {2, 4, 1};  // in this order
+constexpr int kScales[] = {2, 4, 1};  // in order of the search
 constexpr int kCoarsest = 4;
 constexpr int kMaxPairs = 50;
-constexpr double kConvexSlack = 0.1;  // of the distance between arcs, by which one may lie outside
-constexpr double kSame = 0.05;        // of the semi-major axis
-constexpr Tolerance kSameOutline{2.0, 0.1};  // of an outline that is judged
-constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis from which half the size is enough
-constexpr double kNoDoubt = 3.0;             // log odds
+constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share of the distance
+constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
+constexpr Tolerance kSameOutline{2.0, 0.1};  // between a judged outline and its fit
+constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis above which half the size suffices
+constexpr double kNoDoubt = 3.0;             // log odds of a certain target
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -34,7 +34,7 @@ bool are_same(const Ellipse& a, const Ellipse& b, double px) {
   return is_same(a, b, {px, kSame});
 }
 
-// Whether all of b is on the inner side of a's edge: what lies on one convex curve does.
+// Whether b lies on the inner side of a's tangents, as arcs of one convex curve do.
 bool is_inside_of(const Arc& b, const Arc& a) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -60,7 +60,7 @@ std::span<const Detection> ArcDetector::detect(const ImageView& luma,
   return detections_;
 }
 
-// On the smallest picture that shows the outline well, by the polarity that explains it better.
+// At the coarsest scale that resolves the outline, for the better polarity; may be -infinity.
 std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
@@ -118,7 +118,7 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   }
 }
 
-// The best arcs with each other first: by the sum of their ranks.
+// Tries pairs in ascending sum of ranks, so that the best arcs come first.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
   const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxPairedArcs);
   int pairs = 0;
@@ -227,15 +227,15 @@ void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
   }
 }
 
-// Whether another look would find nothing better.
+// Whether the best target is certain enough to skip the remaining scales.
 bool ArcDetector::is_beyond_doubt() {
   report();
   const auto target = select_target(detections_);
   return target && log_odds(target->probability) >= kNoDoubt;
 }
 
-// The log odds of what a reduced picture shows are averaged with those at the finer scales: the
-// corners of a polygon vanish in the small, an ellipse stays one in the large.
+// Averages the log odds of ellipses from reduced pictures with those at the finer scales: reduction
+// hides the corners of a polygon, which show again at the finer scales.
 void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   Thresholds thresholds = full;
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
@@ -266,7 +266,7 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   });
 }
 
-// What the exact axes show to be beyond the limits is left out.
+// Drops ellipses whose refined axes are beyond the limits.
 void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
   std::erase_if(found_, [&](Found& found) {
     if (found.scale == 1) return false;

@@ -20,17 +20,16 @@ namespace ellipse {
 
 struct TracedPiece;
 
-/// Finds ellipses from the arcs of their edges: gradient, its maxima, chains, arcs; then every arc,
-/// every pair of arcs that could be of one ellipse and every closed chain is a candidate, fitted
-/// from its moments and measured on the edges around its whole perimeter. The probability that
-/// these make an ellipse decides.
+/// Finds ellipses from the arcs of their edges: gradient, gradient maxima, chains, arcs. Candidates
+/// are arcs with enough turn, pairs of arcs on one convex curve, and chains that nearly close. Each
+/// is fitted from its moments and measured on the edges around its whole perimeter; the probability
+/// of an ellipse decides.
 ///
-/// Looks at the picture in half its size first, then in a quarter and in full, as long as the
-/// evidence leaves a doubt; then what a reduced picture shows is confirmed at the finer sizes. The
-/// same ellipse from two sizes is one. What is found on a reduced picture is refined on the full
-/// one.
+/// Searches at half size, then at a quarter, then at full size, and stops early if the best target
+/// is certain. Otherwise confirms ellipses from reduced pictures at the finer sizes. Merges
+/// duplicates across sizes. Refines ellipses from reduced pictures on the full one.
 ///
-/// Allocates nothing in the steady state. The work on one image is bounded: by its pixels, by
+/// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
 /// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
 class ArcDetector final : public Detector {
  public:
@@ -50,12 +49,12 @@ class ArcDetector final : public Detector {
   struct Guess {
     Ellipse ellipse;  // [px of the pass]
     Polarity polarity;
-    double rms_px;  // of the distances of the edges that it comes from
+    double rms_px;  // RMS distance of the points of its arcs
   };
 
   struct Found {
     MeasuredEllipse measured;  // [px of the picture]
-    int scale;                 // of the pass that it was found in
+    int scale;                 // of its pass
   };
 
   void search_scales(const ImageView& luma, const Thresholds& thresholds);
@@ -84,20 +83,20 @@ class ArcDetector final : public Detector {
   void trace_arcs();
 
   Scaler scaler_;
-  std::array<GradientMap, 3> maps_;  // of the full picture, half and a quarter
+  std::array<GradientMap, 3> maps_;  // at full size, half and a quarter
   GradientMap* map_ = nullptr;       // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
   EllipseVerifier verifier_;
   RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
-  std::vector<std::uint8_t> is_used_;  // by an ellipse that was found
+  std::vector<std::uint8_t> is_used_;  // per arc: whether it lies on a found ellipse
   std::vector<Found> found_;
   std::vector<Guess> rejected_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
   int scale_ = 1;                     // of this pass
-  double min_gradient_ = 0.0;         // of an edge on the full picture
+  double min_gradient_ = 0.0;         // smallest of an edge on the full picture
 };
 
 }  // namespace ellipse

@@ -10,16 +10,15 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kEnoughPoints = 32;  // of an arc
-constexpr std::size_t kCornerReach = 3;    // [px] before and after
-constexpr double kCornerTurn = 0.9;        // [rad] over both reaches
-constexpr double kRetreatOverNoise = 5.0;  // of the direction, that ends an arc
-constexpr double kMinTurn = 0.25;          // [rad]; straighter ones only cost time
-constexpr double kClosingChord = 0.35;     // of the length of a chain that is tried whole
+constexpr std::size_t kEnoughPoints = 32;  // maximum per arc in its moments
+constexpr std::size_t kCornerReach = 3;    // [px] on each side of a corner
+constexpr double kCornerTurn = 0.9;        // [rad] across both sides
+constexpr double kRetreatOverNoise = 5.0;  // reverse turn that ends an arc, in sigma
+constexpr double kMinTurn = 0.25;          // [rad]; straighter pieces only cost time
+constexpr double kClosingChord = 0.35;     // largest chord over length of a chain tried whole
 
-// The arc tangent within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47, shortened. No
-// branches, so that the compiler makes vectors of it. The angle takes the place of x. The
-// strength is |x| + |y|.
+// Replaces x by atan2(y, x), within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47,
+// shortened. Branch-free, so that the compiler vectorizes it. The strength is |x| + |y|.
 void to_angles(float* __restrict x,
                const float* __restrict y,
                float* __restrict strengths,
@@ -54,7 +53,7 @@ Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
   return map.lens().near_ideal(point);
 }
 
-// A normal in the picture, taken to a place of the ideal plane.
+// Transforms a normal from the picture to the ideal plane, at the point `ideal_px`.
 Eigen::Vector2d ideal_normal(const LensView& lens,
                              const Eigen::Vector2d& ideal_px,
                              const Eigen::Vector2d& in_picture) {
@@ -123,7 +122,7 @@ void ArcSplitter::unwrap(std::size_t begin, std::size_t end) {
 Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::size_t end) const {
   // One origin for all arcs, so that their moments can be added.
   Moments moments(Eigen::Vector2d(0.5 * map.width(), 0.5 * map.height()));
-  // A guess needs no more points than these: it is refined on the edges later.
+  // A few points suffice: the guess is refined on the edges later.
   const std::size_t step = (end - begin) / kEnoughPoints + 1;
   for (std::size_t i = begin + step / 2; i < end; i += step) {
     const Eigen::Vector2d point = maximum_at(map, pixels_[i]);
@@ -132,7 +131,7 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   return moments;
 }
 
-// Where an outline is too rough to be cut into arcs, the whole of it may still be of one ellipse.
+// Adds a nearly closed chain as a whole: an outline too rough for arcs may still be an ellipse.
 void ArcSplitter::add_whole(const GradientMap& map, std::size_t begin, std::size_t end) {
   const double chord = (map.point_of(pixels_[end - 1]) - map.point_of(pixels_[begin])).norm();
   if (!(chord < kClosingChord * static_cast<double>(end - begin))) return;
@@ -145,7 +144,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
                               bool is_closed) {
   unwrap(begin, end);
   add_whole(map, begin, end);
-  // A run of pixels that turn sharply has its corner where they turn most.
+  // In a run of sharply turning pixels, the sharpest one is the corner.
   std::size_t part = begin;
   std::size_t corner = end;
   float sharpest = 0.0F;
@@ -156,7 +155,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
     corner = end;
     sharpest = 0.0F;
   };
-  // A closed chain has no ends; near those of an open one no corner is told.
+  // A closed chain wraps around; near the ends of an open one no corner is detected.
   const std::size_t length = end - begin;
   const std::size_t margin = is_closed ? 0 : kCornerReach;
   for (std::size_t i = begin + margin; i + margin < end; ++i) {
@@ -177,7 +176,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
   if (part < end) split_smooth_part(map.noise(), part, end);
 }
 
-// By how much a direction has to turn back, so that it is not noise [rad].
+// Smallest reverse turn of the direction that is not noise [rad].
 double ArcSplitter::min_retreat(double noise, std::size_t begin, std::size_t end) const {
   float strength = 0.0F;
   for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
@@ -186,7 +185,7 @@ double ArcSplitter::min_retreat(double noise, std::size_t begin, std::size_t end
   return kRetreatOverNoise * 1.27 * noise * length / strength;
 }
 
-// Cuts where the direction retreats from its furthest.
+// Cuts at extremes of the direction, where the reverse turn exceeds the noise.
 void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
   if (end < begin + ChainTracer::kMinLength) return;
   const auto retreat = static_cast<float>(min_retreat(noise, begin, end));
@@ -245,7 +244,7 @@ Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
   arc.begin = piece.begin;
   arc.end = piece.end;
   arc.turn_rad = std::abs(piece.turn_rad);
-  // The chain runs with the bright side on its left: turning right, it turns around the dark.
+  // The chain runs with the bright side on its left, so that a right turn encloses the dark side.
   arc.polarity = piece.turn_rad > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
   const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -13,15 +13,15 @@
 
 namespace ellipse {
 
-/// A piece of a chain that turns to one side only, as an ellipse's edge does.
+/// A piece of a chain that turns to one side only, or a whole chain that nearly closes.
 struct Arc {
-  std::size_t begin = 0;  ///< Of all chains' pixels.
+  std::size_t begin = 0;  ///< Index into ChainTracer::pixels().
   std::size_t end = 0;
-  double turn_rad = 0.0;  ///< By which it turns, above 0.
+  double turn_rad = 0.0;  ///< Magnitude of its turn.
   Polarity polarity = Polarity::kDarkInside;
   // In the ideal plane:
-  std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, in its middle, near its end [px].
-  std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals there, towards its inside.
+  std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, middle and end [px].
+  std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals at `points`, inwards.
   Moments moments{Eigen::Vector2d::Zero()};
 
   [[nodiscard]] double length_px() const { return static_cast<double>(end - begin); }
@@ -31,15 +31,15 @@ struct Arc {
 class ArcSplitter {
  public:
   /// The best arcs by length and turn, at most kMaxPairedArcs. Valid until the next call.
-  /// @param wants_all  Behind them the rest of those that can be tried alone, at most kMaxArcs
-  ///                   together.
-  /// Allocates only while it has not yet seen as many chains.
+  /// @param wants_all  Appends all other arcs that turn by at least kMinSingleTurn, up to kMaxArcs
+  ///                   in total.
+  /// Allocates only when pixels or arcs outnumber those of every earlier call.
   [[nodiscard]] std::span<Arc> split(const GradientMap& map,
                                      const ChainTracer& chains,
                                      bool wants_all = false);
 
-  static constexpr double kMinSingleTurn = 0.8;      ///< Of an arc that is tried alone [rad].
-  static constexpr std::size_t kMaxPairedArcs = 50;  ///< Pairs grow with its square.
+  static constexpr double kMinSingleTurn = 0.8;      ///< Smallest turn of an arc tried alone [rad].
+  static constexpr std::size_t kMaxPairedArcs = 50;  ///< The number of pairs grows with its square.
   static constexpr std::size_t kMaxArcs = 2048;      ///< Bounds the time spent on one image.
 
  private:
@@ -64,8 +64,8 @@ class ArcSplitter {
   [[nodiscard]] Arc make_arc(const GradientMap& map, const Piece& piece) const;
 
   std::span<const std::int32_t> pixels_;
-  std::vector<float> angles_;     // of the gradient [rad], without jumps along a chain
-  std::vector<float> y_;          // of the gradient
+  std::vector<float> angles_;     // of the gradient [rad], unwrapped along each chain
+  std::vector<float> y_;          // of the gradient, its y component
   std::vector<float> strengths_;  // of the gradient, |x| + |y|
   std::vector<Piece> pieces_;
   std::vector<Arc> arcs_;

@@ -11,19 +11,19 @@
 namespace ellipse {
 namespace {
 
-constexpr double kBasePx = 1.5;          // an edge of a rigid outline is this near,
-constexpr double kDeformation = 0.025;   // one of a deformed outline this share of the radius more
-constexpr double kOnOutlinePx = 2.0;     // an edge on the outline is this near,
-constexpr double kOnEllipsePx = 1.0;     // one that counts in the paper's Eq. (1) this near,
-constexpr double kOnEllipseRad = 0.3;    // and in this direction
-constexpr double kTurnWindow = 0.2;      // [rad] of the outline's turn, to both sides
+constexpr double kBasePx = 1.5;          // deviation of a rigid outline's edges,
+constexpr double kDeformation = 0.025;   // plus this share of the radius for deformed outlines
+constexpr double kOnOutlinePx = 2.0;     // largest distance of an edge on the outline
+constexpr double kOnEllipsePx = 1.0;     // largest distance that counts in the paper's Eq. (1),
+constexpr double kOnEllipseRad = 0.3;    // and largest direction error
+constexpr double kTurnWindow = 0.2;      // half-width of the window of the outline's turn [rad]
 constexpr double kStraightSlope = -0.5;  // halfway between an ellipse's 0 and a line's -1
 
-constexpr std::size_t kFewSamples = 32;  // of a look that only rejects,
-constexpr std::size_t kSamples = 64;     // of one that decides
+constexpr std::size_t kFewSamples = 32;  // of the early steps,
+constexpr std::size_t kSamples = 64;     // of the last step and the final measurement
 
-// A Gauss-Newton step: its samples, its reach, and by how much the log odds of an ellipse grow at
-// most from here on, in 99 % of the ellipses of the sources.
+// A Gauss-Newton step. From it on, the log odds grow by at most max_growth for 99 % of the ellipses
+// of the sources.
 struct Step {
   std::size_t samples;
   double part_of_reach;
@@ -44,7 +44,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// As a share of all samples.
+// Longest run of samples without an edge, as a share of all samples.
 double longest_gap(std::span<const EdgeMeasurement> edges, std::size_t samples) {
   const int count = static_cast<int>(samples);
   int longest = edges.empty() ? count : 0;
@@ -59,13 +59,13 @@ bool is_on_outline(const EdgeMeasurement& edge, double reach_px) {
   return std::abs(edge.offset.distance_px) <= reach_px;
 }
 
-// Over the edges of an outline.
+// Sums over the edges of an outline.
 struct Sums {
   double length = 0.0;
   double length_on_ellipse = 0.0;
   double squares = 0.0;
   double contrast = 0.0;
-  double turn = 0.0;  // but for a factor
+  double turn = 0.0;  // up to a common factor
   double turn_in_reach = 0.0;
 
   void add(const EdgeMeasurement& edge, double reach_px) {
@@ -126,7 +126,7 @@ Verdict EllipseVerifier::judge_edges() const {
   return at_least(Reason::kTooFewEdges, edges, double(kMinEdgesOfEllipse));
 }
 
-// Whether a candidate can reach the wanted probability yet.
+// Rejects a candidate that is unlikely to reach the minimum probability in the remaining steps.
 Verdict EllipseVerifier::judge_prospect(double max_growth,
                                         const Thresholds& thresholds,
                                         const EvidenceTable& table,
@@ -150,8 +150,8 @@ std::optional<Ellipse> EllipseVerifier::nearer_to_edges(const Ellipse& e, double
 }
 
 // Along a polygon's side the gradient keeps its direction while the outline's normal turns: the
-// direction error falls by a radian per radian of turn. Along an ellipse it stays. A line through
-// the errors in a window of the turn tells the two apart.
+// direction error falls by a radian per radian of turn. Along an ellipse it is constant. The slope
+// of a line fitted to the errors in a window of the turn separates the two.
 double EllipseVerifier::straight_share() {
   const std::span<const EdgeMeasurement> edges = measurer_.edges();
   const std::size_t n = edges.size();
@@ -187,8 +187,8 @@ double EllipseVerifier::straight_share() {
   return judged > 0.0 ? straight / judged : 1.0;
 }
 
-// @param samples   At least; more where few of them are inside the picture.
-// @param reach_px  Edges this near are on the outline.
+// @param samples   Minimum; doubled while too few are inside the picture.
+// @param reach_px  Largest distance of an edge on the outline.
 void EllipseVerifier::measure(const GradientMap& map,
                               std::size_t samples,
                               double reach_px,
@@ -249,7 +249,7 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   verdict = at_least(Reason::kContourOverlap, measured.on_ellipse, thresholds.contour_overlap);
   if (!verdict.is_accepted()) return verdict;
   const Ellipse& e = measured.ellipse;
-  // A contour has max(|cos|, |sin|) of a direction pixels per pixel of length: over all of them
+  // Contour pixels per pixel of length: mean of max(|cos|, |sin|) over all directions.
   constexpr double kPixelsOfLength = 2.0 * std::numbers::sqrt2 / std::numbers::pi;
   const double visible_px = perimeter_px(e) * visible_fraction(e, map.width(), map.height());
   measured.as_target = at_least(Reason::kContourTooShort,

@@ -11,31 +11,31 @@
 
 namespace ellipse {
 
-/// A candidate on the edges around it, and what they say of it.
+/// A candidate fitted to the edges around it, and their evidence.
 struct MeasuredEllipse {
   Ellipse ellipse;
   Polarity polarity = Polarity::kDarkInside;
-  double support = 0.0;     ///< Share of the inside perimeter that has edges, by length.
-  double on_ellipse = 0.0;  ///< Share of these edges that lie on the ellipse.
+  double support = 0.0;     ///< Share of the perimeter inside the picture with edges, by length.
+  double on_ellipse = 0.0;  ///< Share of these edges on the ellipse, by length.
   Features features{};
-  double probability = 0.0;  ///< That it is an ellipse, by the evidence table.
+  double probability = 0.0;  ///< Of being an ellipse, by the evidence table.
   int candidate = -1;        ///< As in Detection.
   Verdict as_target = {};    ///< As in Detection.
 };
 
-/// Fits a guessed ellipse to the edges around it, and measures what they say of it.
+/// Fits a candidate ellipse to the edges around it and measures their evidence.
 ///
-/// Rigid and deformed outlines are one model: how far the edges leave the ellipse is a feature.
-/// A candidate that cannot reach the wanted probability any more is dropped on the way.
+/// Rigid and deformed outlines share one model: the edges' deviation from the ellipse is a feature.
+/// Rejects a candidate early once it is unlikely to reach the minimum probability.
 class EllipseVerifier {
  public:
-  /// Whether axes, ratio and place are such that it is worth a look.
+  /// Rejects candidates by axes, axis ratio and position before any measurement.
   [[nodiscard]] static Verdict judge_shape(const Ellipse& e,
                                            const GradientMap& map,
                                            const Thresholds& thresholds);
 
-  /// @param measured      Written where edges were found along the outline.
-  /// @return Why it is rejected.
+  /// @param measured  Always written; its probability only if the last fit has enough edges.
+  /// @return Accepted, or why it is rejected.
   [[nodiscard]] Verdict verify(const GradientMap& map,
                                const Ellipse& guess,
                                Polarity polarity,
@@ -43,7 +43,7 @@ class EllipseVerifier {
                                const EvidenceTable& table,
                                MeasuredEllipse& measured);
 
-  /// How far the edge of a deformed pad of this size may leave its ellipse [px].
+  /// Largest distance between a deformed pad's edge and its ellipse `e` [px].
   [[nodiscard]] static double deformation_px(const Ellipse& e);
 
  private:

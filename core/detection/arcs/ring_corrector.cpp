@@ -9,15 +9,15 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMaxPx = 30.0;  // semi-minor axis of a ring that may be thin
-constexpr double kGapPx = 2.4;   // between a thin ring's maxima, within the refinement's reach
+constexpr double kMaxPx = 30.0;  // largest semi-minor axis of a corrected ring
+constexpr double kGapPx = 2.4;   // typical gap of a thin ring's maxima, in the refinement's reach
 constexpr double kMinSupport = 0.7;
-constexpr double kContrastTolerance = 0.4;  // between the edges' gradients, as a logarithm
+constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
 
 }  // namespace
 
 RingCorrector::RingCorrector() {
-  prepare_repulsion();  // takes a few milliseconds: not in a frame
+  prepare_repulsion();  // takes a few milliseconds; kept out of the first frame
 }
 
 void RingCorrector::correct(const ImageView& luma,
@@ -41,8 +41,8 @@ void RingCorrector::correct(const ImageView& luma,
   }
 }
 
-// The closest edge that was found; else one on the picture, which is too near or too small to be
-// found alone.
+// The closest partner among the detections; otherwise an edge on the picture that is too close or
+// too small to be detected by itself.
 std::optional<RefinedEllipse> RingCorrector::next_edge(const ImageView& luma,
                                                        double min_gradient,
                                                        std::span<const Polarity> polarities,

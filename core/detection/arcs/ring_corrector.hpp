@@ -12,16 +12,16 @@
 
 namespace ellipse {
 
-/// Corrects the edges of thin rings among detections.
+/// Removes the blur bias from detections that are edges of thin rings.
 class RingCorrector {
  public:
   RingCorrector();
 
-  /// Looks for the next edge of each among the others, then on the picture. Where both have the
-  /// same contrast, the detection's ellipse becomes the true edge.
-  /// @param min_gradient  Of an edge [units of Gradient].
-  /// @param polarities      Of the detections.
-  /// Allocates only while it has not yet seen as many detections.
+  /// Finds the ring's other edge for each small detection, among the detections or else on the
+  /// picture. If both have similar contrast, replaces the detection's ellipse by the unbiased edge.
+  /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
+  /// @param polarities    Of the detections.
+  /// Allocates only when the detections outnumber those of every earlier call.
   void correct(const ImageView& luma,
                double min_gradient,
                std::span<const Polarity> polarities,
@@ -35,7 +35,7 @@ class RingCorrector {
                                                         const LensView& lens,
                                                         std::size_t i) const;
 
-  std::vector<Ellipse> maxima_;  // the detections, not yet corrected
+  std::vector<Ellipse> maxima_;  // the detections before correction
 };
 
 }  // namespace ellipse

@@ -17,15 +17,15 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kSmoothingPx = 1.0;
 constexpr double kNoiseQuantile = 0.3;
-constexpr int kNoiseRowStep = 6;  // every second pixel of every sixth row is enough
+constexpr int kNoiseRowStep = 6;  // samples every second pixel of every sixth row
 constexpr double kHighOverNoise = 5.0;
 constexpr double kLowOverHigh = 0.4;
-constexpr double kMinHigh = 1.0;  // [grey levels / px], above the steps of rounding
+constexpr double kMinHigh = 1.0;  // [grey levels / px], above quantization noise
 
-// Between the gradient and the normal of an ellipse whose edge it is: 30 degrees.
+// Cosine of the largest angle between an edge's gradient and the ellipse's normal: 30 degrees.
 constexpr double kMinCosine = 0.87;
 
-// A corner: over this many pixels before and after it a contour turns by more than 45 degrees.
+// At a corner, the chords over this many pixels before and after it differ by more than 45 degrees.
 constexpr std::size_t kCornerReach = 5;
 constexpr double kCornerCosine = 0.7;
 constexpr int kMinPartPx = 16;
@@ -36,9 +36,9 @@ constexpr Tolerance kSameFit{.px = 0.75};
 
 constexpr int kContourSteps = 2;
 constexpr int kEdgeSteps = 2;
-constexpr int kBorderPx = 3;  // How far smoothing and gradient reach.
+constexpr int kBorderPx = 3;  // reach of the smoothing and gradient kernels
 
-// Sobel's 3 x 3 kernels weigh a slope of one grey level per pixel by 8.
+// Response of the 3 x 3 Sobel kernels to a slope of one grey level per pixel.
 constexpr double kSobelGain = 8.0;
 constexpr int kHistogramBins = 2048;
 
@@ -49,8 +49,8 @@ int approximate_norm(int x, int y) {
   return larger + 3 * smaller / 8;
 }
 
-// The noise of the gradient, from a quantile so low that edges have no part in it. The gradient of
-// noise is Rayleigh distributed, whose quantile q is sigma sqrt(-2 ln(1 - q)) [Rosin1997].
+// Noise of the gradient, from a quantile low enough to exclude edges. The gradient magnitude of
+// noise is Rayleigh distributed with the quantile q at sigma sqrt(-2 ln(1 - q)) [Rosin1997].
 double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& histogram) {
   histogram.assign(kHistogramBins, 0);
   int samples = 0;
@@ -69,13 +69,13 @@ double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& hi
   return quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile));
 }
 
-// The edge map and the gradient it was made of.
+// The edge map and its gradient.
 struct EdgeField {
   const cv::Mat& edges;
   const cv::Mat& gradient_x;
   const cv::Mat& gradient_y;
 
-  // Nearer to the border the smoothing has displaced the edges.
+  // Smoothing displaces the edges nearer to the border.
   [[nodiscard]] bool is_inside(const cv::Point& p) const {
     return p.x >= kBorderPx && p.y >= kBorderPx && p.x < edges.cols - kBorderPx &&
            p.y < edges.rows - kBorderPx;
@@ -111,7 +111,7 @@ Eigen::Vector2d maximum(const EdgeField& field,
   return {p.x + across.x * offset, p.y + across.y * offset};
 }
 
-// One step towards the ellipse through the gradient maxima of its own contour.
+// One Gauss-Newton step on the gradient maxima of the ellipse's own contour.
 std::optional<Ellipse> refined_on_contour(const Ellipse& e,
                                           std::span<const cv::Point> contour,
                                           const EdgeField& field) {
@@ -125,8 +125,7 @@ std::optional<Ellipse> refined_on_contour(const Ellipse& e,
   return fit.solve();
 }
 
-// One step towards the ellipse through the gradient maxima of all edges along it, of whatever
-// contour.
+// One Gauss-Newton step on the gradient maxima of all edges along the ellipse, of any contour.
 std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field) {
   GeometricFit fit(e);
   walk_perimeter(e, [&](const PerimeterStep& step) {
@@ -142,8 +141,8 @@ std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field
   return fit.solve();
 }
 
-// This frees an ellipse of what else hangs on its contour, joins the parts of it that lie in
-// several contours, and makes it finer than pixels.
+// Refines an ellipse to sub-pixel accuracy: ignores attached branches of its contour and includes
+// its edges in other contours.
 Ellipse refined(Ellipse e, std::span<const cv::Point> contour, const EdgeField& field) {
   for (int i = 0; i < kContourSteps; ++i) {
     e = refined_on_contour(e, contour, field).value_or(e);
@@ -164,7 +163,7 @@ bool is_known(const Ellipse& e, std::span<const Detection> known) {
 }
 
 // [Keipour2021] Algorithm 1, the body of its loop after the contour's size: every rejection in the
-// paper's order. Whatever ellipse there is to judge is in `found`.
+// paper's order. `found` receives the ellipse as soon as it is fitted.
 Verdict examine(std::span<const cv::Point> contour,
                 const EdgeField& field,
                 const ImageView& thick_edges,
@@ -248,7 +247,7 @@ void ContourDetector::detect_edges(const ImageView& luma, const Thresholds& thre
             true);
 }
 
-// A picture full of ellipses keeps its best ones, so that no picture takes for ever.
+// Trims to the kMaxDetections best once there are twice as many; bounds the time on any picture.
 void ContourDetector::add_detection(const Detection& detection) {
   detections_.push_back(detection);
   if (detections_.size() < 2 * kMaxDetections) return;
@@ -298,7 +297,7 @@ void ContourDetector::try_contour(std::span<const cv::Point> contour,
   if (verdict.is_accepted()) add_detection(found);
 }
 
-// Gaps and occluders join an ellipse's edge with others: what is between the corners may be it.
+// Gaps and occluders join an ellipse's edge to others; tries the parts between corners.
 void ContourDetector::try_parts(const Thresholds& thresholds) {
   for (const auto& contour : contours_) {
     for_each_smooth_part(contour, [&](std::span<const cv::Point> part) {
@@ -337,7 +336,7 @@ std::optional<double> ContourDetector::log_odds_of(const ImageView& luma,
   return log_odds(overlap) - log_odds(thresholds.ellipse_overlap);
 }
 
-// The paper knows of no lens: an ellipse is one of the picture.
+// The paper has no lens model: the detections so far are ellipses of the distorted picture.
 void ContourDetector::take_to_ideal_plane() {
   if (!lens_.is_distorted()) return;
   std::erase_if(detections_, [&](Detection& detection) {

@@ -14,19 +14,19 @@ struct TracedPiece;
 /// [Keipour2021] Algorithm 1, step by step on OpenCV: Canny's edges [Canny1986], the contours of
 /// [SuzukiAbe1985], one ellipse fitted to each contour and tested, the cheapest test first.
 ///
-/// Keeps its pictures from call to call. OpenCV's edge and contour functions allocate inside.
+/// Reuses its buffers between calls. OpenCV's edge and contour functions allocate internally.
 class ContourDetector final : public Detector {
  public:
   [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
                                                   const Thresholds& thresholds) override;
-  /// EllipseOverlap against its threshold: the difference of their log odds.
+  /// Log odds of EllipseOverlap minus those of its threshold.
   [[nodiscard]] std::optional<double> log_odds_of(const ImageView& luma,
                                                   const Ellipse& e,
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
 
-  /// Those of the last picture: what the adaptive rule has chosen, or what was asked for.
+  /// The thresholds used for the last picture, adaptive or as given.
   [[nodiscard]] const EdgeThresholds& edge_thresholds() const { return edge_thresholds_; }
 
  private:

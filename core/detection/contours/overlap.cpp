@@ -8,7 +8,7 @@ namespace ellipse {
 
 double contour_overlap(std::span<const cv::Point> contour, const Ellipse& e) {
   if (contour.empty()) return 0.0;
-  // |r - 1| r / |(u/a, v/b)| < t, the Sampson distance, with its divisions turned into products.
+  // The Sampson distance |r - 1| r / |(u/a, v/b)| < t, squared and without divisions.
   const double c = std::cos(e.angle_rad);
   const double s = std::sin(e.angle_rad);
   const double inverse_a = 1.0 / e.semi_major;
