@@ -11,7 +11,7 @@ inline CLI::Validator finite_number() {
       [](const std::string& text) {
         double number = 0.0;
         const bool is_finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
-        return is_finite ? std::string() : "\"" + text + "\" is no finite number";
+        return is_finite ? std::string() : "\"" + text + "\" is not a finite number";
       },
       "");
 }

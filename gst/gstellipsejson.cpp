@@ -146,7 +146,7 @@ static void gst_ellipse_json_class_init(GstEllipseJsonClass* klass) {
       PROP_TIMES,
       g_param_spec_boolean("times",
                            "Times",
-                           "Write processing_ns, which differs from run to run",
+                           "Write processing_ns, which differs between runs",
                            TRUE,
                            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                     GST_PARAM_MUTABLE_PLAYING)));

@@ -75,96 +75,97 @@ const std::array kSettings = {
         "detect-contour-overlap",
         kShareRange,
         true,
-        "Smallest share of a contour's pixels on its ellipse, detecting; 0 = the detector's own",
+        "Minimum share of a contour's pixels on its ellipse, detecting; 0 = detector default",
         kOfContours),
     setting<kDetect, &Overlaps::ellipse>(
         "detect-ellipse-overlap",
         kShareRange,
         true,
-        "Smallest share of an ellipse's pixels on edges, detecting; 0 = the detector's own"),
+        "Minimum share of an ellipse's pixels on edges, detecting; 0 = detector default"),
     setting<kTrack, &Overlaps::contour>(
         "track-contour-overlap",
         kShareRange,
         true,
-        "Smallest share of a contour's pixels on its ellipse, tracking; 0 = the detector's own",
+        "Minimum share of a contour's pixels on its ellipse, tracking; 0 = detector default",
         kOfContoursRedetect),
     setting<kTrack, &Overlaps::ellipse>(
         "track-ellipse-overlap",
         kShareRange,
         true,
-        "Smallest share of an ellipse's pixels on edges, tracking; 0 = the detector's own",
+        "Minimum share of an ellipse's pixels on edges, tracking; 0 = detector default",
         kOfRedetect),
     setting<kLimits, &Thresholds::min_axis_px>(
-        "min-axis", kAxisRangePx, true, "Smallest minor axis of an ellipse, full length, in px"),
+        "min-axis", kAxisRangePx, true, "Minimum minor axis, full length [px]"),
     setting<kLimits, &Thresholds::max_axis_px>(
-        "max-axis", kAxisRangePx, true, "Largest major axis of an ellipse, full length, in px"),
+        "max-axis", kAxisRangePx, true, "Maximum major axis, full length [px]"),
     setting<kLimits, &Thresholds::max_axis_ratio>(
-        "max-axis-ratio", kAxisRatioRange, true, "Largest ratio of the major to the minor axis"),
+        "max-axis-ratio", kAxisRatioRange, true, "Maximum ratio of major to minor axis"),
     setting<kLimits, &Thresholds::min_probability>(
-        "min-probability", kShareRange, true, "Smallest probability of an ellipse", kOfArcs),
+        "min-probability",
+        kShareRange,
+        true,
+        "Minimum probability of an ellipse; for a target followed with tracking=edges, values "
+        "above 0.982 act as 0.982",
+        kOfArcs),
     setting<kLimits, &Thresholds::min_contour_size>(
-        "min-contour-size", kContourSizeRangePx, true, "Shortest contour that is looked at, in px"),
+        "min-contour-size", kContourSizeRangePx, true, "Minimum contour length [px]"),
     setting<&TrackerSettings::max_scale>(
-        "max-scale",
-        kMaxScaleRange,
-        false,
-        "Coarsest scale: a frame is shrunk by this factor at the most",
-        kOfScale),
+        "max-scale", kMaxScaleRange, false, "Maximum factor by which a frame is reduced", kOfScale),
     setting<&TrackerSettings::min_target_size_px>(
         "min-target-size",
         kAxisRangePx,
         true,
-        "Below this full major axis at the processed scale the scale gets finer, in px",
+        "Minimum full major axis at the processed scale [px]; below it the scale gets finer",
         kOfRedetect),
     setting<&TrackerSettings::max_target_size_px>(
         "max-target-size",
         kAxisRangePx,
         true,
-        "Above this full major axis at the processed scale the scale gets coarser, in px",
+        "Maximum full major axis at the processed scale [px]; above it the scale gets coarser",
         kOfRedetect),
     setting<&TrackerSettings::roi_expansion>(
         "roi-expansion",
         kRoiExpansionRange,
         true,
-        "Search region: the target's box and (this - 1) semi-major axes more on every side",
+        "Search region: the target's box plus (value - 1) semi-major axes on each side",
         kOfRedetect),
     setting<&TrackerSettings::ring_ratio>(
         "ring-ratio",
         kRingRatioRange,
         false,
-        "Inner over outer radius of the target's ring, where it is known; 0 = is learned",
+        "Ratio of inner to outer radius of the target's ring; 0 = learned",
         kOfEdges),
     setting<&TrackerSettings::hfov_rad>(
         "hfov",
         kFieldOfViewRange,
         false,
-        "Horizontal field of view of a lens without distortion, in radians; 0 = not known"),
+        "Horizontal field of view of a lens without distortion [rad]; 0 = unknown"),
     setting<&TrackerSettings::fx_px>(
         "fx",
         kFocalRangePx,
         false,
-        "Focal length of a lens without distortion, in px; goes before hfov; 0 = not known"),
+        "Focal length of a lens without distortion [px]; overrides hfov; 0 = unknown"),
     setting<&TrackerSettings::fy_px>(
-        "fy", kFocalRangePx, false, "The same for columns, in px; 0 = as fx"),
+        "fy", kFocalRangePx, false, "Vertical focal length, with fx [px]; 0 = same as fx"),
     setting<&TrackerSettings::cx_px>(
-        "cx", kPlaceRangePx, false, "Principal point, beside fx, in px; 0 = the middle"),
+        "cx", kPlaceRangePx, false, "Principal point x, with fx [px]; 0 = frame centre"),
     setting<&TrackerSettings::cy_px>(
-        "cy", kPlaceRangePx, false, "Principal point, beside fx, in px; 0 = the middle"),
+        "cy", kPlaceRangePx, false, "Principal point y, with fx [px]; 0 = frame centre"),
     setting<&TrackerSettings::target_diameter_m>(
         "target-diameter",
         kDiameterRange,
         false,
-        "Diameter of the target's outer edge in m, for its position; 0 = not known"),
+        "Diameter of the target's outer edge [m], for its position; 0 = unknown"),
     setting<kLimits, &Thresholds::edge_low>(
         "edge-low",
         kEdgeRange,
         true,
-        "Lower edge threshold in grey levels per px; 0 = adapts to the picture"),
+        "Lower edge threshold [grey levels per px]; 0 = adapted to the frame"),
     setting<kLimits, &Thresholds::edge_high>(
         "edge-high",
         kEdgeRange,
         true,
-        "Upper edge threshold in grey levels per px; 0 = adapts to the picture"),
+        "Upper edge threshold [grey levels per px]; 0 = adapted to the frame"),
 };
 
 const SettingInfo& info_named(std::string_view name) {
@@ -180,7 +181,7 @@ template <class Enum>
 Enum from_nick(std::string_view name, std::string_view nick, std::span<const char* const> nicks) {
   const auto found = std::find(nicks.begin(), nicks.end(), nick);
   if (found != nicks.end()) return static_cast<Enum>(found - nicks.begin());
-  std::string message = std::string(name) + " = \"" + std::string(nick) + "\" is none of:";
+  std::string message = std::string(name) + " = \"" + std::string(nick) + "\" is not one of:";
   for (const char* each : nicks) message += std::string(" ") + each;
   throw std::invalid_argument(message);
 }

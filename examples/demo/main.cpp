@@ -51,7 +51,7 @@ int first_index(const std::string& pattern) {
     std::snprintf(name.data(), name.size() + 1, pattern.c_str(), i);
     if (fs::exists(name)) return i;
   }
-  throw std::runtime_error("there is no such picture");
+  throw std::runtime_error("no such picture");
 }
 
 // A pattern with exactly one number in it, so that it is safe to print with.
@@ -86,14 +86,14 @@ std::string source_for(const Options& options) {
            std::to_string(options.frames > 0 ? options.frames : 600);
   }
   if (input.starts_with("/dev/")) {
-    if (!fs::exists(input)) throw std::runtime_error("there is no such camera");
+    if (!fs::exists(input)) throw std::runtime_error("no such camera");
     return "v4l2src device=" + quoted(input) +
            " num-buffers=" + std::to_string(options.frames > 0 ? options.frames : kCameraFrames) +
            " ! decodebin";
   }
   if (!fs::exists(input) && is_picture_pattern(input)) return picture_source(input);
   if (input.find("://") != std::string::npos) return uri_source(input);
-  if (!fs::exists(input)) throw std::runtime_error("there is no such file");
+  if (!fs::exists(input)) throw std::runtime_error("no such file");
   if (fs::is_directory(input)) {
     throw std::runtime_error("is a folder; name its pictures like " + input + "/frame%04d.jpg");
   }
@@ -196,7 +196,7 @@ class Demo {
     gst_object_unref(sink);
     await_end();
     sheet_.write(fs::path(options_.output) / "contact_sheet.png");
-    if (sheet_.seen() == 0) throw std::runtime_error("it holds no picture");
+    if (sheet_.seen() == 0) throw std::runtime_error("contains no picture");
   }
 
   void print_summary() const {
@@ -279,7 +279,7 @@ class Demo {
 
   void await_end() {
     if (!has_ended_) watch_bus(10 * GST_SECOND);
-    if (!has_ended_) throw std::runtime_error("the pipeline does not end");
+    if (!has_ended_) throw std::runtime_error("the pipeline does not reach the end of the stream");
   }
 
   void keep(GstSample* sample) {
@@ -311,9 +311,12 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Runs the ellipse tracker and shows what it found."};
   app.name("ellipse-demo");
-  app.add_option("INPUT", options.input, "A file, frame%04d.jpg, /dev/video0 or a URI; or nothing");
+  app.add_option(
+      "INPUT", options.input, "A file, frame%04d.jpg, /dev/video0 or a URI; default: a test scene");
   app.add_option("--out", options.output, "Folder for the results")->capture_default_str();
-  app.add_option("--frames", options.frames, "Stop after so many frames; 0 = at the end")
+  app.add_option("--frames",
+                 options.frames,
+                 "Stop after this number of frames; 0 = at the end of the input")
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {

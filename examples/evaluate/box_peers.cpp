@@ -100,7 +100,7 @@ BoxPeer make_box_peer(std::string_view name) {
   if (name == "csrt") {
     return BoxPeer([]() -> cv::Ptr<cv::Tracker> { return cv::TrackerCSRT::create(); });
   }
-  throw std::invalid_argument("there is no peer \"" + std::string(name) + "\"");
+  throw std::invalid_argument("unknown peer \"" + std::string(name) + "\"");
 }
 
 }  // namespace evaluate

@@ -72,10 +72,10 @@ ObjectPtr<GSubprocess> start(const std::string& command) {
 void check_status(const std::string& command, GSubprocess* program) {
   g_subprocess_wait(program, nullptr, nullptr);
   if (g_subprocess_get_if_signaled(program)) {
-    fail(command, "was ended by signal " + std::to_string(g_subprocess_get_term_sig(program)));
+    fail(command, "was killed by signal " + std::to_string(g_subprocess_get_term_sig(program)));
   }
   const int status = g_subprocess_get_exit_status(program);
-  if (status != 0) fail(command, "ended with status " + std::to_string(status));
+  if (status != 0) fail(command, "exited with status " + std::to_string(status));
 }
 
 // Ends a program that is not wanted any more.
@@ -153,7 +153,7 @@ NamedAnswer answer_in(std::string_view line) {
     root = json_parser_get_root(parser.get());
   }
   if (root == nullptr || !JSON_NODE_HOLDS_OBJECT(root)) {
-    throw std::invalid_argument("is no JSON object");
+    throw std::invalid_argument("is not a JSON object");
   }
   JsonObject* object = json_node_get_object(root);
   JsonNode* image = json_object_get_member(object, "image");
@@ -170,7 +170,7 @@ NamedAnswer answer_in(std::string_view line) {
   JsonArray* list = json_node_get_array(ellipses);
   for (guint i = 0; i < json_array_get_length(list); ++i) {
     const auto detection = detection_in(json_array_get_element(list, i));
-    if (!detection) throw std::invalid_argument("has an ellipse that is none");
+    if (!detection) throw std::invalid_argument("contains an invalid ellipse");
     named.answer.detections.push_back(*detection);
   }
   return named;
@@ -185,9 +185,10 @@ std::map<std::string, PeerAnswer> answers_in(const std::string& output,
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     try {
       NamedAnswer named = answer_in(line);
-      if (!asked.contains(named.image)) throw std::invalid_argument("names an image not asked for");
+      if (!asked.contains(named.image))
+        throw std::invalid_argument("names an image that was not requested");
       if (!answers.emplace(named.image, std::move(named.answer)).second) {
-        throw std::invalid_argument("names an image for the second time");
+        throw std::invalid_argument("names an image twice");
       }
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("line " + std::to_string(number) + " of its answer " +
@@ -206,7 +207,7 @@ std::map<std::string, PeerAnswer> run_command_peer(const std::string& command,
   std::string input;
   for (const std::filesystem::path& image : images) {
     if (image.string().find('\n') != std::string::npos) {
-      fail(command, "cannot be asked for \"" + image.string() + "\", which has a line's end in it");
+      fail(command, "cannot be given \"" + image.string() + "\": the path contains a line break");
     }
     if (asked.insert(image.string()).second) input += image.string() + '\n';
   }

@@ -70,10 +70,10 @@ class Reader {
       }
     }
     if (!has_table) {
-      throw std::runtime_error(folder_.string() + ": holds neither gt.csv nor ground_truth.txt");
+      throw std::runtime_error(folder_.string() + ": contains neither gt.csv nor ground_truth.txt");
     }
     if (frames_.empty() && dataset_.problems.empty()) {
-      throw std::runtime_error(folder_.string() + ": its table names no picture");
+      throw std::runtime_error(folder_.string() + ": its table lists no picture");
     }
     read_ignored(folder_ / "ignore.txt");
     note_images_without_rows();
@@ -107,7 +107,7 @@ class Reader {
       Frame frame;
       frame.image = (file.parent_path() / row.text("Filename")).lexically_normal();
       if (!named_.insert(frame.image).second) {
-        row.fail("image " + frame.image.string() + " has a line before");
+        row.fail("image " + frame.image.string() + " is listed twice");
       }
       frame.truth = truth_of_published(row);
       frame.pts_ns = kNoTime;
@@ -131,11 +131,11 @@ class Reader {
   // A further row of an image.
   static void add_ellipse(const Row& row, Frame& frame, const Truth& truth) {
     if (!truth.target || !frame.truth.target) {
-      row.fail("image " + frame.name + " has a line before, and one of them has no ellipse");
+      row.fail("image " + frame.name + " has several lines, one of them without an ellipse");
     }
     for (const TrueEllipse& known : ellipses_of(frame.truth)) {
       if (known.ellipse == *truth.target) {
-        row.fail("image " + frame.name + " has the same ellipse in a line before");
+        row.fail("image " + frame.name + " lists the same ellipse twice");
       }
     }
     for (const TrueEllipse& one : ellipses_of(truth)) frame.truth.others.push_back(one);
@@ -153,7 +153,7 @@ class Reader {
     const fs::path image = frame.image;
     if (!fs::exists(image)) {
       const auto place = videos_.find(image);
-      if (!place) throw std::runtime_error("image " + image.string() + " is not there");
+      if (!place) throw std::runtime_error("image " + image.string() + " does not exist");
       frame.image.clear();
       if (frame.pts_ns == kNoTime) frame.pts_ns = place->pts_ns;
     }
@@ -210,7 +210,7 @@ class Reader {
         if (!PictureReader::is_picture(entry.path()) ||
             named_.contains(entry.path().lexically_normal()))
           continue;
-        dataset_.problems.push_back(entry.path().string() + ": has no line in the table");
+        dataset_.problems.push_back(entry.path().string() + ": not in the table");
       }
     }
     for (const std::string& line : videos_.unnamed_frames()) dataset_.problems.push_back(line);
@@ -257,7 +257,7 @@ std::vector<TrueEllipse> ellipses_of(const Truth& truth) {
 
 Dataset read_dataset(const fs::path& folder, double frames_per_second) {
   if (!fs::is_directory(folder)) {
-    throw std::runtime_error(folder.string() + ": is no folder that can be read");
+    throw std::runtime_error(folder.string() + ": not a readable folder");
   }
   return Reader(folder, frames_per_second).read();
 }

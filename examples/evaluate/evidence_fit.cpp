@@ -194,8 +194,8 @@ EvidenceTable EvidenceFitter::fit(const std::vector<std::string>& sources) const
       std::count_if(all.begin(), all.end(), [](const Sample& s) { return s.candidate->is_right; });
   if (right == 0 || static_cast<std::size_t>(right) == all.size()) {
     throw std::invalid_argument(
-        std::string("--fit-evidence: the frames show no candidate that is ") +
-        (right == 0 ? "an ellipse" : "none"));
+        right == 0 ? "--fit-evidence: no candidate in the frames is an ellipse"
+                   : "--fit-evidence: every candidate in the frames is an ellipse");
   }
   weigh(all);
   EvidenceTable table = regress(all);

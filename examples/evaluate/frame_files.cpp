@@ -59,7 +59,8 @@ void write_files(std::vector<Sequence>& sequences,
 
 TemporaryFolder::TemporaryFolder() : path_(fs::temp_directory_path() / "ellipse-evaluate-XXXXXX") {
   std::string name = path_.string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+  if (mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error(name + ": cannot create a temporary folder");
   path_ = name;
 }
 

@@ -30,7 +30,7 @@ std::vector<std::string> outside_of(const std::string& group,
   }
   if (others.empty()) {
     throw std::invalid_argument("--leave-one-out: all sources belong to the group \"" + group +
-                                "\", so that none is left to choose on");
+                                "\"; none is left to choose on");
   }
   return others;
 }

@@ -21,7 +21,7 @@ class Check {
     std::ostringstream text;
     text << place_ << ": " << measure << ' ';
     if (std::isnan(value)) {
-      text << "is not defined, as no frame shows a target; at least " << *limit << " is wanted";
+      text << "is undefined because no frame shows a target; at least " << *limit << " required";
     } else {
       text << value << " is below " << *limit;
     }

@@ -25,27 +25,29 @@ CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* dat
   CLI::Option* choose = app.add_option("--choose",
                                        options.choices,
                                        "PROPERTY=VALUE:VALUE... or PROPERTY=FROM:TO:STEP; several "
-                                       "make a grid")
+                                       "form a grid")
                             ->allow_extra_args(false);
   CLI::Option* leave = app.add_flag("--leave-one-out",
                                     options.leave_one_out,
-                                    "For each data set: choose on the others, report on this one")
+                                    "For each data set: choose on all others, report on this one")
                            ->needs(datasets);
   choose->needs(leave);
   CLI::Option* fit =
       app.add_flag("--fit-evidence",
                    options.fit_evidence,
-                   "Fit the table by which the detector arcs decides to the data sets; with "
-                   "--leave-one-out to all but the one that is judged")
+                   "Fit the evidence table of the detector arcs to the data sets; with "
+                   "--leave-one-out to all but the one under test")
           ->needs(datasets)
           ->excludes(choose);
-  app.add_option("--out", options.evidence_file, "Write the table there; none = to the terminal")
+  app.add_option(
+         "--out", options.evidence_file, "File for the evidence table; default: standard output")
       ->needs(fit)
       ->excludes(leave);
-  app.add_option("--groups",
-                 options.groups_file,
-                 "Which data sets are left out together: lines GROUP: NAME NAME..., with * and ?; "
-                 "none = airlab-*; all rendered ones")
+  app.add_option(
+         "--groups",
+         options.groups_file,
+         "File of data sets to leave out together: lines GROUP: NAME NAME..., with * and ?; "
+         "default: one group of airlab-*, one of all rendered data")
       ->needs(leave);
   return leave;
 }
@@ -54,77 +56,80 @@ void add_options(CLI::App& app, Options& options) {
   CLI::Option* datasets = app.add_option(
       "DATASET",
       options.datasets,
-      "Folders with gt.csv or ground_truth.txt, or folders of such; scenes:SEED, scenes:FROM-TO or "
-      "a list of them = all scenes of the catalog; distorted:SEED and so on = the same "
-      "through lenses that distort the picture; wild:SEED and so on = random scenes; "
-      "wild-frames:SEED and so on = a frame of each; clutter:SEED and so on = what resembles a pad "
-      "and is none; none = the rendered twin");
-  app.add_option(
-         "--seconds", options.pace.seconds, "How long each of scenes:SEED and distorted:SEED is")
+      "Folders with gt.csv or ground_truth.txt, or folders of such folders; or rendered: "
+      "scenes:SEEDS = all scenes of the catalog, distorted:SEEDS = the same through distorting "
+      "lenses, wild:SEEDS = random scenes, wild-frames:SEEDS = one frame of each, clutter:SEEDS = "
+      "objects that resemble a pad. SEEDS is SEED, FROM-TO or a comma-separated list. Default: the "
+      "rendered twin");
+  app.add_option("--seconds",
+                 options.pace.seconds,
+                 "Duration of each sequence of scenes, distorted and clutter [s]")
       ->capture_default_str()
       ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
-  app.add_option("--wild-seconds", options.wild_seconds, "How long each of wild:SEED is")
+  app.add_option("--wild-seconds", options.wild_seconds, "Duration of each sequence of wild [s]")
       ->capture_default_str()
       ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
   app.add_option("--fps",
                  options.pace.frames_per_second,
-                 "Frames a second of scenes:SEED, distorted:SEED, and pictures without a time")
+                 "Frame rate of scenes, distorted and clutter, and of pictures without time stamps")
       ->capture_default_str()
       ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
-  app.add_option("--set", options.settings, "property=value, as of the element ellipsetrack")
+  app.add_option("--set", options.settings, "PROPERTY=VALUE of the element ellipsetrack")
       ->allow_extra_args(false);
-  app.add_option("--rule", options.rule, "When an answer is right")
+  app.add_option("--rule", options.rule, "When an answer counts as correct")
       ->capture_default_str()
       ->check(CLI::IsMember({"iou", "published"}));
   CLI::Option* sweep =
       app.add_option("--sweep",
                      options.sweeps,
-                     "PROPERTY=FROM:TO:STEP or PROPERTY=VALUE,...: how much depends on it")
+                     "PROPERTY=FROM:TO:STEP or PROPERTY=VALUE,...: evaluate each value")
           ->allow_extra_args(false);
-  app.add_option("--sweep-dir", options.sweep_folder, "Where sweeps leave CSV, SVG and PNG")
+  app.add_option("--sweep-dir", options.sweep_folder, "Folder for the CSV, SVG and PNG of sweeps")
       ->capture_default_str()
       ->needs(sweep);
-  app.add_option("--ground", options.ground_file, "A picture to lie under the twin's scenes")
+  app.add_option("--ground", options.ground_file, "Picture of the ground in the twin's scenes")
       ->excludes(datasets);
   CLI::Option* leave = add_leave_one_out(app, options, datasets);
-  CLI::Option* make =
-      app.add_option(
-             "--make-dataset", options.dataset_folder, "Write the twin: pictures and gt.csv")
-          ->excludes(datasets)
-          ->excludes(sweep);
+  CLI::Option* make = app.add_option("--make-dataset",
+                                     options.dataset_folder,
+                                     "Write the twin to this folder: pictures and gt.csv")
+                          ->excludes(datasets)
+                          ->excludes(sweep);
   leave->excludes(sweep)->excludes(make);
   app.add_option("--methods",
                  options.methods,
-                 "Separated by commas; none = all but those that are told the target, with "
-                 "--leave-one-out the default and its detector")
+                 "Comma-separated; default: all methods that are not given the target, with "
+                 "--leave-one-out the default method and its detector")
       ->delimiter(',')
       ->excludes(sweep)
       ->excludes(make);
   for (CLI::Option* option :
        {app.add_option("--peer",
                        options.peers,
-                       "NAME=COMMAND: a program that reads image paths and answers JSON lines")
+                       "NAME=COMMAND: a program that reads image paths and writes JSON lines")
             ->allow_extra_args(false),
-        app.add_option("--report", options.report_folder, "Write a page with everything in it"),
+        app.add_option("--report", options.report_folder, "Write an HTML report to this folder"),
         app.add_option("--frames",
                        options.frames_file,
-                       "Write one JSON line for each frame that is judged, of the first method"),
+                       "Write one JSON line per judged frame of the first method"),
         app.add_flag("--all",
                      options.all_ellipses,
-                     "Also compare all ellipses of each frame, not the target alone"),
+                     "Also evaluate all ellipses of each frame, not only the target"),
         app.add_option("--json", options.json_file, "Write all measures as JSON"),
         app.add_option(
-               "--min-f1", options.limits.min_f1, "Exit with 1 where a method's F1 is lower")
+               "--min-f1", options.limits.min_f1, "Exit with status 1 if a method's F1 is lower")
+            ->check(finite_number() & CLI::Range(0.0, 1.0)),
+        app.add_option("--min-recall",
+                       options.limits.min_recall,
+                       "Exit with status 1 if a method's recall is lower")
             ->check(finite_number() & CLI::Range(0.0, 1.0)),
         app.add_option(
-               "--min-recall", options.limits.min_recall, "Exit with 1 where its recall is lower")
-            ->check(finite_number() & CLI::Range(0.0, 1.0)),
-        app.add_option("--max-false",
-                       options.limits.max_false,
-                       "Exit with 1 where more of its frames have a false answer (FP or WD)")
+               "--max-false",
+               options.limits.max_false,
+               "Exit with status 1 if more frames of a method have a false answer (FP or WD)")
             ->check(CLI::NonNegativeNumber)}) {
     option->excludes(sweep)->excludes(make)->excludes(leave);
   }

@@ -238,7 +238,7 @@ std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSet
   }
   std::string names;
   for (const std::string& known : method_names()) names += (names.empty() ? "" : ", ") + known;
-  throw std::invalid_argument("method \"" + name + "\" is none of: " + names);
+  throw std::invalid_argument("method \"" + name + "\" is not one of: " + names);
 }
 
 PeerCommand parse_peer(const std::string& text) {

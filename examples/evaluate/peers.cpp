@@ -227,7 +227,7 @@ std::unique_ptr<ellipse::Detector> make_peer(std::string_view name) {
   if (name == "hough-circles") return std::make_unique<HoughCirclesPeer>();
   if (name == "canny-fit") return std::make_unique<CannyFitPeer>();
   if (name == "randomized-hough") return std::make_unique<RandomizedHoughPeer>();
-  throw std::invalid_argument("there is no peer \"" + std::string(name) + "\"");
+  throw std::invalid_argument("unknown peer \"" + std::string(name) + "\"");
 }
 
 }  // namespace evaluate

@@ -17,7 +17,7 @@ namespace {
 constexpr GstClockTime kPatience = 3 * GST_SECOND;
 
 [[noreturn]] void fail(const std::filesystem::path& file) {
-  throw std::runtime_error(file.string() + ": is no picture that can be read");
+  throw std::runtime_error(file.string() + ": not a readable picture");
 }
 
 std::string extension_of(const std::filesystem::path& file) {
@@ -51,7 +51,7 @@ class PictureReader::JpegPipeline {
         "appsrc name=in caps=image/jpeg,framerate=30/1 format=time ! jpegdec ! videoconvert "
         "! video/x-raw,format=GRAY8 ! appsink name=out sync=false",
         nullptr);
-    if (pipeline_ == nullptr) throw std::runtime_error("GStreamer has no jpegdec");
+    if (pipeline_ == nullptr) throw std::runtime_error("the GStreamer element jpegdec is missing");
     in_ = GST_APP_SRC(gst_bin_get_by_name(GST_BIN(pipeline_), "in"));
     out_ = GST_APP_SINK(gst_bin_get_by_name(GST_BIN(pipeline_), "out"));
     gst_element_set_state(pipeline_, GST_STATE_PLAYING);

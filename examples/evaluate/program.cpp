@@ -197,7 +197,7 @@ class Program {
     ProgressBar progress(frames_without_files(sequences_));
     write_files(sequences_, folder, [&](const Frame& frame) { return advance(progress, frame); });
     if (interrupted) {
-      throw std::runtime_error("interrupted while frames were written to " + folder.string());
+      throw std::runtime_error("interrupted while writing frames to " + folder.string());
     }
   }
 
@@ -280,17 +280,17 @@ class Program {
 
   static void print_interruption(const Evaluation& evaluation) {
     if (!evaluation.is_interrupted) return;
-    std::cout << "Interrupted: the figures are of " << evaluation.frames.size() << " of "
+    std::cout << "Interrupted: the figures cover " << evaluation.frames.size() << " of "
               << evaluation.planned_frames << " frames.\n";
   }
 
   static void check_written(std::ofstream& out, const std::string& file) {
-    if (out.is_open() && !out.flush()) throw std::runtime_error(file + ": could not be written");
+    if (out.is_open() && !out.flush()) throw std::runtime_error(file + ": cannot be written");
   }
 
   void print_problems() const {
     if (missing_frames_ > 0) {
-      std::cout << "\nMissing frames: " << missing_frames_ << ". No figure counts them.\n";
+      std::cout << "\nMissing frames: " << missing_frames_ << ". They are not in any figure.\n";
     }
     for (std::size_t i = 0; i < std::min(problems_.size(), kMaxProblemsPrinted); ++i) {
       std::cerr << "ellipse-evaluate: " << problems_[i] << '\n';

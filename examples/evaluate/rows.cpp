@@ -31,7 +31,7 @@ Row::Row(const fs::path& file,
          std::vector<std::string> fields)
     : file_(file), line_(line), header_(header), fields_(std::move(fields)) {
   if (fields_.size() == header_.size()) return;
-  fail(std::to_string(fields_.size()) + " fields where the header has " +
+  fail(std::to_string(fields_.size()) + " fields, but the header has " +
        std::to_string(header_.size()));
 }
 

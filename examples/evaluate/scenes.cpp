@@ -38,7 +38,7 @@ bool take(std::string_view& rest, char separator) {
 FrameTimes times_of(const ScenePace& pace) {
   const double frames = std::round(pace.seconds * pace.frames_per_second);
   if (!(frames >= 1.0 && frames <= kMaxFrames && pace.frames_per_second > 0.0)) {
-    throw std::invalid_argument("scenes: seconds and frames a second give no sequence");
+    throw std::invalid_argument("scenes: --seconds times --fps is out of range");
   }
   return {0.0, static_cast<int>(frames), 1, pace.frames_per_second};
 }
@@ -69,11 +69,11 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
   do {
     const std::uint64_t from = take_seed(rest, text);
     const std::uint64_t to = take(rest, '-') ? take_seed(rest, text) : from;
-    if (to < from) fail(text, "a range must go up");
+    if (to < from) fail(text, "expected FROM <= TO");
     if (to - from >= most - seeds.size()) fail(text, format("more than %zu seeds", most));
     for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
   } while (take(rest, ','));
-  if (!rest.empty()) fail(text, format("\"%s\" is no seed", std::string(rest).c_str()));
+  if (!rest.empty()) fail(text, format("\"%s\" is not a seed", std::string(rest).c_str()));
   return seeds;
 }
 

@@ -25,7 +25,7 @@ SourceGroups::SourceGroups(const std::filesystem::path& file) {
     for (std::string glob; globs >> glob;) group.globs.push_back(glob);
     if (group.name.empty() || group.globs.empty()) {
       throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": \"" + line +
-                               "\" is no GROUP: SOURCE...");
+                               "\": expected GROUP: SOURCE...");
     }
     groups_.push_back(std::move(group));
   }

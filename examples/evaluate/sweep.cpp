@@ -44,7 +44,7 @@ std::vector<std::string> range(const std::vector<std::string>& parts, const std:
   std::array<double, 3> numbers{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = number_in(parts[i]);
-    if (!value) fail(all, "\"" + parts[i] + "\" is no number");
+    if (!value) fail(all, "\"" + parts[i] + "\" is not a number");
     numbers[i] = *value;
   }
   const auto [from, to, step] = numbers;

@@ -32,7 +32,7 @@ Truth truth_of_csv(const Row& row) {
     empty += row.text(column).empty() ? 1 : 0;
   }
   if (empty == 5) return truth;
-  if (empty > 0) row.fail("has a part of an ellipse only");
+  if (empty > 0) row.fail("some fields of the ellipse are empty");
   truth.target = ellipse::Ellipse{row.number("cx"),
                                   row.number("cy"),
                                   row.number("semi_major"),

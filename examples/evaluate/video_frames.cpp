@@ -61,7 +61,7 @@ std::optional<VideoFrames::Place> VideoFrames::find(const fs::path& image) {
   if (!video->error.empty()) throw std::runtime_error(video->error);
   const auto number = number_at_end(image.stem().string());
   if (!number || *number >= video->times_ns.size()) {
-    throw std::runtime_error(image.string() + " is none of the " +
+    throw std::runtime_error(image.string() + " is not one of the " +
                              std::to_string(video->times_ns.size()) + " frames of " +
                              video->file.string());
   }
@@ -82,7 +82,7 @@ std::vector<std::string> VideoFrames::unnamed_frames() const {
     const auto unnamed = std::count(video->is_named.begin(), video->is_named.end(), false);
     if (unnamed == 0) continue;
     lines.push_back(video->file.string() + ": " + std::to_string(unnamed) + " of its " +
-                    std::to_string(video->is_named.size()) + " frames have no line in the table");
+                    std::to_string(video->is_named.size()) + " frames are not in the table");
   }
   return lines;
 }

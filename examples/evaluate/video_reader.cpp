@@ -69,7 +69,7 @@ class VideoReader::Pipeline {
       throw_error();
       if (gst_app_sink_is_eos(out_)) return nullptr;
     }
-    fail(file_, "gives no frame");
+    fail(file_, "contains no frame");
   }
 
  private:
@@ -109,7 +109,7 @@ std::vector<std::int64_t> VideoReader::frame_times_ns() {
   while (GstSample* sample = pipeline.next()) {
     const GstClockTime pts = GST_BUFFER_PTS(gst_sample_get_buffer(sample));
     gst_sample_unref(sample);
-    if (!GST_CLOCK_TIME_IS_VALID(pts)) fail(file_, "has a frame without a time");
+    if (!GST_CLOCK_TIME_IS_VALID(pts)) fail(file_, "contains a frame without a time stamp");
     times.push_back(static_cast<std::int64_t>(pts));
   }
   return times;
@@ -125,10 +125,10 @@ cv::Mat VideoReader::read(std::size_t number) {
     if (next_ == number) picture = luma_of(sample);
     gst_sample_unref(sample);
     if (next_++ < number) continue;
-    if (picture.empty()) fail(file_, "frame " + std::to_string(number) + " cannot be read");
+    if (picture.empty()) fail(file_, "frame " + std::to_string(number) + " cannot be decoded");
     return picture;
   }
-  fail(file_, "has no frame " + std::to_string(number));
+  fail(file_, "contains no frame " + std::to_string(number));
 }
 
 }  // namespace evaluate

@@ -139,30 +139,33 @@ void run(const Options& options, const std::string& command) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   Options options;
-  CLI::App app{"Lands a simulated multirotor on a moving platform by what ellipsetrack sees."};
+  CLI::App app{"Lands a simulated multirotor on a moving platform, guided by ellipsetrack."};
   app.name("ellipse-landing");
-  app.add_option("--runs", options.runs, "Landings of each method at each speed")
+  app.add_option("--runs", options.runs, "Number of landings per method and speed")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app.add_option("--speed", options.speeds, "Of the platform, in m/s; several with commas")
+  app.add_option(
+         "--speed", options.speeds, "Speed of the platform [m/s]; several separated by commas")
       ->delimiter(',')
       ->check(finite_number() & CLI::Range(0.0, 8.0))
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the first landing; each has its own")
+  app.add_option(
+         "--seed", options.seed, "Random seed of the first landing; each landing has its own")
       ->capture_default_str();
-  app.add_option("--gust", options.gust, "Root mean square of the wind, in m/s")
+  app.add_option("--gust", options.gust, "Root mean square of the wind speed [m/s]")
       ->check(finite_number() & CLI::Range(0.0, 10.0))
       ->capture_default_str();
-  app.add_option("--width", options.width, "Of the camera's pictures, in px")
+  app.add_option("--width", options.width, "Width of the camera's frames [px]")
       ->check(CLI::Range(160, 1920))
       ->capture_default_str();
-  app.add_option(
-         "--methods", options.methods, "detector+tracking, apriltag or whycon; several with commas")
+  app.add_option("--methods",
+                 options.methods,
+                 "detector+tracking, apriltag or whycon; several separated by commas")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--jobs", options.jobs, "Landings at once; 0 = as many as processors")
+  app.add_option("--jobs", options.jobs, "Number of parallel landings; 0 = number of processors")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--video", options.video, "Write the first landing as a Matroska file");
+  app.add_option("--video", options.video, "Write the first landing to this Matroska file");
   app.add_option("--report", options.report, "Folder for tables and plots");
   CLI11_PARSE(app, argc, argv);
   std::string command = "ellipse-landing";

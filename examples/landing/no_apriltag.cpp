@@ -10,7 +10,7 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw std::runtime_error(
-      "method \"apriltag\": not built in, the library apriltag was missing (libapriltag-dev)");
+      "method \"apriltag\": not built in; install libapriltag-dev and rebuild");
 }
 
 }  // namespace

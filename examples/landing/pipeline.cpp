@@ -52,7 +52,7 @@ void Pipeline::push(const Element& source, GstBuffer* buffer) {
   for (GstClockTime waited = 0; gst_app_src_get_current_level_buffers(queue) >= kQueued;
        waited += kPause) {
     if (has_ended(kPause)) throw std::runtime_error("the pipeline has ended");
-    if (waited > kPatience) throw std::runtime_error("the pipeline does not go on");
+    if (waited > kPatience) throw std::runtime_error("the pipeline has stalled");
   }
   if (gst_app_src_push_buffer(queue, held.release()) != GST_FLOW_OK) fail();
 }
@@ -64,11 +64,12 @@ Sample Pipeline::pull(const Element& sink) {
     if (sample) return sample;
     if (has_ended(0)) throw std::runtime_error("the pipeline has ended");
   }
-  throw std::runtime_error("the pipeline does not go on");
+  throw std::runtime_error("the pipeline has stalled");
 }
 
 void Pipeline::await_end() {
-  if (!has_ended(kPatience)) throw std::runtime_error("the pipeline does not end");
+  if (!has_ended(kPatience))
+    throw std::runtime_error("the pipeline does not reach the end of the stream");
 }
 
 bool Pipeline::has_ended(GstClockTime patience) {

@@ -146,7 +146,7 @@ Table outcome_table(const std::vector<Landing>& landings) {
   }
   table.note =
       "Off and drift: distance from the pad's centre, and level speed beside it, at touchdown. "
-      "Climbs: descents that were broken off.";
+      "Climbs: aborted descents.";
   return table;
 }
 

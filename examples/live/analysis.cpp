@@ -143,7 +143,7 @@ std::string analysis_json(const AnalysisRequest& request) {
   GstSample* sample = request.frame->sample.get();
   gst_video_info_from_caps(&info, gst_sample_get_caps(sample));
   MappedFrame mapped(info, gst_sample_get_buffer(sample), GST_MAP_READ);
-  if (!mapped.is_mapped()) throw std::runtime_error("the frame cannot be read");
+  if (!mapped.is_mapped()) throw std::runtime_error("cannot map the frame");
   const ellipse::PixelView view = pixel_view_of(mapped.frame());
   ellipse::TrackerSettings settings = request.settings;
   settings.tracking = ellipse::TrackingMode::kNone;

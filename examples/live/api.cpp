@@ -22,7 +22,7 @@ namespace live {
 namespace {
 
 constexpr std::size_t kMaxStreams = 120;  // of the connections, of which there may be 160
-constexpr char kTooMany[] = "too many watch";
+constexpr char kTooMany[] = "too many clients";
 
 void write_time(JsonWriter& json, const char* name, GstClockTime time) {
   json.key(name);
@@ -183,19 +183,18 @@ void add_playback(HttpServer& server, Session& session, const Options& options) 
   server.route("POST", "/api/play", [&](const Request&) { return session.play(), done(); });
   server.route("POST", "/api/pause", [&](const Request&) { return session.pause(), done(); });
   server.route("POST", "/api/step", [&](const Request&) {
-    if (session.is_playing()) return error_reply(409, "pause it first");
+    if (session.is_playing()) return error_reply(409, "pause the source first");
     session.step();
     return done();
   });
   server.route("POST", "/api/seek", [&](const Request& request) {
     const RequestJson json(request.body);
-    return session.seek(json.time("position_ns"))
-               ? done()
-               : error_reply(409, "this source cannot be sought");
+    return session.seek(json.time("position_ns")) ? done()
+                                                  : error_reply(409, "this source cannot seek");
   });
   server.route("PUT", "/api/source", [&session, options](const Request& request) {
     if (!options.allows_source_change) {
-      return error_reply(403, "the source may be changed with --allow-source-change only");
+      return error_reply(403, "changing the source requires --allow-source-change");
     }
     const RequestJson json(request.body);
     session.open(json.text("spec"), rate_in(json));
@@ -211,7 +210,7 @@ std::optional<ellipse::Stage> stage_in(const RequestJson& json) {
   const auto nicks = ellipse::stage_nicks();
   const auto found = std::find(nicks.begin(), nicks.end(), nick);
   if (found != nicks.end()) return static_cast<ellipse::Stage>(found - nicks.begin());
-  throw std::invalid_argument("stage: there is no stage \"" + nick + "\"");
+  throw std::invalid_argument("stage: unknown stage \"" + nick + "\"");
 }
 
 std::string text_of(JsonNode* node) {
@@ -229,7 +228,7 @@ void add_analysis(HttpServer& server, Session& session) {
         .settings = session.properties().settings_with(text_of(json.node("properties"))),
         .stage = stage_in(json)};
     const auto reply = std::make_shared<LaterReply>(request.message);
-    if (!wanted.frame) return reply->send(error_reply(409, "there is no frame yet"));
+    if (!wanted.frame) return reply->send(error_reply(409, "no frame yet"));
     const bool is_taken =
         analyst->ask(std::move(wanted), [reply](const auto& text, const auto& error) {
           reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));

@@ -16,7 +16,7 @@ CameraFolder::CameraFolder(const fs::path& folder)
 
 std::string CameraFolder::path_of(const std::string& name) const {
   if (!is_open()) {
-    throw std::invalid_argument("camera-file: is set with --cameras FOLDER only, from there");
+    throw std::invalid_argument("camera-file: requires --cameras FOLDER, and a file from it");
   }
   std::error_code error;
   const fs::path path = fs::canonical(folder_ / name, error);
@@ -25,7 +25,7 @@ std::string CameraFolder::path_of(const std::string& name) const {
                     folder_.end();
   // A pipe would not let go of who opens it.
   if (!is_inside || !fs::is_regular_file(path, error)) {
-    throw std::invalid_argument("camera-file: there is no such file in the folder of --cameras");
+    throw std::invalid_argument("camera-file: no such file in the folder of --cameras");
   }
   try {
     (void)ellipse::read_camera(path.string());

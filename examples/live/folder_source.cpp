@@ -27,7 +27,7 @@ class NumberedFolder {
  public:
   NumberedFolder() {
     const Ref<gchar> path(g_dir_make_tmp("ellipse-live-XXXXXX", nullptr));
-    if (!path) throw std::runtime_error("a temporary folder cannot be made");
+    if (!path) throw std::runtime_error("cannot create a temporary folder");
     path_ = path.get();
   }
   ~NumberedFolder() {
@@ -58,8 +58,7 @@ std::vector<fs::path> pictures_in(const std::string& text) {
     if (extension == ".png" || extension == ".jpg") by_extension[extension].push_back(entry.path());
   }
   if (by_extension.empty()) {
-    throw std::invalid_argument("source \"" + text +
-                                "\": there is no .png and no .jpg in this folder");
+    throw std::invalid_argument("source \"" + text + "\": no .png or .jpg in this folder");
   }
   auto& pictures =
       std::max_element(by_extension.begin(), by_extension.end(), [](const auto& a, const auto& b) {

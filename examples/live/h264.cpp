@@ -25,7 +25,7 @@ std::string h264_encoder() {
     return std::string("videoconvert ! video/x-raw,format=I420 ! ") + encoder.name + " " +
            encoder.settings;
   }
-  throw std::runtime_error("no encoder of H.264 is installed: neither x264enc nor openh264enc");
+  throw std::runtime_error("no H.264 encoder is installed: neither x264enc nor openh264enc");
 }
 
 }  // namespace live

@@ -65,27 +65,27 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
   if (!may_ask_now(message)) return refuse(message, 429, "too many requests");
   const std::string host = header(message, "Host");
   if (token_.empty() && !is_loopback_host(host)) {
-    return refuse(message, 403, "the Host is not this machine");
+    return refuse(message, 403, "the Host header does not name this machine");
   }
   if (is_foreign({host, header(message, "Origin"), header(message, "Sec-Fetch-Site")})) {
-    return refuse(message, 403, "another site's page may not do this");
+    return refuse(message, 403, "cross-site requests are rejected");
   }
-  if (path.size() > kLongestPath) return refuse(message, 414, "the path is too long");
+  if (path.size() > kLongestPath) return refuse(message, 414, "path too long");
   if (size_of_headers(message) > kMaxHeaders) {
-    return refuse(message, 431, "the headers are too large");
+    return refuse(message, 431, "headers too large");
   }
   if (take_token_from_link(message, path)) return false;
   if (!has_token(message)) {
     soup_message_headers_replace(
         soup_server_message_get_response_headers(message), "WWW-Authenticate", "Bearer");
-    return refuse(message, 401, "the token is missing or wrong");
+    return refuse(message, 401, "missing or wrong token");
   }
   SoupMessageHeaders* headers = soup_server_message_get_request_headers(message);
   const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
-  if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "the length must be given");
+  if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "Content-Length is required");
   const goffset length = soup_message_headers_get_content_length(headers);
   if (length > (is_write(message) ? kMaxBody : 0)) {
-    return refuse(message, 413, "the body is too large");
+    return refuse(message, 413, "body too large");
   }
   return false;
 }

@@ -44,7 +44,8 @@ HttpServer::~HttpServer() {
 void HttpServer::listen() {
   const Ref<GSocketAddress> wanted(
       g_inet_socket_address_new_from_string(settings_.address.c_str(), settings_.port));
-  if (!wanted) throw std::runtime_error("\"" + settings_.address + "\" is no address to listen at");
+  if (!wanted)
+    throw std::runtime_error("\"" + settings_.address + "\" is not an address to listen on");
   g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kWaiting);
   GSocketAddress* effective = nullptr;
   GError* problem = nullptr;
@@ -57,7 +58,7 @@ void HttpServer::listen() {
                                 &problem);
   if (problem != nullptr) {
     const Ref<GError> error(problem);
-    throw std::runtime_error("cannot listen at " + settings_.address + ":" +
+    throw std::runtime_error("cannot listen on " + settings_.address + ":" +
                              std::to_string(settings_.port) + ": " + error->message);
   }
   const Ref<GSocketAddress> owned(effective);
@@ -179,8 +180,8 @@ void HttpServer::dispatch(SoupServerMessage* message, const std::string& path) {
     return;
   }
   answer(message,
-         is_known ? error_reply(405, "this path does not know " + method)
-                  : error_reply(404, "there is nothing at this path"));
+         is_known ? error_reply(405, method + " is not allowed for this path")
+                  : error_reply(404, "no such path"));
 }
 
 }  // namespace live

@@ -25,7 +25,7 @@ ellipse::Ellipse shown_ellipse(const Frame& frame, double index) {
     if (number++ != index) continue;
     return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
   }
-  throw std::invalid_argument("choice: the frame has no ellipse of this number");
+  throw std::invalid_argument("choice: the frame has no ellipse with this number");
 }
 
 ellipse::Ellipse drawn_ellipse(const RequestJson& json) {
@@ -51,7 +51,7 @@ std::optional<ellipse::Ellipse> chosen(const RequestJson& json, const Frame& fra
     return shown_ellipse(frame, json.number("choice"));
   }
   if (json.text("choice") != "none") {
-    throw std::invalid_argument("choice: a number, an ellipse or \"none\" is wanted");
+    throw std::invalid_argument("choice: expected a number, an ellipse or \"none\"");
   }
   return std::nullopt;
 }
@@ -61,17 +61,17 @@ std::optional<ellipse::Ellipse> chosen(const RequestJson& json, const Frame& fra
 void add_labels(HttpServer& server, Session& session, const Options& options) {
   if (options.labels.empty()) {
     server.route("POST", "/api/snapshot", [](const Request&) {
-      return error_reply(409, "there is no folder for them: start with --labels FOLDER");
+      return error_reply(409, "no folder for labels: start ellipse-live with --labels FOLDER");
     });
     return;
   }
   const auto labels = std::make_shared<LabelStore>(options.labels);
   server.route("POST", "/api/snapshot", [&session, labels](const Request& request) {
     const FramePtr frame = session.store().newest();
-    if (!frame) return error_reply(409, "there is no frame yet");
+    if (!frame) return error_reply(409, "no frame yet");
     const RequestJson json(request.body);
     if (json.has("pts_ns") && json.time("pts_ns") != frame->pts) {
-      return error_reply(409, "another frame is shown now: pause it first");
+      return error_reply(409, "the shown frame has changed: pause the source first");
     }
     const std::string image = labels->add(*frame, chosen(json, *frame));
     return Reply{.body =

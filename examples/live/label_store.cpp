@@ -36,7 +36,8 @@ void write_png(const Frame& frame, const fs::path& file) {
   }
   GstMapInfo map;
   GstBuffer* buffer = gst_sample_get_buffer(sample.get());
-  if (!gst_buffer_map(buffer, &map, GST_MAP_READ)) throw std::runtime_error("no picture");
+  if (!gst_buffer_map(buffer, &map, GST_MAP_READ))
+    throw std::runtime_error("cannot map the picture");
   std::ofstream out(file, std::ios::binary);
   out.write(reinterpret_cast<const char*>(map.data), static_cast<std::streamsize>(map.size));
   gst_buffer_unmap(buffer, &map);

@@ -43,13 +43,12 @@ void add_tracker(Metrics& metrics, GstElement* tracker) {
   GstStructure* fields = nullptr;
   g_object_get(tracker, "stats", &fields, nullptr);
   const Ref<GstStructure> stats(fields);
-  metrics.describe(
-      "frames", "gauge", "Frames since the source was started, by what became of them.");
+  metrics.describe("frames", "gauge", "Frames since the source was started, by outcome.");
   for (const char* fate : {"analysed", "skipped", "detected", "tracked", "predicted"}) {
     metrics.sample("frames", std::string("{fate=\"") + fate + "\"}", count(stats.get(), fate));
   }
-  metrics.add("losses", "gauge", "Times that a target was lost.", count(stats.get(), "lost"));
-  metrics.describe("processing_seconds", "gauge", "Time of an analysis, of the last 1024.");
+  metrics.add("losses", "gauge", "Number of times a target was lost.", count(stats.get(), "lost"));
+  metrics.describe("processing_seconds", "gauge", "Processing time of the last 1024 analyses.");
   const auto time = [&](const char* field) { return 1e-9 * count(stats.get(), field); };
   metrics.sample("processing_seconds", "{quantile=\"0.5\"}", time("processing-time-median"));
   metrics.sample("processing_seconds", "{quantile=\"0.99\"}", time("processing-time-p99"));
@@ -73,18 +72,18 @@ std::string metrics_text(Session& session, const HttpServer& server) {
   const LivePipeline& pipeline = session.pipeline();
   counter("frames_total", "Frames that the pipeline delivered.", pipeline.frames());
   add_tracker(metrics, pipeline.tracker());
-  counter(
-      "reconnections_total", "Times that the source was tried again.", pipeline.reconnections());
-  gauge("source_up", "1 while the source delivers.", pipeline.trouble().empty() ? 1 : 0);
-  gauge("viewers", "Clients that watch the video.", session.video().viewers());
-  gauge("listeners", "Clients that read the lines.", session.lines().listeners());
-  gauge("connections", "Open connections of HTTP.", server.connections());
-  counter("jpegs_total", "Frames that were encoded.", session.video().encoded());
+  counter("reconnections_total", "Attempts to reconnect the source.", pipeline.reconnections());
+  gauge("source_up", "1 while the source delivers frames.", pipeline.trouble().empty() ? 1 : 0);
+  gauge("viewers", "Clients of the video.", session.video().viewers());
+  gauge("listeners", "Clients of the JSON lines.", session.lines().listeners());
+  gauge("connections", "Open HTTP connections.", server.connections());
+  counter("jpegs_total", "Frames encoded as JPEG.", session.video().encoded());
   counter("pictures_sent_total", "Pictures sent to viewers.", session.video().sent());
-  counter("picture_bytes_total", "Bytes of these pictures.", session.video().sent_bytes());
-  counter("lines_lost_total", "Lines that slow listeners missed.", session.lines().lost());
-  counter("requests_total", "Requests of HTTP.", server.counters().requests);
-  counter("requests_refused_total", "Requests that were refused.", server.counters().refused);
+  counter(
+      "picture_bytes_total", "Bytes of pictures sent to viewers.", session.video().sent_bytes());
+  counter("lines_lost_total", "Lines dropped for slow listeners.", session.lines().lost());
+  counter("requests_total", "HTTP requests.", server.counters().requests);
+  counter("requests_refused_total", "Rejected HTTP requests.", server.counters().refused);
   return metrics.text();
 }
 

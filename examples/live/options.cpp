@@ -18,7 +18,7 @@ std::string is_token(const std::string& text) {
   const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '~' || c == '-';
   });
-  return is_plain ? "" : "takes letters, digits and . _ ~ - only";
+  return is_plain ? "" : "must consist of letters, digits and . _ ~ -";
 }
 
 std::string is_rate(const std::string& text) {
@@ -34,44 +34,46 @@ std::string is_rate(const std::string& text) {
 
 Options parse_options(int argc, char** argv) {
   Options options;
-  CLI::App app{"Watch, tune and stream an ellipse tracker from a browser."};
+  CLI::App app{"Watch, tune and stream an ellipse tracker in a browser."};
   app.name("ellipse-live");
   app.add_option("--source",
                  options.source,
-                 "test:SCENE, a file, /dev/video0, a URI, a folder of pictures, or a piece of a "
+                 "test:SCENE, a file, /dev/video0, a URI, a folder of pictures, or part of a "
                  "gst-launch-1.0 line in brackets")
       ->capture_default_str();
-  app.add_option(
-         "--fps", options.fps, "Pictures a second of a folder, as 10 or 30000/1001; 30 otherwise")
+  app.add_option("--fps",
+                 options.fps,
+                 "Frame rate of a folder of pictures, as 10 or 30000/1001; default: 30")
       ->check(is_rate);
-  app.add_flag("--loop", options.loops, "Play a file again when it ends");
-  app.add_option("--port", options.port, "Of the page and its API; 0 = a free one")
+  app.add_flag("--loop", options.loops, "Repeat a file when it ends");
+  app.add_option("--port", options.port, "Port of the page and its API; 0 = any free port")
       ->check(CLI::Range(0U, 65535U))
       ->capture_default_str();
   app.add_option(
-         "--bind", options.bind, "Address to listen at; any but a loopback address wants a token")
+         "--bind", options.bind, "Address to listen on; all but loopback addresses require a token")
       ->capture_default_str();
-  app.add_option("--token", options.token, "What clients have to know; made and printed if needed")
+  app.add_option(
+         "--token", options.token, "Access token for clients; generated and printed if needed")
       ->check(is_token);
   app.add_option(
-         "--rtsp", options.rtsp_port, "Also serve rtsp://.../live at this port; 0 = a free one")
+         "--rtsp", options.rtsp_port, "Also serve rtsp://.../live on this port; 0 = any free port")
       ->check(CLI::Range(0, 65535));
   app.add_option(
-      "--record", options.record, "Write H.264 into this .mkv, and the JSON lines beside it");
-  app.add_option("--preset", options.preset, "Begin with this preset of ellipsetrack");
+      "--record", options.record, "Record H.264 to this .mkv, and the JSON lines beside it");
+  app.add_option("--preset", options.preset, "Load this preset of ellipsetrack at the start");
   app.add_option("--labels", options.labels, "Folder for the data set of labelled snapshots");
   app.add_option("--cameras",
                  options.cameras,
-                 "Folder of calibrations, from which clients may choose a camera-file")
+                 "Folder of calibrations from which clients may choose a camera-file")
       ->check(CLI::ExistingDirectory);
   app.add_option("--page", options.page, "Serve the page's files from this folder")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--quality", options.quality, "Of the JPEGs")
+  app.add_option("--quality", options.quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   app.add_flag("--allow-source-change",
                options.allows_source_change,
-               "Let clients choose the source, and so run any pipeline");
+               "Let clients choose the source, and thereby run any pipeline");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -67,9 +67,9 @@ std::optional<std::string> PageFiles::content(const std::string& name) const {
 
 Reply PageFiles::get(const std::string& name) const {
   const char* type = type_of(name);
-  if (type == nullptr || !is_plain_name(name)) return error_reply(404, "the page has no such file");
+  if (type == nullptr || !is_plain_name(name)) return error_reply(404, "no such file");
   std::optional<std::string> bytes = content(name);
-  if (!bytes) return error_reply(404, "the page has no such file");
+  if (!bytes) return error_reply(404, "no such file");
   return {.type = type, .body = std::move(*bytes)};
 }
 

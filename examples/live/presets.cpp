@@ -31,13 +31,13 @@ void check_name(const std::string& name) {
                       std::any_of(name.begin(), name.end(), [](unsigned char c) {
                         return c < 0x20 || c == 0x7f || c == '[' || c == ']' || c == '/';
                       });
-  if (is_odd) throw std::invalid_argument("a preset cannot have the name \"" + name + "\"");
+  if (is_odd) throw std::invalid_argument("invalid preset name \"" + name + "\"");
 }
 
 void check_exists(GstElement* tracker, const std::string& name) {
   const std::vector<std::string> names = names_of(tracker);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  throw std::invalid_argument("there is no preset \"" + name + "\"");
+  throw std::invalid_argument("no such preset: \"" + name + "\"");
 }
 
 // GStreamer copies all presets that it knows into the file of one's own: only the mark tells which
@@ -72,7 +72,8 @@ void save_preset(GstElement* tracker, const std::string& name) {
   const std::vector<std::string> names = names_of(tracker);
   const bool is_there = std::find(names.begin(), names.end(), name) != names.end();
   if (is_there && !is_own(tracker, name)) {
-    throw std::invalid_argument("the preset \"" + name + "\" is not yours: take another name");
+    throw std::invalid_argument("the preset \"" + name +
+                                "\" was not created by ellipse-live: choose another name");
   }
   if (!gst_preset_save_preset(GST_PRESET(tracker), name.c_str()) ||
       !gst_preset_set_meta(GST_PRESET(tracker), name.c_str(), kOrigin, kOwn)) {
@@ -83,14 +84,14 @@ void save_preset(GstElement* tracker, const std::string& name) {
 void load_preset(GstElement* tracker, const std::string& name) {
   check_exists(tracker, name);
   if (!gst_preset_load_preset(GST_PRESET(tracker), name.c_str())) {
-    throw std::invalid_argument("the values of the preset \"" + name + "\" do not fit together");
+    throw std::invalid_argument("the values of the preset \"" + name + "\" are inconsistent");
   }
 }
 
 void delete_preset(GstElement* tracker, const std::string& name) {
   check_exists(tracker, name);
   if (!is_own(tracker, name)) {
-    throw std::invalid_argument("the preset \"" + name + "\" is not yours");
+    throw std::invalid_argument("the preset \"" + name + "\" was not created by ellipse-live");
   }
   if (!gst_preset_delete_preset(GST_PRESET(tracker), name.c_str())) {
     throw std::runtime_error("the preset \"" + name + "\" cannot be deleted");

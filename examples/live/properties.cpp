@@ -84,7 +84,7 @@ std::vector<Change> parse_changes(GstElement* tracker,
       return g_strcmp0(each->name, name) == 0;
     });
     if (spec == known.end()) {
-      throw std::invalid_argument(std::string(name) + ": there is no such property to set");
+      throw std::invalid_argument(std::string(name) + ": no such writable property");
     }
     Change change{*spec, std::make_unique<Value>(*spec)};
     read_value(*spec, node, change.value->get());
@@ -181,7 +181,7 @@ std::string Properties::to_json() const {
 }
 
 bool Properties::set(const std::string& json) {
-  if (json.empty()) throw std::invalid_argument("an object {\"name\": value, ...} is wanted");
+  if (json.empty()) throw std::invalid_argument("expected an object {\"name\": value, ...}");
   std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
   (void)settings_after(tracker_, changes);
   std::erase_if(changes, [this](const Change& change) {

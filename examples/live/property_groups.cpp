@@ -2,6 +2,7 @@
 #include "examples/live/property_groups.hpp"
 
 #include <array>
+#include <string>
 
 namespace live {
 namespace {
@@ -59,13 +60,7 @@ std::string_view group_of(std::string_view property) {
 
 std::string_view unit_in(std::string_view blurb) {
   for (const std::string_view unit : kUnits) {
-    for (std::size_t at = blurb.find(unit); at != std::string_view::npos;
-         at = blurb.find(unit, at + 1)) {
-      const bool starts = at >= 3 && blurb.substr(at - 3, 3) == "in ";
-      const std::size_t end = at + unit.size();
-      const bool ends = end == blurb.size() || blurb.substr(end, 1).find_first_of(";:, ") == 0;
-      if (starts && ends) return unit;
-    }
+    if (blurb.find("[" + std::string(unit) + "]") != std::string_view::npos) return unit;
   }
   return "";
 }

@@ -9,7 +9,7 @@ namespace live {
 /// "other" for one that is not known here.
 [[nodiscard]] std::string_view group_of(std::string_view property);
 
-/// The unit that a property's description names: "px", "ns", "grey levels per px", or nothing.
+/// The unit in brackets in a property's description: "px", "ns", "grey levels per px", or nothing.
 [[nodiscard]] std::string_view unit_in(std::string_view blurb);
 
 }  // namespace live

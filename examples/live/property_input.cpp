@@ -18,15 +18,15 @@ namespace {
 
 double number_of(const GParamSpec* spec, JsonNode* node) {
   const GType type = json_node_get_value_type(node);
-  if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) refuse(spec, "takes a number");
+  if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) refuse(spec, "expected a number");
   const double number = json_node_get_double(node);
-  if (!std::isfinite(number)) refuse(spec, "takes a number, and this one is too large");  // 1e999
+  if (!std::isfinite(number)) refuse(spec, "the number is too large");  // 1e999
   return number;
 }
 
 double whole_number_of(const GParamSpec* spec, JsonNode* node) {
   const double number = number_of(spec, node);
-  if (number != std::floor(number)) refuse(spec, "takes a whole number");
+  if (number != std::floor(number)) refuse(spec, "expected a whole number");
   return number;
 }
 
@@ -40,7 +40,7 @@ double in_range(const GParamSpec* spec, const Spec* range, double number) {
 }
 
 std::string text_of(const GParamSpec* spec, JsonNode* node) {
-  if (json_node_get_value_type(node) != G_TYPE_STRING) refuse(spec, "takes text");
+  if (json_node_get_value_type(node) != G_TYPE_STRING) refuse(spec, "expected a string");
   return json_node_get_string(node);
 }
 
@@ -65,8 +65,8 @@ std::vector<double> numbers_of(const GParamSpec* spec,
 
 void read_rect(const GParamSpec* spec, JsonNode* node, GValue* value) {
   for (const double number : numbers_of(spec, node, 4, "[x, y, width, height]")) {
-    if (number != std::floor(number)) refuse(spec, "takes four whole numbers");
-    if (std::abs(number) > 1e6) refuse(spec, "is far outside of any frame");
+    if (number != std::floor(number)) refuse(spec, "expected four whole numbers");
+    if (std::abs(number) > 1e6) refuse(spec, "far outside any frame");
     GValue each = G_VALUE_INIT;
     g_value_init(&each, G_TYPE_INT);
     g_value_set_int(&each, static_cast<gint>(number));
@@ -94,7 +94,7 @@ void read_enum(GParamSpec* spec, JsonNode* node, GValue* value) {
   for (guint i = 0; i < type->n_values; ++i) {
     nicks += std::string(" ") + type->values[i].value_nick;
   }
-  refuse(spec, "\"" + nick + "\" is none of:" + nicks);
+  refuse(spec, "\"" + nick + "\" is not one of:" + nicks);
 }
 
 }  // namespace
@@ -102,10 +102,10 @@ void read_enum(GParamSpec* spec, JsonNode* node, GValue* value) {
 void read_value(GParamSpec* spec, JsonNode* node, GValue* value) {
   if (is_rect(spec)) return read_rect(spec, node, value);
   if (is_vector(spec)) return read_vector(spec, node, value);
-  if (!JSON_NODE_HOLDS_VALUE(node)) refuse(spec, "takes a single value");
+  if (!JSON_NODE_HOLDS_VALUE(node)) refuse(spec, "expected a single value");
   if (G_IS_PARAM_SPEC_ENUM(spec)) return read_enum(spec, node, value);
   if (G_IS_PARAM_SPEC_BOOLEAN(spec)) {
-    if (json_node_get_value_type(node) != G_TYPE_BOOLEAN) refuse(spec, "takes true or false");
+    if (json_node_get_value_type(node) != G_TYPE_BOOLEAN) refuse(spec, "expected true or false");
     g_value_set_boolean(value, json_node_get_boolean(node));
   } else if (G_IS_PARAM_SPEC_DOUBLE(spec)) {
     g_value_set_double(value, in_range(spec, G_PARAM_SPEC_DOUBLE(spec), number_of(spec, node)));
@@ -115,12 +115,12 @@ void read_value(GParamSpec* spec, JsonNode* node, GValue* value) {
   } else if (G_IS_PARAM_SPEC_UINT64(spec)) {
     // 2^53: what lies beyond is no exact number in JSON.
     const double number = whole_number_of(spec, node);
-    if (number < 0.0 || number > 9007199254740992.0) refuse(spec, "is out of range");
+    if (number < 0.0 || number > 9007199254740992.0) refuse(spec, "out of range");
     g_value_set_uint64(value, static_cast<guint64>(number));
   } else if (G_IS_PARAM_SPEC_STRING(spec)) {
     g_value_set_string(value, text_of(spec, node).c_str());
   } else if (!gst_value_deserialize(value, text_of(spec, node).c_str())) {
-    refuse(spec, "does not take this");
+    refuse(spec, "unsupported type");
   }
 }
 

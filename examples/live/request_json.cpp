@@ -23,7 +23,7 @@ RequestJson::RequestJson(const std::string& body) : parser_(json_parser_new()) {
   }
   JsonNode* root = json_parser_get_root(parser_.get());
   if (root == nullptr || !JSON_NODE_HOLDS_OBJECT(root)) {
-    throw std::invalid_argument("a JSON object is wanted");
+    throw std::invalid_argument("expected a JSON object");
   }
   object_ = json_node_get_object(root);
 }
@@ -39,7 +39,7 @@ bool RequestJson::has(const char* name) const {
 std::string RequestJson::text(const char* name) const {
   JsonNode* member = node(name);
   if (member == nullptr || !is_text(member)) {
-    throw std::invalid_argument(std::string(name) + ": text is wanted");
+    throw std::invalid_argument(std::string(name) + ": expected a string");
   }
   return json_node_get_string(member);
 }
@@ -49,7 +49,7 @@ double RequestJson::number(const char* name) const {
   const bool is_value = member != nullptr && JSON_NODE_HOLDS_VALUE(member);
   const GType type = is_value ? json_node_get_value_type(member) : G_TYPE_INVALID;
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) {
-    throw std::invalid_argument(std::string(name) + ": a number is wanted");
+    throw std::invalid_argument(std::string(name) + ": expected a number");
   }
   const double number = json_node_get_double(member);
   if (std::isfinite(number)) return number;  // 1e999 is not
@@ -68,7 +68,7 @@ GstClockTime RequestJson::time(const char* name) const {
                ? static_cast<GstClockTime>(json_node_get_int(node(name)))
                : static_cast<GstClockTime>(time);
   }
-  throw std::invalid_argument(std::string(name) + ": a time in ns is wanted");
+  throw std::invalid_argument(std::string(name) + ": expected a time in ns");
 }
 
 }  // namespace live

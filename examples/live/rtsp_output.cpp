@@ -84,7 +84,7 @@ RtspOutput::RtspOutput(const Settings& settings)
   try {
     door_.emplace(server_.get());
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error("cannot serve RTSP at " + settings.address + ":" +
+    throw std::runtime_error("cannot serve RTSP on " + settings.address + ":" +
                              std::to_string(settings.port) + ": " + error.what());
   }
   glance_ = g_timeout_add_seconds(kGlanceSeconds, on_glance, this);

@@ -52,7 +52,7 @@ bool is_loopback_address(const std::string& address) {
 std::string make_token() {
   std::array<unsigned char, 16> random;
   if (getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
-    throw std::runtime_error("the system has no random numbers");
+    throw std::runtime_error("cannot read random numbers from the system");
   }
   std::string token;
   for (const unsigned char byte : random) {

@@ -36,23 +36,23 @@ std::string test_description(const std::string& text, const std::string& scene) 
       g_object_class_find_property(G_OBJECT_GET_CLASS(element.get()), "scene");
   GEnumClass* scenes = G_PARAM_SPEC_ENUM(property)->enum_class;
   if (g_enum_get_value_by_nick(scenes, scene.c_str()) == nullptr) {
-    refuse(text, "there is no such scene; there are " + scene_names(scenes));
+    refuse(text, "no such scene; available: " + scene_names(scenes));
   }
   return "ellipsetestsrc is-live=true scene=" + scene;
 }
 
 void check_readable(const std::string& text, const std::string& path, const std::string& what) {
-  if (!fs::exists(path)) refuse(text, "there is no such " + what);
-  if (access(path.c_str(), R_OK) != 0) refuse(text, "this " + what + " may not be read");
+  if (!fs::exists(path)) refuse(text, "no such " + what);
+  if (access(path.c_str(), R_OK) != 0) refuse(text, "no permission to read this " + what);
 }
 
 SourceSpec uri_source(const std::string& text) {
   SourceSpec spec{.kind = SourceKind::kUri, .text = text};
   const Ref<gchar> scheme(g_uri_parse_scheme(text.c_str()));
-  if (!scheme) refuse(text, "is no URI");
+  if (!scheme) refuse(text, "not a URI");
   const std::string name = scheme.get();
   if (!gst_uri_protocol_is_supported(GST_URI_SRC, name.c_str())) {
-    refuse(text, "nothing that is installed reads " + name + "://");
+    refuse(text, "no installed element reads " + name + "://");
   }
   spec.is_live = name == "rtsp" || name == "rtsps" || name == "udp" || name == "rtp" ||
                  name == "srt" || name == "tcp";
@@ -66,7 +66,7 @@ SourceSpec uri_source(const std::string& text) {
 
 SourceSpec file_source(const std::string& text) {
   check_readable(text, text, "file");
-  if (!fs::is_regular_file(text)) refuse(text, "is no file that can be played");
+  if (!fs::is_regular_file(text)) refuse(text, "not a regular file");
   const Ref<gchar> uri(gst_filename_to_uri(text.c_str(), nullptr));
   return {.kind = SourceKind::kFile,
           .text = text,
@@ -131,15 +131,14 @@ FrameRate parse_rate(const std::string& text) {
     if (is_one) gst_util_double_to_fraction(number, &rate.n, &rate.d);
   }
   if (rate.n > 0 && rate.d > 0 && rate.n <= kFastest * rate.d) return rate;
-  throw std::invalid_argument("\"" + text +
-                              "\" is no number of frames a second, as 10 or 30000/1001");
+  throw std::invalid_argument("\"" + text + "\" is not a frame rate such as 10 or 30000/1001");
 }
 
 SourceSpec parse_source(const std::string& text, std::optional<FrameRate> rate) {
-  if (text.empty()) refuse(text, "is empty");
+  if (text.empty()) refuse(text, "empty");
   std::error_code ignored;  // what cannot be read is told below
   const bool is_folder = text.find("://") == std::string::npos && fs::is_directory(text, ignored);
-  if (rate && !is_folder) refuse(text, "a frame rate is given to a folder of pictures only");
+  if (rate && !is_folder) refuse(text, "a frame rate applies to a folder of pictures only");
   if (text.starts_with('[') && text.ends_with(']')) return fragment_source(text);
   if (text.starts_with("test:")) {
     return {.kind = SourceKind::kTest,

@@ -199,7 +199,7 @@ static void show(GstEllipseOverlay* self, GstBuffer* buffer) {
     blend(self->overlay->canvas(), mapped.frame());
   } else {
     GST_ELEMENT_WARNING(
-        self, RESOURCE, WRITE, ("A buffer cannot be drawn on."), ("it passes as it is"));
+        self, RESOURCE, WRITE, ("Cannot map a buffer for writing."), ("it passes unchanged"));
   }
 }
 
@@ -218,7 +218,7 @@ static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, Gs
     if (!self->overlay->canvas().tiles().empty()) show(self, buffer);
   } catch (const std::exception& error) {
     GST_ELEMENT_WARNING(
-        self, STREAM, FAILED, ("A frame could not be drawn on: %s", error.what()), ("it passes"));
+        self, STREAM, FAILED, ("Cannot draw on a frame: %s", error.what()), ("the frame passes"));
   }
   return GST_FLOW_OK;
 }
@@ -255,7 +255,7 @@ static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
       PROP_TRUTH,
       g_param_spec_boolean("truth",
                            "Truth",
-                           "Also draw where a test source says that the target is",
+                           "Also draw the ground truth of a test source",
                            FALSE,
                            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                     GST_PARAM_MUTABLE_PLAYING)));

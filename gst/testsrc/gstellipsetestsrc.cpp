@@ -234,7 +234,7 @@ static GstFlowReturn gst_ellipse_test_src_fill(GstPushSrc* push, GstBuffer* buff
 
   MappedFrame mapped(self->info, buffer, GST_MAP_WRITE);
   if (!mapped.is_mapped()) {
-    GST_ELEMENT_ERROR(self, RESOURCE, WRITE, ("A buffer cannot be written."), (nullptr));
+    GST_ELEMENT_ERROR(self, RESOURCE, WRITE, ("Cannot map a buffer for writing."), (nullptr));
     return GST_FLOW_ERROR;
   }
   try {
@@ -242,7 +242,7 @@ static GstFlowReturn gst_ellipse_test_src_fill(GstPushSrc* push, GstBuffer* buff
     fill_chroma(mapped.frame());
     attach_truth(self, buffer, truth);
   } catch (const std::exception& error) {
-    GST_ELEMENT_ERROR(self, LIBRARY, FAILED, ("The scene cannot be drawn."), ("%s", error.what()));
+    GST_ELEMENT_ERROR(self, LIBRARY, FAILED, ("Cannot render the scene."), ("%s", error.what()));
     return GST_FLOW_ERROR;
   }
   ++self->frame;
@@ -272,7 +272,7 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
       PROP_IS_LIVE,
       g_param_spec_boolean("is-live",
                            "Is live",
-                           "Give each frame at its time, as a camera does",
+                           "Deliver each frame at its time stamp, as a camera does",
                            FALSE,
                            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                     GST_PARAM_MUTABLE_READY)));
@@ -281,7 +281,7 @@ static void gst_ellipse_test_src_class_init(GstEllipseTestSrcClass* klass) {
   gst_element_class_set_static_metadata(element_class,
                                         "Ellipse test source",
                                         "Source/Video",
-                                        "Renders a landing pad as a drone sees it, with the truth",
+                                        "Renders a drone's view of a landing pad with ground truth",
                                         "The gst-ellipse authors");
   gst_element_class_add_static_pad_template(element_class, &src_template);
 

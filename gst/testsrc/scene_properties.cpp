@@ -24,7 +24,7 @@ GType gst_ellipse_scene_get_type() {
     for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
       values.push_back({number++, scene.description, scene.name});
     }
-    values.push_back({number, "A random one: all of it follows from the seed", "wild"});
+    values.push_back({number, "Random scene, defined by the seed", "wild"});
     values.push_back({0, nullptr, nullptr});
     return g_enum_register_static("GstEllipseScene", values.data());
   }();
@@ -34,7 +34,7 @@ GType gst_ellipse_scene_get_type() {
 GType register_nicks(const char* name,
                      std::span<const char* const> nicks,
                      std::vector<GEnumValue>& values) {
-  values.push_back({SceneProperties::kAsTheScene, "As the scene has it", "scene"});
+  values.push_back({SceneProperties::kAsTheScene, "The scene's own", "scene"});
   gint number = 0;
   for (const char* nick : nicks) values.push_back({number++, nick, nick});
   values.push_back({0, nullptr, nullptr});
@@ -55,7 +55,7 @@ GType gst_ellipse_ground_get_type() {
 
 GType gst_ellipse_lens_get_type() {
   static const GType kType = [] {
-    static std::vector<GEnumValue> values = {{SceneProperties::kNoLens, "None: a pinhole", "none"}};
+    static std::vector<GEnumValue> values = {{SceneProperties::kNoLens, "None: pinhole", "none"}};
     for (const ellipse::NamedLens& lens : ellipse::lens_catalog()) {
       values.push_back({static_cast<gint>(values.size()), lens.description, lens.name});
     }
@@ -74,51 +74,42 @@ void SceneProperties::install(GObjectClass* object_class, guint first_id) {
     g_object_class_install_property(object_class, first_id + id, spec);
   };
   install(PROP_SCENE,
-          g_param_spec_enum("scene",
-                            "Scene",
-                            "What the camera sees and does",
-                            gst_ellipse_scene_get_type(),
-                            0,
-                            flags));
+          g_param_spec_enum(
+              "scene", "Scene", "Scene to render", gst_ellipse_scene_get_type(), 0, flags));
   install(PROP_PATTERN,
           g_param_spec_enum("pattern",
                             "Pattern",
-                            "What is painted on the pad",
+                            "Pattern on the pad",
                             gst_ellipse_pattern_get_type(),
                             kAsTheScene,
                             flags));
   install(PROP_GROUND,
           g_param_spec_enum("ground",
                             "Ground",
-                            "What lies around the pad",
+                            "Ground around the pad",
                             gst_ellipse_ground_get_type(),
                             kAsTheScene,
                             flags));
   install(PROP_LENS,
-          g_param_spec_enum("lens",
-                            "Lens",
-                            "How the lens distorts the picture",
-                            gst_ellipse_lens_get_type(),
-                            kNoLens,
-                            flags));
+          g_param_spec_enum(
+              "lens", "Lens", "Lens distortion", gst_ellipse_lens_get_type(), kNoLens, flags));
   install(PROP_NOISE,
           g_param_spec_double("noise",
                               "Noise",
-                              "Standard deviation of the sensor's noise, in grey levels; "
-                              "-1 = as the scene has it",
+                              "Standard deviation of the sensor noise [grey levels]; "
+                              "-1 = the scene's own",
                               -1.0,
                               100.0,
                               -1.0,
                               flags));
   install(PROP_SEED,
-          g_param_spec_uint(
-              "seed",
-              "Seed",
-              "Seed of all that is random: ground and noise, and of scene \"wild\" everything",
-              0,
-              G_MAXUINT32,
-              1,
-              flags));
+          g_param_spec_uint("seed",
+                            "Seed",
+                            "Random seed of ground and noise; with scene=wild, of the whole scene",
+                            0,
+                            G_MAXUINT32,
+                            1,
+                            flags));
   for (const GType type : {gst_ellipse_scene_get_type(),
                            gst_ellipse_pattern_get_type(),
                            gst_ellipse_ground_get_type(),

@@ -58,9 +58,9 @@ static bool is_stopped(GstEllipseTrack* self) {
 
 static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
   if (refusal.empty()) return;
-  GST_WARNING_OBJECT(self, "setting refused: %s", refusal.c_str());
+  GST_WARNING_OBJECT(self, "setting rejected: %s", refusal.c_str());
   GST_ELEMENT_WARNING(
-      self, LIBRARY, SETTINGS, ("Setting refused: %s", refusal.c_str()), ("the old value stays"));
+      self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("the old value stays"));
 }
 
 // @return Why these values do not fit each other; empty where they do.
@@ -228,14 +228,14 @@ static void install_properties(GObjectClass* object_class) {
       PROP_TARGET,
       g_param_spec_boxed("target",
                          "Target",
-                         "The target in the last analysed frame, NULL where there was none",
+                         "Target in the last analysed frame; NULL = none",
                          GST_TYPE_STRUCTURE,
                          readable));
   g_object_class_install_property(object_class,
                                   PROP_STATS,
                                   g_param_spec_boxed("stats",
                                                      "Statistics",
-                                                     "What became of the frames; times in ns",
+                                                     "Frame counts and processing times [ns]",
                                                      GST_TYPE_STRUCTURE,
                                                      readable));
   TrackProperties::install(object_class, PROP_FIRST_SETTING);
@@ -326,7 +326,7 @@ static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
     const std::string obstacle = obstacle_to_start(GST_ELLIPSE_TRACK(element));
     if (!obstacle.empty()) {
       GST_ELEMENT_ERROR(
-          element, LIBRARY, SETTINGS, ("Setting refused: %s", obstacle.c_str()), (nullptr));
+          element, LIBRARY, SETTINGS, ("Setting rejected: %s", obstacle.c_str()), (nullptr));
       return GST_STATE_CHANGE_FAILURE;
     }
   }
@@ -365,8 +365,8 @@ static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
     GST_ELEMENT_WARNING(filter,
                         STREAM,
                         FORMAT,
-                        ("Interlaced frames are searched as if they were whole ones."),
-                        ("put a deinterlacer in front"));
+                        ("Interlaced frames are analysed as if they were progressive."),
+                        ("put deinterlace upstream"));
   }
   return TRUE;
 }

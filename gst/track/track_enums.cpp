@@ -6,7 +6,7 @@
 GType gst_ellipse_detector_get_type() {
   static const GEnumValue kValues[] = {
       {int(ellipse::DetectorKind::kContours), "Contours: Keipour et al. 2021", "contours"},
-      {int(ellipse::DetectorKind::kArcs), "Arcs of edges, fitted together", "arcs"},
+      {int(ellipse::DetectorKind::kArcs), "Ellipses fitted to groups of edge arcs", "arcs"},
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseDetector", kValues);
@@ -15,12 +15,12 @@ GType gst_ellipse_detector_get_type() {
 
 GType gst_ellipse_tracking_get_type() {
   static const GEnumValue kValues[] = {
-      {int(ellipse::TrackingMode::kNone), "Each frame by itself", "none"},
+      {int(ellipse::TrackingMode::kNone), "Detection in each frame independently", "none"},
       {int(ellipse::TrackingMode::kRedetect),
-       "Detect again around the last place: Keipour et al. 2021",
+       "Detection in a region around the last target: Keipour et al. 2021",
        "redetect"},
       {int(ellipse::TrackingMode::kEdges),
-       "Follow the learned edges of the pad from its predicted place",
+       "Learned edges of the target, matched from its predicted position",
        "edges"},
       {0, nullptr, nullptr},
   };
@@ -30,10 +30,12 @@ GType gst_ellipse_tracking_get_type() {
 
 GType gst_ellipse_refinement_get_type() {
   static const GEnumValue kValues[] = {
-      {int(ellipse::Refinement::kNone), "Where the edges that it is followed by put it", "none"},
-      {int(ellipse::Refinement::kEdges), "By the maxima along its outer edge", "edges"},
+      {int(ellipse::Refinement::kNone), "The ellipse that edge tracking gives", "none"},
+      {int(ellipse::Refinement::kEdges),
+       "Fit to the gradient maxima along the outer edge",
+       "edges"},
       {int(ellipse::Refinement::kPhotometric),
-       "By the brightness of all pixels along its outer edge",
+       "Fit to the brightness of all pixels along the outer edge",
        "photometric"},
       {0, nullptr, nullptr},
   };
@@ -44,7 +46,7 @@ GType gst_ellipse_refinement_get_type() {
 GType gst_ellipse_messages_get_type() {
   static const GEnumValue kValues[] = {
       {MESSAGES_NONE, "No messages", "none"},
-      {MESSAGES_ON_CHANGE, "When the state or the id of the target changes", "on-change"},
+      {MESSAGES_ON_CHANGE, "When the target appears, changes state or id, or is lost", "on-change"},
       {MESSAGES_EVERY_FRAME, "For every analysed frame", "every-frame"},
       {0, nullptr, nullptr},
   };
@@ -54,9 +56,9 @@ GType gst_ellipse_messages_get_type() {
 
 GType gst_ellipse_roi_source_get_type() {
   static const GEnumValue kValues[] = {
-      {ROI_SOURCE_NONE, "The whole frame is searched", "none"},
-      {ROI_SOURCE_PROPERTY, "The region that the property roi gives", "property"},
-      {ROI_SOURCE_META, "The box around the GstVideoRegionOfInterestMeta of each buffer", "meta"},
+      {ROI_SOURCE_NONE, "Whole frame", "none"},
+      {ROI_SOURCE_PROPERTY, "Region in the property roi", "property"},
+      {ROI_SOURCE_META, "Bounding box of the GstVideoRegionOfInterestMeta of each buffer", "meta"},
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseRoiSource", kValues);

@@ -26,7 +26,7 @@ static bool succeeds(GstEllipseTrack* self, const char* failure, const Body& bod
   } catch (...) {
   }
   GST_ELEMENT_WARNING(
-      self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("the stream goes on"));
+      self, STREAM, FAILED, ("%s: %s", failure, why.c_str()), ("the stream continues"));
   return false;
 }
 
@@ -201,7 +201,7 @@ static void analyse(GstEllipseTrack* self,
   MappedFrame mapped(
       GST_VIDEO_FILTER(self)->in_info, buffer, draws ? GST_MAP_READWRITE : GST_MAP_READ);
   if (!mapped.is_mapped()) {
-    GST_ELEMENT_WARNING(self, RESOURCE, READ, ("A buffer cannot be read."), ("it passes as it is"));
+    GST_ELEMENT_WARNING(self, RESOURCE, READ, ("Cannot map a buffer."), ("it passes unchanged"));
     skip(self, Skip::kFailed);
     return;
   }
@@ -235,13 +235,13 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
 
 void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
   const auto body = [&] { pass_on(self, buffer); };
-  if (!succeeds(self, "A frame could not be analysed", body)) skip(self, Skip::kFailed);
+  if (!succeeds(self, "Cannot analyse a frame", body)) skip(self, Skip::kFailed);
   tell_latency(self);
 }
 
 void forget_stream(GstEllipseTrack* self) {
   GST_DEBUG_OBJECT(self, "starts over");
-  succeeds(self, "The last stream could not be forgotten", [self] {
+  succeeds(self, "Cannot reset the tracker", [self] {
     GST_OBJECT_LOCK(self);
     const TrackProperties properties = self->shared->properties;
     self->shared->lateness = Lateness();

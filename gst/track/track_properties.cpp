@@ -64,7 +64,7 @@ std::array<double, 3> vector_from(const GValue* value, const char* name) {
   std::array<double, 3> numbers{};
   if (gst_value_array_get_size(value) == 0) return numbers;
   if (gst_value_array_get_size(value) != numbers.size()) {
-    throw std::invalid_argument(std::string(name) + " has not the form <x, y, z>");
+    throw std::invalid_argument(std::string(name) + " must have the form <x, y, z>");
   }
   for (guint i = 0; i < numbers.size(); ++i) {
     const GValue* number = gst_value_array_get_value(value, i);
@@ -73,7 +73,7 @@ std::array<double, 3> vector_from(const GValue* value, const char* name) {
     const bool is_number = g_value_transform(number, &real) != FALSE;
     numbers[i] = g_value_get_double(&real);
     g_value_unset(&real);
-    if (!is_number) throw std::invalid_argument(std::string(name) + " is not made of numbers");
+    if (!is_number) throw std::invalid_argument(std::string(name) + " must contain numbers only");
   }
   return numbers;
 }
@@ -92,11 +92,11 @@ ellipse::Rect rect_from(const GValue* value) {
   std::array<int, 4> numbers{};
   if (gst_value_array_get_size(value) == 0) return {};
   if (gst_value_array_get_size(value) != numbers.size()) {
-    throw std::invalid_argument("roi has not the form <x, y, width, height>");
+    throw std::invalid_argument("roi must have the form <x, y, width, height>");
   }
   for (guint i = 0; i < numbers.size(); ++i) {
     const GValue* number = gst_value_array_get_value(value, i);
-    if (!G_VALUE_HOLDS_INT(number)) throw std::invalid_argument("roi is not made of ints");
+    if (!G_VALUE_HOLDS_INT(number)) throw std::invalid_argument("roi must contain ints only");
     numbers[i] = g_value_get_int(number);
   }
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
@@ -136,20 +136,19 @@ void install_methods(const Installer& install, const TrackProperties& initial) {
   install(PROP_DETECTOR,
           g_param_spec_enum("detector",
                             "Detector",
-                            "How ellipses are found in a picture",
+                            "Ellipse detection method",
                             gst_ellipse_detector_get_type(),
                             static_cast<gint>(initial.tracker.detector),
                             kPlaying));
   install(PROP_TRACKING,
           g_param_spec_enum("tracking",
                             "Tracking",
-                            "How the target is followed from frame to frame",
+                            "Tracking method",
                             gst_ellipse_tracking_get_type(),
                             static_cast<gint>(initial.tracker.tracking),
                             kPlaying));
-  const std::string blurb =
-      ellipse::blurb_of("How exact the ellipse is made of a target that is followed by its edges",
-                        ellipse::effect_of("refine"));
+  const std::string blurb = ellipse::blurb_of("Refinement of the ellipse of a followed target",
+                                              ellipse::effect_of("refine"));
   install(PROP_REFINE,
           g_param_spec_enum("refine",
                             "Refine",
@@ -163,7 +162,7 @@ void install_load(const Installer& install, const TrackProperties& initial) {
   install(PROP_INTERVAL,
           g_param_spec_uint("interval",
                             "Interval",
-                            "Analyse every n-th frame; the others pass as they are",
+                            "Analyse every n-th frame; the others pass unchanged",
                             1,
                             G_MAXUINT,
                             initial.interval,
@@ -171,7 +170,7 @@ void install_load(const Installer& install, const TrackProperties& initial) {
   install(PROP_MAX_PROCESSING_TIME,
           g_param_spec_uint64("max-processing-time",
                               "Maximum processing time",
-                              "Time for a frame in ns: beyond it the search gets coarser, then "
+                              "Maximum time per frame [ns]; above it the search gets coarser, then "
                               "frames pass without analysis; 0 = no limit",
                               0,
                               G_MAXUINT64,
@@ -183,21 +182,22 @@ void install_reports(const Installer& install, const TrackProperties& initial) {
   install(PROP_MESSAGES,
           g_param_spec_enum("messages",
                             "Messages",
-                            "When an element message \"ellipse\" is posted on the bus",
+                            "When to post an element message \"ellipse\" on the bus",
                             gst_ellipse_messages_get_type(),
                             initial.messages,
                             kPlaying));
-  install(PROP_ATTACH_ROI_META,
-          g_param_spec_boolean("attach-roi-meta",
-                               "Attach ROI meta",
-                               "Also attach the target's box as GstVideoRegionOfInterestMeta",
-                               initial.attach_roi_meta ? TRUE : FALSE,
-                               kPlaying));
+  install(
+      PROP_ATTACH_ROI_META,
+      g_param_spec_boolean("attach-roi-meta",
+                           "Attach ROI meta",
+                           "Also attach the target's bounding box as GstVideoRegionOfInterestMeta",
+                           initial.attach_roi_meta ? TRUE : FALSE,
+                           kPlaying));
   install(PROP_CANDIDATES,
           g_param_spec_boolean("candidates",
                                "Candidates",
-                               "Also attach all other ellipses of the frame, as \"candidate\"; the "
-                               "detector then looks at every frame",
+                               "Also attach all other ellipses of the frame as \"candidate\"; the "
+                               "detector then runs on every frame",
                                initial.tracker.wants_candidates ? TRUE : FALSE,
                                kPlaying));
 }
@@ -206,7 +206,7 @@ void install_region(const Installer& install, const TrackProperties& initial) {
   install(PROP_ROI_SOURCE,
           g_param_spec_enum("roi-source",
                             "ROI source",
-                            "Who says where in a frame is searched",
+                            "Source of the search region",
                             gst_ellipse_roi_source_get_type(),
                             initial.roi_source,
                             kPlaying));
@@ -215,15 +215,14 @@ void install_region(const Installer& install, const TrackProperties& initial) {
       gst_param_spec_array(
           "roi",
           "ROI",
-          "The region that roi-source=property searches, as <x, y, width, "
-          "height> in px of the frame",
+          "Search region of roi-source=property, as <x, y, width, height> in the frame [px]",
           g_param_spec_int(
-              "number", "Number", "x, y, width or height in px", G_MININT, G_MAXINT, 0, kPlaying),
+              "number", "Number", "x, y, width or height [px]", G_MININT, G_MAXINT, 0, kPlaying),
           kPlaying));
   install(PROP_ROI_TYPE,
           g_param_spec_string("roi-type",
                               "ROI type",
-                              "The regions that roi-source=meta counts; empty = of any type",
+                              "Type of the regions that roi-source=meta searches; empty = any",
                               "",
                               kPlaying));
 }
@@ -232,25 +231,25 @@ void install_files(const Installer& install) {
   install(PROP_EVIDENCE_FILE,
           g_param_spec_string("evidence-file",
                               "Evidence file",
-                              "Table of ellipse-evaluate --fit-evidence, by which detector=arcs "
-                              "decides; empty = the built-in one",
+                              "Evidence table of detector=arcs, from ellipse-evaluate "
+                              "--fit-evidence; empty = built-in",
                               "",
                               kPlaying));
   install(PROP_CAMERA_FILE,
           g_param_spec_string("camera-file",
                               "Camera file",
-                              "Calibration of the camera, from OpenCV or ROS; goes before fx and "
-                              "hfov; empty = none",
+                              "Camera calibration from OpenCV or ROS; overrides fx and hfov; "
+                              "empty = none",
                               "",
                               kPlaying));
   install(PROP_GRAVITY,
           gst_param_spec_array("gravity",
                                "Gravity",
-                               "Down in the camera's frame, as <x, y, z>: tells how a level target "
-                               "is tilted; <0, 0, 0> = not known",
+                               "Down in the camera's frame, as <x, y, z>; selects between the two "
+                               "possible tilts of a level target; <0, 0, 0> = unknown",
                                g_param_spec_double("number",
                                                    "Number",
-                                                   "x, y or z, of any unit",
+                                                   "x, y or z, in any unit",
                                                    -G_MAXDOUBLE,
                                                    G_MAXDOUBLE,
                                                    0.0,

@@ -86,11 +86,11 @@ TEST_F(CommandPeer, MayLeaveOutAnImageAndFindNothingInAnother) {
 }
 
 TEST_F(CommandPeer, ABrokenAnswerIsNamedByItsLine) {
-  expect_error("cat > /dev/null; echo; echo Segmentation", "line 2 of its answer is no JSON");
+  expect_error("cat > /dev/null; echo; echo Segmentation", "line 2 of its answer is not a JSON");
   const auto answers = [](const std::string& line) {
     return "cat > /dev/null; echo '" + line + "'";
   };
-  expect_error(answers(R"([1])"), "is no JSON object: [1]");
+  expect_error(answers(R"([1])"), "is not a JSON object: [1]");
   expect_error(answers(R"({"image":3,"ms":1,"ellipses":[]})"), "no string \"image\"");
   expect_error(answers(R"({"image":"a.png","ms":"1","ellipses":[]})"), "no time \"ms\"");
   expect_error(answers(R"({"image":"a.png","ms":1e999,"ellipses":[]})"), "no time \"ms\"");
@@ -98,16 +98,16 @@ TEST_F(CommandPeer, ABrokenAnswerIsNamedByItsLine) {
   for (const std::string bad :
        {"7", "[1,2,3,4]", "[1,2,3,0,0]", "[1,2,null,4,0]", "[1,2,-3,4,0]"}) {
     expect_error(answers(R"({"image":"a.png","ms":1,"ellipses":[)" + bad + "]}"),
-                 "line 1 of its answer has an ellipse that is none");
+                 "line 1 of its answer contains an invalid ellipse");
   }
-  expect_error(answers(R"({"image":"z.png","ms":1,"ellipses":[]})"), "not asked for");
+  expect_error(answers(R"({"image":"z.png","ms":1,"ellipses":[]})"), "not requested");
   const std::string twice = R"({"image":"a.png","ms":1,"ellipses":[]})";
-  expect_error(answers(twice + "\n" + twice), "second time");
+  expect_error(answers(twice + "\n" + twice), "an image twice");
 }
 
 TEST_F(CommandPeer, AFailureIsNamedByItsStatus) {
-  expect_error("cat > /dev/null; exit 3", "ended with status 3");
-  expect_error(kAnswerEach + "exit 4", "ended with status 4");
+  expect_error("cat > /dev/null; exit 3", "exited with status 3");
+  expect_error(kAnswerEach + "exit 4", "exited with status 4");
   expect_error("kill -9 $$", "signal 9");
 }
 

@@ -142,7 +142,7 @@ TEST_F(DatasetFiles, NamesImagesAndLinesThatMissEachOther) {
   const Dataset dataset = read_dataset(folder_);
   ASSERT_EQ(dataset.problems.size(), 2U);
   EXPECT_NE(dataset.problems[0].find("gt.csv:3: image"), std::string::npos);
-  EXPECT_NE(dataset.problems[1].find("c.jpg: has no line"), std::string::npos);
+  EXPECT_NE(dataset.problems[1].find("c.jpg: not in the table"), std::string::npos);
   EXPECT_EQ(dataset.missing_frames, 1U);
 }
 
@@ -156,7 +156,7 @@ TEST_F(DatasetFiles, RefusesHalfATruthAndASecondLine) {
         "c.jpg,1,2,20,10,0,1\n");
   const Dataset dataset = read_dataset(folder_);
   ASSERT_EQ(dataset.problems.size(), 3U);
-  EXPECT_NE(dataset.problems[0].find("gt.csv:2: has a part"), std::string::npos);
+  EXPECT_NE(dataset.problems[0].find("gt.csv:2: some fields"), std::string::npos);
   EXPECT_NE(dataset.problems[1].find("gt.csv:3: visible_fraction"), std::string::npos);
   EXPECT_NE(dataset.problems[2].find("gt.csv:5: image"), std::string::npos);
   EXPECT_EQ(dataset.sequences[0].frames.size(), 1U);

@@ -133,7 +133,7 @@ TEST_F(Footage, RowsWithoutTheirFrameOfAVideoAreMissing) {
   const Dataset dataset = read();
   ASSERT_EQ(dataset.problems.size(), 1U);
   EXPECT_NE(dataset.problems[0].find("gt.csv:4: "), std::string::npos);
-  EXPECT_NE(dataset.problems[0].find("none of the 2 frames"), std::string::npos);
+  EXPECT_NE(dataset.problems[0].find("not one of the 2 frames"), std::string::npos);
   EXPECT_EQ(dataset.missing_frames, 1U);
 }
 

@@ -135,7 +135,8 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
   EXPECT_NE(outcome.text.find("\n2 frames"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("Missing frames: 2."), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("gt.csv:3: image"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("frame0002.png: is no picture"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("frame0002.png: not a readable picture"), std::string::npos)
+      << outcome.text;
 }
 
 // CSRT takes its time, so that the program is not at its end before the key is pressed.
@@ -151,7 +152,7 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   terminal.type('\x03');
   EXPECT_EQ(terminal.wait_for_end(), 130);
   const std::string& shown = terminal.text();
-  EXPECT_NE(shown.find("Interrupted: the figures are of"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Interrupted: the figures cover"), std::string::npos) << shown;
   EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
   EXPECT_GT(fs::file_size(json), 200U);
 }

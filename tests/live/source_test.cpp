@@ -36,11 +36,11 @@ std::string trouble_with(const std::string& source) {
 
 TEST(LiveSource, WhatIsWrongIsSaid) {
   const TemporaryFolder folder;
-  EXPECT_NE(trouble_with("test:moon").find("there are approach, oblique"), std::string::npos);
+  EXPECT_NE(trouble_with("test:moon").find("available: approach, oblique"), std::string::npos);
   EXPECT_NE(trouble_with(folder.file("none.mkv")).find("no such file"), std::string::npos);
   EXPECT_NE(trouble_with("/dev/video77").find("no such camera"), std::string::npos);
   EXPECT_NE(trouble_with("gopher://there/is").find("gopher"), std::string::npos);
-  EXPECT_NE(trouble_with(fs::path(folder.file("")).parent_path()).find("no .png and no .jpg"),
+  EXPECT_NE(trouble_with(fs::path(folder.file("")).parent_path()).find("no .png or .jpg"),
             std::string::npos);
   EXPECT_NE(trouble_with("[videotestsrc ! nonsense]").find("nonsense"), std::string::npos);
   EXPECT_NE(trouble_with("[videotestsrc !").find("no such file"), std::string::npos);

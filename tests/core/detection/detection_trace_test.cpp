@@ -388,7 +388,7 @@ TEST(DetectionTrace, OfATrackerIsInPixelsOfTheFrame) {
 TEST(Verdict, ReadsAsASentence) {
   EXPECT_EQ(to_text({Reason::kTooFlat, 6.1, 5.0}), "too flat: axis ratio 6.1, at most 5");
   EXPECT_EQ(to_text({Reason::kTooSmall, 3.25, 5.0}), "too small: minor axis 3.25 px, at least 5");
-  EXPECT_EQ(to_text({Reason::kKnown}), "the same as another that was found");
+  EXPECT_EQ(to_text({Reason::kKnown}), "duplicate of another ellipse");
   EXPECT_EQ(to_text({}), "accepted");
 }
 
