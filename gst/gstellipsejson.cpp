@@ -4,8 +4,8 @@
  * SECTION:element-ellipsejson
  * @title: ellipsejson
  *
- * Turns the ellipses on video buffers into text, one JSON object and one line a frame, also where
- * nothing was found. Any sink carries it: filesink, fdsink, udpsink, tcpserversink.
+ * Writes the ellipses on video buffers as text: one JSON object on one line per frame, also if
+ * nothing was found. Works with any sink: filesink, fdsink, udpsink, tcpserversink.
  *
  * |[
  * gst-launch-1.0 -q ellipsetestsrc num-buffers=3 ! ellipsetrack ! ellipsejson ! fdsink
@@ -91,7 +91,7 @@ static GstFlowReturn gst_ellipse_json_prepare_output_buffer(GstBaseTransform* ba
   return GST_FLOW_OK;
 }
 
-// The output is complete when it has been prepared.
+// prepare_output_buffer() writes the complete output.
 static GstFlowReturn gst_ellipse_json_transform(GstBaseTransform*, GstBuffer*, GstBuffer*) {
   return GST_FLOW_OK;
 }

@@ -4,8 +4,8 @@
 
 #include <cstring>
 
-/// The nick of a field's value; "unknown" where it has none. The field is read as the number that
-/// it is: it may come from anybody, and be no value of its type. Lives as long as the program.
+/// The nick of a field's value; "unknown" if it has none. The field is read as an integer, because
+/// untrusted metadata may hold a number that is not a value of the enum. Static string.
 template <class Enum>
 const gchar* nick_of(GType type, const Enum* field) {
   gint number = 0;

@@ -37,7 +37,7 @@ GType gst_ellipse_state_get_type(void) {
 /**
  * gst_ellipse_meta_api_get_type:
  *
- * The type that the ellipses of a buffer are counted and filtered by, as in
+ * The API type by which the ellipses of a buffer are counted and filtered, as in
  * [method@Gst.Buffer.get_n_meta]. Thread-safe.
  *
  * Returns: the type of the metadata's API
@@ -69,13 +69,13 @@ static gboolean ellipse_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
-// Where a scaler puts the picture: between black borders where its shape is another one, as
-// videoscale does unless told otherwise; GstVideoMetaTransform does not say whether it was. Borders
-// are whole pixels of the chroma.
+// Where a scaler puts the picture. If the display aspect ratio changes, black borders are assumed,
+// as videoscale adds by default; GstVideoMetaTransform does not tell. Borders are whole chroma
+// samples.
 static ellipse::Rect picture_inside(const GstVideoInfo& in, const GstVideoInfo& out) {
   const gint width = GST_VIDEO_INFO_WIDTH(&out);
   const gint height = GST_VIDEO_INFO_HEIGHT(&out);
-  gint n = 0;  // n / d: width by height of the picture, in pixels of the output
+  gint n = 0;  // n / d: width / height of the picture in output pixels
   gint d = 0;
   const bool is_known =
       gst_util_fraction_multiply(
@@ -105,7 +105,7 @@ static void scale_span(gint& begin, guint& length, double factor, gint offset) {
   length = static_cast<guint>(std::max(0.0, end - first));
 }
 
-// x becomes (x + 0.5) s - 0.5 in each direction, so that pixels keep the area that they cover.
+// Maps x to (x + 0.5) s - 0.5 in each direction: integer coordinates are pixel centres.
 static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* scale) {
   const ellipse::Rect inside = picture_inside(*scale->in_info, *scale->out_info);
   const double sx = inside.width / static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->in_info));
@@ -141,7 +141,7 @@ static gboolean ellipse_meta_transform(
   const auto* source = reinterpret_cast<GstEllipseMeta*>(meta);
   GstEllipseMeta moved = *source;
   if (GST_META_TRANSFORM_IS_COPY(type)) {
-    // A part of the bytes is no picture any more.
+    // Part of the bytes is not a frame.
     if (static_cast<GstMetaTransformCopy*>(data)->region) return FALSE;
   } else if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type) ||
              !scale_fields(&moved, static_cast<GstVideoMetaTransform*>(data))) {
@@ -156,7 +156,7 @@ static gboolean ellipse_meta_transform(
 /**
  * gst_ellipse_meta_get_info:
  *
- * What GStreamer knows of the metadata: its size, and how it is copied and scaled. Thread-safe.
+ * The registration of the metadata: its size, and how it is copied and scaled. Thread-safe.
  *
  * Returns: (transfer none): the registration, never freed
  *
@@ -175,11 +175,11 @@ const GstMetaInfo* gst_ellipse_meta_get_info(void) {
 /**
  * gst_buffer_add_ellipse_meta:
  * @buffer: a writable buffer
- * @role: what the ellipse stands for
+ * @role: role of the ellipse
  *
- * Attaches an ellipse, all of whose numbers are still to be filled in: 0, the scale 1, the times
- * `GST_CLOCK_TIME_NONE`. Allocates the metadata; as all that writes to a buffer, for one thread at
- * a time.
+ * Attaches an ellipse for the caller to fill in: all numbers are 0, the scale is 1, the times are
+ * `GST_CLOCK_TIME_NONE`. Allocates the metadata. One thread at a time, like all writing to a
+ * buffer.
  *
  * Returns: (transfer none): the ellipse, owned by the buffer
  *
@@ -196,10 +196,10 @@ GstEllipseMeta* gst_buffer_add_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
 /**
  * gst_buffer_iterate_ellipse_meta:
  * @buffer: a buffer
- * @state: (inout) (transfer none) (nullable): opaque, to be `NULL` before the first call
+ * @state: (inout) (transfer none) (nullable): opaque, `NULL` before the first call
  *
- * The ellipses of a buffer, one after the other, in the order in which they were attached.
- * Allocates nothing.
+ * Iterates over the ellipses of a buffer, in the order in which they were attached. Allocates
+ * nothing.
  *
  * Returns: (transfer none) (nullable): the next ellipse, `NULL` after the last one
  *
@@ -214,11 +214,12 @@ GstEllipseMeta* gst_buffer_iterate_ellipse_meta(GstBuffer* buffer, gpointer* sta
  * gst_buffer_list_ellipse_meta:
  * @buffer: a buffer
  *
- * The ellipses of a buffer, in the order in which they were attached. For languages in which a list
- * is handier than [func@GstEllipse.buffer_iterate_ellipse_meta]; allocates the list alone.
+ * Lists the ellipses of a buffer, in the order in which they were attached. For languages in which
+ * a list is more convenient than [func@GstEllipse.buffer_iterate_ellipse_meta]. Allocates only the
+ * list.
  *
- * Returns: (transfer container) (element-type GstEllipseMeta): a new list of the ellipses, which
- *   the buffer owns; empty where there are none. `g_list_free()` frees it
+ * Returns: (transfer container) (element-type GstEllipseMeta): a new list, empty if there
+ *   are no ellipses; free it with `g_list_free()`. The buffer owns the ellipses
  *
  * Since: 0.1
  */
@@ -235,13 +236,14 @@ GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
 /**
  * gst_buffer_get_ellipse_meta:
  * @buffer: a buffer
- * @role: the role that is looked for
+ * @role: the role to find
  *
- * The target of a frame, or the truth: behind several trackers in a row the first one's, whereas
- * [func@GstEllipse.buffer_iterate_ellipse_meta] gives them all. Allocates nothing.
+ * Returns the first ellipse with a role, such as the target of a frame or the truth. After several
+ * trackers in a row it is that of the first one;
+ * [func@GstEllipse.buffer_iterate_ellipse_meta] gives all. Allocates nothing.
  *
  * Returns: (transfer none) (nullable): the first ellipse with that role, owned by the buffer;
- *   `NULL` where there is none
+ *   `NULL` if there is none
  *
  * Since: 0.1
  */
@@ -257,7 +259,7 @@ GstEllipseMeta* gst_buffer_get_ellipse_meta(GstBuffer* buffer, GstEllipseRole ro
  * gst_ellipse_meta_get_role_name:
  * @meta: an ellipse
  *
- * Its role in a word. Thread-safe; allocates nothing.
+ * Returns the name of the role. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "target", "candidate" or "truth"; "unknown" for any other number
  *
@@ -272,7 +274,7 @@ const gchar* gst_ellipse_meta_get_role_name(const GstEllipseMeta* meta) {
  * gst_ellipse_meta_get_state_name:
  * @meta: an ellipse
  *
- * Its state in a word. Thread-safe; allocates nothing.
+ * Returns the name of the state. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "detected", "tracked" or "predicted"; "unknown" for any other number
  *

@@ -6,11 +6,11 @@ G_BEGIN_DECLS
 
 /**
  * GstEllipseRole:
- * @GST_ELLIPSE_ROLE_TARGET: the ellipse that is being followed
- * @GST_ELLIPSE_ROLE_CANDIDATE: another ellipse of the picture
- * @GST_ELLIPSE_ROLE_TRUTH: where a test source has really drawn the target
+ * @GST_ELLIPSE_ROLE_TARGET: the target
+ * @GST_ELLIPSE_ROLE_CANDIDATE: another ellipse in the frame
+ * @GST_ELLIPSE_ROLE_TRUTH: ground truth of a test source
  *
- * What an ellipse on a buffer stands for.
+ * Role of an ellipse on a buffer.
  *
  * Since: 0.1
  */
@@ -22,11 +22,11 @@ typedef enum {
 
 /**
  * GstEllipseState:
- * @GST_ELLIPSE_STATE_DETECTED: found where nothing was known of it
- * @GST_ELLIPSE_STATE_TRACKED: found around its last place
- * @GST_ELLIPSE_STATE_PREDICTED: not seen; its motion was continued
+ * @GST_ELLIPSE_STATE_DETECTED: found by the detector, without a previous target
+ * @GST_ELLIPSE_STATE_TRACKED: found from its previous position
+ * @GST_ELLIPSE_STATE_PREDICTED: not visible; its motion is extrapolated
  *
- * How a target came to be known in its frame.
+ * How a target was found in its frame.
  *
  * Since: 0.1
  */
@@ -44,63 +44,63 @@ GType gst_ellipse_state_get_type(void);
 
 /**
  * GstEllipseMeta:
- * @meta: what all metadata have
- * @role: what the ellipse stands for
- * @state: how it came to be known
- * @id: number of the target, the same while it is not lost, from 1; 0 = none
- * @cx: centre in px, x to the right, the centre of the top-left pixel is 0
+ * @meta: parent
+ * @role: role of the ellipse
+ * @state: how it was found
+ * @id: number of the target from 1, constant until the target is lost; 0 = none
+ * @cx: centre in px, x to the right; 0 is the centre of the top-left pixel
  * @cy: centre in px, y down
  * @semi_major: semi-major axis in px
  * @semi_minor: semi-minor axis in px
  * @angle_rad: major axis from +x towards +y, in (-pi/2, pi/2]
- * @contour_overlap: share of its contour's pixels on the ellipse, 0 to 1; of a target followed by
- *   its edges: share of all its edges in view that were matched
- * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; of a target followed by its
- *   edges: share of the outer edge in view that was matched
- * @probability: that it is a target, 0 to 1: where edges are followed, by all frames so far, else by
- *   the detector in this frame; 1 of a detector that does not say; 0 of the truth
+ * @contour_overlap: share of its contour's pixels on the ellipse, 0 to 1; for a target followed by
+ *   its edges, share of all its visible edges that were matched
+ * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; for a target followed by its
+ *   edges, share of the visible outer edge that was matched
+ * @probability: probability that it is a target, 0 to 1: with tracking=edges from all frames so
+ *   far, otherwise from the detector in this frame; 1 if the detector gives none; 0 for the truth
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
- * @scale: frame scale that it was found at, a power of two
- * @roi_x: left edge of the region that was searched, in px
+ * @scale: frame scale at which it was found, a power of two
+ * @roi_x: left edge of the search region, in px
  * @roi_y: upper edge of that region, in px
  * @roi_width: width of that region, in px
  * @roi_height: height of that region, in px
- * @frame_width: width in px of the frame that the numbers refer to
- * @frame_height: height in px of the frame that the numbers refer to
- * @pts: presentation time stamp of the frame that was analysed, in ns; or `GST_CLOCK_TIME_NONE`
- * @processing_time: time spent on that frame, in ns; or `GST_CLOCK_TIME_NONE`
- * @has_pose: whether the camera is known, and with it bearing, angles, centre and normals
- * @has_position: whether the target's diameter is known too, and with it the positions
+ * @frame_width: width in px of the frame to which the coordinates refer
+ * @frame_height: height in px of the frame to which the coordinates refer
+ * @pts: presentation time stamp of the analysed frame, in ns; or `GST_CLOCK_TIME_NONE`
+ * @processing_time: processing time of that frame, in ns; or `GST_CLOCK_TIME_NONE`
+ * @has_pose: whether bearing, angles, centre and normals are valid, as the camera is known
+ * @has_position: whether the positions are valid, as the target's diameter is known too
  * @bearing_x: unit vector from the camera to the circle's centre, x to the right
  * @bearing_y: the same, y down
  * @bearing_z: the same, z forward
- * @angle_x: of the bearing to the right of the optical axis, in rad
+ * @angle_x: angle of the bearing to the right of the optical axis, in rad
  * @angle_y: the same downwards
- * @centre_x: the circle's centre in the picture in px, which is not the ellipse's
+ * @centre_x: projection of the circle's centre in px, which differs from the ellipse's centre
  * @centre_y: the same
- * @normal_x: unit vector out of the circle's plane towards the camera
+ * @normal_x: unit normal of the circle's plane, towards the camera
  * @normal_y: the same
  * @normal_z: the same
- * @other_normal_x: normal of the other circle with the same picture
+ * @other_normal_x: normal of the other circle with the same projection
  * @other_normal_y: the same
  * @other_normal_z: the same
- * @certainty: probability that @normal_x and so on are the right ones of the two, 0.5 to 1
+ * @certainty: probability that @normal_x, y, z is the correct solution of the two, 0.5 to 1
  * @position_x: the circle's centre in m, in the frame of the bearing
  * @position_y: the same
  * @position_z: the same
- * @other_position_x: centre of the other circle with the same picture
+ * @other_position_x: centre of the other circle with the same projection
  * @other_position_y: the same
  * @other_position_z: the same
- * @position_covariance: of the position in m^2: xx, xy, xz, yy, yz, zz
- * @n_outline: points of @outline; 0 where the ellipse is in the picture as it is
- * @outline: x and y in px of points around the target as a distorting lens shows it, the ellipse
- *   being what a lens without distortion would show; NaN where it does not show them
+ * @position_covariance: covariance of the position in m^2: xx, xy, xz, yy, yz, zz
+ * @n_outline: number of points of @outline; 0 if the ellipse is in image coordinates
+ * @outline: x and y in px of points on the target's outline in distorted image coordinates, if the
+ *   ellipse is in undistorted coordinates; NaN for points that the lens does not show
  *
- * One ellipse on a video buffer; a buffer may have several. Survives copies, and follows scaling:
- * under a scale that is not the same in x and y the ellipse turns as the picture does.
+ * One ellipse on a video buffer; a buffer may have several. Copying keeps it and scaling transforms
+ * it, also if the scale differs in x and y.
  *
- * It belongs to its buffer and is gone with it, in every language: take its numbers while the
- * buffer is at hand, or keep what [method@GstEllipse.EllipseMeta.to_structure] returns.
+ * The buffer owns it, in every language: read its fields while you hold the buffer, or keep the
+ * result of [method@GstEllipse.EllipseMeta.to_structure].
  *
  * Since: 0.1
  */

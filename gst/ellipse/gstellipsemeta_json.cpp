@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The metadata outside of buffers: as structures and as JSON. */
+/* The metadata as structures and as JSON. */
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -8,7 +8,7 @@
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/ellipse/gstellipsesearchmeta.h"
 
-// A field of the structure; the quarks of all names are looked up once, not at each frame.
+// A field of the structure. The quarks of all names are looked up once, not per frame.
 class Field {
  public:
   template <class Number>
@@ -90,7 +90,7 @@ static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
   for (const Field& field : kFields) field.set(structure, meta);
 }
 
-// A name that lives as long as the program.
+// A static string.
 static void set_name(GstStructure* structure, GQuark field, const gchar* name) {
   GValue value = G_VALUE_INIT;
   g_value_init(&value, G_TYPE_STRING);
@@ -131,11 +131,11 @@ static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
  * gst_ellipse_meta_to_structure:
  * @meta: an ellipse
  *
- * All fields by their names in a structure named "ellipse"; role and state as their nicks, the
- * numbers of the covariance and the outline as arrays, and of pose, position and outline what is
- * known. What is to outlive the buffer is kept this way.
+ * Copies all fields by name into a structure named "ellipse": role and state as nicks, covariance
+ * and outline as arrays; pose, position and outline only if known. Use it for data that outlives
+ * the buffer.
  *
- * Returns: (transfer full): a new structure, of the caller's
+ * Returns: (transfer full): a new structure
  *
  * Since: 0.1
  */
@@ -159,7 +159,7 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   return structure;
 }
 
-// With a point whatever the locale; JSON knows no NaN.
+// With a decimal point in any locale. Not finite: null, because JSON has no NaN.
 static void append_number(GString* json, const gchar* name, const gchar* format, gdouble value) {
   gchar text[G_ASCII_DTOSTR_BUF_SIZE];
   g_string_append_printf(
@@ -174,7 +174,7 @@ struct Member {
   gdouble value;
 };
 
-// An object in the object, such as ,"bearing":{"x":0,"y":0,"z":1}.
+// A nested object, such as ,"bearing":{"x":0,"y":0,"z":1}.
 static void append_object(GString* json,
                           const gchar* name,
                           const gchar* format,
@@ -182,7 +182,7 @@ static void append_object(GString* json,
   g_string_append_printf(json, ",\"%s\":{", name);
   const gsize begin = json->len;
   for (const Member& member : members) append_number(json, member.name, format, member.value);
-  g_string_erase(json, static_cast<gssize>(begin), 1);  // the comma before the first
+  g_string_erase(json, static_cast<gssize>(begin), 1);  // the leading comma
   g_string_append_c(json, '}');
 }
 
@@ -223,14 +223,14 @@ static void append_position(GString* json, const GstEllipseMeta* meta) {
  * gst_ellipse_meta_to_json:
  * @meta: an ellipse
  *
- * The ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
- * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale; pixels and radians;
- * and, where one is known, the region that was searched, roi, as x, y, width and height. With a
- * camera also bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's
- * diameter position, other_position, position_covariance; metres. The truth has no state, overlaps,
- * probability or scale; a number that is not finite is null.
+ * Writes the ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
+ * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale, in pixels and radians;
+ * and, if known, the search region roi as x, y, width and height. With a camera also bearing,
+ * angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter position,
+ * other_position, position_covariance in metres. The truth has no state, overlaps, probability or
+ * scale. A number that is not finite is null.
  *
- * Returns: (transfer full): a new string, which `g_free()` frees
+ * Returns: (transfer full): a new string; free it with `g_free()`
  *
  * Since: 0.1
  */
@@ -295,11 +295,11 @@ static void append_tracker_state(GString* json, const GstEllipseSearchMeta* sear
  * @width: width of the frame in px
  * @height: height of the frame in px
  *
- * All that a frame says of ellipses as a JSON object on one line, without a newline: frame, pts_ns,
- * width, height, processing_ns, the state of the tracker, and the array targets, also where nothing
- * was found. It is what the element ellipsejson writes.
+ * Writes all ellipses of a frame as a JSON object on one line, without a newline: frame, pts_ns,
+ * width, height, processing_ns, the state of the tracker, and the array targets, which may be
+ * empty. The element ellipsejson writes these lines.
  *
- * Returns: (transfer full): a new string, which `g_free()` frees
+ * Returns: (transfer full): a new string; free it with `g_free()`
  *
  * Since: 0.1
  */

@@ -22,15 +22,15 @@ GType gst_ellipse_tracker_state_get_type(void) {
 /**
  * gst_ellipse_search_meta_api_get_type:
  *
- * The type that this metadata is filtered by, as in [method@Gst.Buffer.get_meta]. Thread-safe.
+ * The API type by which this metadata is filtered, as in [method@Gst.Buffer.get_meta]. Thread-safe.
  *
  * Returns: the type of the metadata's API
  *
  * Since: 0.1
  */
 GType gst_ellipse_search_meta_api_get_type(void) {
-  // Those of the ellipses, though a time has no size: where they are lost, "nothing was found" must
-  // not be what remains.
+  // The tags of the ellipses, though a time has no size: an element that drops the ellipses must
+  // also drop this, or the buffer would say that nothing was found.
   static const gchar* kTags[] = {GST_META_TAG_VIDEO_STR,
                                  GST_META_TAG_VIDEO_SIZE_STR,
                                  GST_META_TAG_VIDEO_ORIENTATION_STR,
@@ -61,7 +61,7 @@ static gboolean search_meta_transform(
 /**
  * gst_ellipse_search_meta_get_info:
  *
- * What GStreamer knows of the metadata: its size, and how it is copied. Thread-safe.
+ * The registration of the metadata: its size, and how it is copied. Thread-safe.
  *
  * Returns: (transfer none): the registration, never freed
  *
@@ -80,10 +80,10 @@ const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
 /**
  * gst_buffer_add_ellipse_search_meta:
  * @buffer: (transfer none): a writable #GstBuffer
- * @processing_time: time spent on the frame, in ns; %GST_CLOCK_TIME_NONE where it is not known
+ * @processing_time: processing time of the frame, in ns; %GST_CLOCK_TIME_NONE if unknown
  *
- * Notes on a buffer that its frame was searched. What the tracker was doing is still to be filled
- * in: `GST_ELLIPSE_TRACKER_STATE_UNKNOWN`.
+ * Marks the frame of a buffer as searched. The tracker's state is
+ * `GST_ELLIPSE_TRACKER_STATE_UNKNOWN` until the caller sets it.
  *
  * Returns: (transfer none): the #GstEllipseSearchMeta, owned by the buffer
  *
@@ -104,8 +104,8 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
  *
  * Tells whether the frame of a buffer was searched.
  *
- * Returns: (transfer none) (nullable): what is known of the frame's search, %NULL where it was not
- * searched or an element has lost its metadata
+ * Returns: (transfer none) (nullable): the metadata, %NULL if the frame was not searched or an
+ * element has dropped the metadata
  *
  * Since: 0.1
  */
@@ -117,9 +117,9 @@ GstEllipseSearchMeta* gst_buffer_get_ellipse_search_meta(GstBuffer* buffer) {
 
 /**
  * gst_ellipse_search_meta_get_tracker_state_name:
- * @meta: what is known of a frame's search
+ * @meta: metadata of a frame's search
  *
- * What the tracker was doing, in a word. Thread-safe; allocates nothing.
+ * Returns the name of the tracker's state. Thread-safe; allocates nothing.
  *
  * Returns: (transfer none): "searching", "confirming", "following" or "coasting"; "unknown" for any
  *   other number

@@ -6,15 +6,16 @@ G_BEGIN_DECLS
 
 /**
  * GstEllipseTrackerState:
- * @GST_ELLIPSE_TRACKER_STATE_UNKNOWN: not told
- * @GST_ELLIPSE_TRACKER_STATE_SEARCHING: no target is known
- * @GST_ELLIPSE_TRACKER_STATE_CONFIRMING: something is followed that is not yet, or no longer,
- * likely enough to be reported
- * @GST_ELLIPSE_TRACKER_STATE_FOLLOWING: a target is seen and reported
- * @GST_ELLIPSE_TRACKER_STATE_COASTING: a target is reported but not seen; its motion is continued
+ * @GST_ELLIPSE_TRACKER_STATE_UNKNOWN: unknown
+ * @GST_ELLIPSE_TRACKER_STATE_SEARCHING: no target
+ * @GST_ELLIPSE_TRACKER_STATE_CONFIRMING: an ellipse is followed, but its probability is too low
+ * to report it
+ * @GST_ELLIPSE_TRACKER_STATE_FOLLOWING: a visible target is reported
+ * @GST_ELLIPSE_TRACKER_STATE_COASTING: a target is reported but not visible; its motion is
+ * extrapolated
  *
- * What a tracker was doing in a frame. Where it does not follow edges (tracking=redetect and
- * tracking=none) it is either searching or following.
+ * State of the tracker in a frame. With tracking=redetect and tracking=none it is either searching
+ * or following.
  *
  * Since: 0.1
  */
@@ -32,11 +33,11 @@ GType gst_ellipse_tracker_state_get_type(void);
 /**
  * GstEllipseSearchMeta:
  * @meta: parent
- * @processing_time: time spent on the frame, in ns
- * @tracker_state: what the tracker was doing
+ * @processing_time: processing time of the frame, in ns
+ * @tracker_state: state of the tracker
  *
- * Says that a frame was searched for a target, also where none was found. Lives as long as the
- * #GstEllipseMeta beside it would: an element that keeps those keeps this.
+ * Marks a frame as searched for a target, also if none was found. An element that keeps
+ * #GstEllipseMeta also keeps this.
  *
  * Since: 0.1
  */

@@ -7,7 +7,7 @@
 
 namespace {
 
-// What a component of the frame gets of red, green and blue, each 0 to 255, and of opacity.
+// Weights of red, green and blue, each 0 to 255, and of opacity in a component of the frame.
 struct Mix {
   float red = 0.0F;
   float green = 0.0F;
@@ -28,7 +28,7 @@ Mix mix_of(double scale, double red, double green, double blue, int offset) {
 }
 
 Mixes yuv_mixes(const GstVideoInfo& info) {
-  double kr = 0.299;  // [BT601], where the caps do not say
+  double kr = 0.299;  // [BT601], if the caps do not tell
   double kb = 0.114;
   gst_video_color_matrix_get_Kr_Kb(info.colorimetry.matrix, &kr, &kb);
   const double kg = 1.0 - kr - kb;
@@ -43,7 +43,7 @@ Mixes yuv_mixes(const GstVideoInfo& info) {
           mix_of(v, 1.0 - kr, -kg, -kb, offset[2])};
 }
 
-// The sum of some premultiplied pixels.
+// Sum of premultiplied pixels.
 struct Sum {
   int red = 0;
   int green = 0;
@@ -69,7 +69,7 @@ guint8 mixed(guint8 sample, const Mix& mix, const Sum& sum, int pixels) {
   return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
 }
 
-// The samples of one component, each of which a block of pixels shares.
+// The samples of one component; each is shared by a block of pixels.
 class Plane {
  public:
   Plane(GstVideoFrame& frame, guint component)

@@ -8,8 +8,8 @@ using Eigen::Vector2d;
 
 namespace {
 
-// All four bytes of a pixel times alpha / 255, rounded, two at a time: for products of two bytes
-// (n + 128 + (n + 128) / 256) / 256 is n / 255.
+// Multiplies all four bytes of a pixel by alpha / 255, rounded, two at a time. For a product n of
+// two bytes, (n + 128 + (n + 128) / 256) / 256 is n / 255, rounded.
 std::uint32_t scaled(std::uint32_t pixel, std::uint32_t alpha) {
   constexpr std::uint32_t kEvenBytes = 0x00ff00ffU;
   const std::uint32_t even = (pixel & kEvenBytes) * alpha + 0x00800080U;
@@ -34,7 +34,7 @@ void wipe(Canvas::Tile& tile) {
 }  // namespace
 
 void Canvas::clear(int width, int height) {
-  paint(0U);  // takes away what a drawing that was broken off has covered
+  paint(0U);  // discards the coverage of an aborted drawing
   for (const auto& tile : tiles()) {
     cell_at(tile->x, tile->y) = nullptr;
     wipe(*tile);
@@ -73,14 +73,14 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
   const double length = way.norm();
   const Vector2d along = length > 0.0 ? Vector2d(way / length) : Vector2d::Zero();
   const double reach = 0.5 * width_px + 0.5;
-  const double most_share = std::min(1.0, width_px);  // of a pixel by a line thinner than it
+  const double most_share = std::min(1.0, width_px);  // of a pixel, for lines thinner than 1 px
   const Vector2d least = from.cwiseMin(to).array() - reach;
   const Vector2d most = from.cwiseMax(to).array() + reach;
   const int bottom = static_cast<int>(std::min(height_ - 1.0, std::floor(most.y())));
   for (int y = static_cast<int>(std::max(0.0, std::ceil(least.y()))); y <= bottom; ++y) {
     double left = least.x();
     double right = most.x();
-    if (std::abs(along.y()) > 1e-6) {  // a long slanted line is near to little of its box
+    if (std::abs(along.y()) > 1e-6) {  // restricts the row to the line
       const double middle = from.x() + (y - from.y()) * along.x() / along.y();
       left = std::max(left, middle - reach / std::abs(along.y()));
       right = std::min(right, middle + reach / std::abs(along.y()));

@@ -9,7 +9,7 @@
 
 namespace {
 
-// Sinks upload each rectangle by itself: few of them, and none that is mostly empty.
+// Sinks upload each rectangle separately: few rectangles, none of them mostly empty.
 constexpr int kBlockSize = 256;
 static_assert(kBlockSize % Canvas::kTileSize == 0);
 

@@ -4,12 +4,11 @@
  * SECTION:element-ellipseoverlay
  * @title: ellipseoverlay
  *
- * Draws the ellipses that a buffer carries as #GstEllipseMeta. It needs nothing else, so that it
- * can stand after a tee, a scaler or a decoder that keeps metadata. A buffer without an ellipse
- * passes untouched.
+ * Draws the #GstEllipseMeta of a buffer. It needs nothing else, so it can follow a tee, a scaler or
+ * a decoder that keeps metadata. A buffer without an ellipse passes unchanged.
  *
- * Where downstream lays overlays over the picture by itself, as sinks on a GPU do, the drawing
- * travels beside the pixels as #GstVideoOverlayCompositionMeta; elsewhere it goes into them.
+ * If downstream blends overlays itself, as GPU sinks do, the drawing travels beside the pixels as
+ * #GstVideoOverlayCompositionMeta; otherwise it is drawn into the pixels.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc ! ellipsetrack ! videoscale ! video/x-raw,width=1280,height=720 \
@@ -43,9 +42,9 @@ struct _GstEllipseOverlay {
   OverlayStyle* style;
   gboolean shows_truth;
 
-  // The streaming thread's.
+  // Used by the streaming thread only.
   Overlay* overlay;
-  bool composes;  // downstream lays the overlay over the picture
+  bool composes;  // downstream blends the overlay
 };
 
 G_DEFINE_TYPE(GstEllipseOverlay, gst_ellipse_overlay, GST_TYPE_VIDEO_FILTER)
@@ -93,7 +92,7 @@ static bool has_composition(const GstCapsFeatures* features) {
   return gst_caps_features_contains(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
 }
 
-// Adds one of the caps' structures with the feature, or without it.
+// Appends one structure of the caps with the feature, or without it.
 static void append(GstCaps* to, GstCaps* from, guint index, bool is_composed) {
   GstCapsFeatures* features = gst_caps_features_copy(gst_caps_get_features(from, index));
   if (is_composed && !has_composition(features)) {
@@ -105,7 +104,7 @@ static void append(GstCaps* to, GstCaps* from, guint index, bool is_composed) {
       to, gst_structure_copy(gst_caps_get_structure(from, index)), features);
 }
 
-// Pictures may get the feature on their way downstream, and never lose it.
+// The element may add the feature to the caps, but never removes it.
 static GstCaps* gst_ellipse_overlay_transform_caps(GstBaseTransform*,
                                                    GstPadDirection direction,
                                                    GstCaps* caps,
@@ -122,7 +121,7 @@ static GstCaps* gst_ellipse_overlay_transform_caps(GstBaseTransform*,
   return filtered;
 }
 
-// Takes the first of the caps that has the feature, or has it not. NULL where there is none.
+// The first of the caps with the feature, or without it, fixated. NULL if there is none.
 static GstCaps* first_of(GstCaps* caps, bool is_composed) {
   for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
     if (has_composition(gst_caps_get_features(caps, i)) != is_composed) continue;
@@ -132,7 +131,7 @@ static GstCaps* first_of(GstCaps* caps, bool is_composed) {
 }
 
 static bool downstream_composes(GstBaseTransform* base, GstCaps* caps) {
-  // Some elements answer for caps only that they have.
+  // Some elements answer only for their current caps.
   if (!gst_pad_set_caps(GST_BASE_TRANSFORM_SRC_PAD(base), caps)) return false;
   GstQuery* query = gst_query_new_allocation(caps, FALSE);
   const bool composes = gst_pad_peer_query(GST_BASE_TRANSFORM_SRC_PAD(base), query) &&
@@ -142,8 +141,8 @@ static bool downstream_composes(GstBaseTransform* base, GstCaps* caps) {
   return composes;
 }
 
-// Like textoverlay: beside the pixels where downstream has the feature in its caps and also asks
-// for the metadata. The metadata alone would not do: scalers pass it on and leave it unscaled.
+// Like textoverlay: beside the pixels if downstream has the feature in its caps and also requests
+// the metadata. The metadata alone is not enough: scalers pass it on unscaled.
 static GstCaps* gst_ellipse_overlay_fixate_caps(GstBaseTransform* base,
                                                 GstPadDirection direction,
                                                 GstCaps* caps,

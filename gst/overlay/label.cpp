@@ -29,7 +29,7 @@ int margin_px(double scale) {
   return static_cast<int>(std::lround(2.0 + 4.0 * scale));
 }
 
-// Wider than above and below: the box is round there.
+// Wider than the vertical margin, because the box ends in half circles.
 int side_margin_px(double scale) {
   return 2 * margin_px(scale);
 }
@@ -45,8 +45,8 @@ bool is_inside(const Rect& box, const Rect& frame) {
 
 }  // namespace
 
-// From 64 to 191 either would do for a line; for text on a box that lets the picture through black
-// is easier to read.
+// For a luma of 64 to 191 both would do for a line; on the translucent box of a label text is
+// easier to read on black.
 std::uint32_t contrast_to(std::uint32_t argb) {
   const double luma =
       0.299 * (argb >> 16U & 0xffU) + 0.587 * (argb >> 8U & 0xffU) + 0.114 * (argb & 0xffU);
@@ -94,7 +94,7 @@ std::optional<Rect> place_label(const Label& label,
 void draw_label(Canvas& canvas, const Label& label, std::uint32_t argb) {
   const Rect& box = label.box;
   const double round = 0.5 * (box.height - 1);
-  // A line as thick as the box is high has its round ends.
+  // A line as thick as the height of the box draws its round ends.
   canvas.cover_line({box.x + round, box.y + round},
                     {box.x + box.width - 1 - round, box.y + round},
                     box.height - 1);

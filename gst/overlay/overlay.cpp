@@ -25,7 +25,7 @@ bool is_near(double value) {
   return std::abs(value) <= kFarthestPx;  // NaN is not
 }
 
-// Numbers of a picture. Metadata may come from anybody, and lines of 1e300 px are never done.
+// Plausible values. Metadata may come from any element; a line of 1e300 px would never finish.
 bool is_drawable(const GstEllipseMeta& meta) {
   return is_near(meta.cx) && is_near(meta.cy) && is_near(meta.semi_major) &&
          is_near(meta.semi_minor) && meta.semi_minor >= 0.1 && meta.semi_major >= meta.semi_minor &&
@@ -34,7 +34,7 @@ bool is_drawable(const GstEllipseMeta& meta) {
 }
 
 void cover_ellipse(Canvas& canvas, const Ellipse& e, double width_px) {
-  // A chord over the angle t leaves the curve by a t^2 / 8 at most.
+  // A chord over the angle t deviates from the curve by at most a t^2 / 8.
   constexpr double kDeviationPx = 0.03;
   const double angle = std::min(0.4, std::sqrt(8.0 * kDeviationPx / e.semi_major));
   const int chords = static_cast<int>(std::ceil(2.0 * std::numbers::pi / angle));
@@ -46,7 +46,7 @@ void cover_ellipse(Canvas& canvas, const Ellipse& e, double width_px) {
   }
 }
 
-// The points around a target that a lens has distorted out of an ellipse.
+// The outline of a target in distorted image coordinates.
 class Outline {
  public:
   explicit Outline(const GstEllipseMeta& meta)
@@ -60,7 +60,7 @@ class Outline {
   }
   [[nodiscard]] bool has(guint i) const { return is_near(at(i).x()) && is_near(at(i).y()); }
 
-  // An upright ellipse as large as it.
+  // The axis-aligned ellipse of the same extent.
   [[nodiscard]] Ellipse extent() const {
     Eigen::AlignedBox2d box;
     for (guint i = 0; i < size_; ++i) {
@@ -77,7 +77,7 @@ class Outline {
   guint size_;
 };
 
-// A smooth curve through all points [CatmullRom1974]; those that are not seen leave a gap.
+// A smooth curve through all points [CatmullRom1974]; points outside the view leave a gap.
 void cover_outline(Canvas& canvas, const Outline& outline, double width_px) {
   constexpr int kChords = 8;
   const guint n = outline.size();
@@ -108,7 +108,7 @@ void cover_axes(Canvas& canvas, const Ellipse& e, double width_px) {
   }
 }
 
-// From end to end: the lens distorts them a little, too.
+// Straight lines between opposite points, although the lens bends the axes slightly.
 void cover_axes(Canvas& canvas, const Outline& outline, double width_px) {
   const guint half = outline.size() / 2;
   for (const guint i : {0U, half / 2}) {
@@ -146,8 +146,8 @@ void cover_region(Canvas& canvas, const GstEllipseMeta& meta, double width_px) {
   }
 }
 
-// Of the circle, where the camera is known; of what a lens distorts, where it is not; else of its
-// ellipse.
+// The projected centre of the circle if the camera is known; otherwise the centre of the distorted
+// outline, if there is one, or of the ellipse.
 Vector2d centre_of(const GstEllipseMeta& meta) {
   const bool is_known = meta.has_pose && is_near(meta.centre_x) && is_near(meta.centre_y);
   if (is_known) return {meta.centre_x, meta.centre_y};

@@ -4,7 +4,7 @@
 
 G_BEGIN_DECLS
 
-/// What is drawn of an ellipse.
+/// The drawn parts of an ellipse.
 typedef enum {
   GST_ELLIPSE_OVERLAY_NONE = 0,
   GST_ELLIPSE_OVERLAY_ELLIPSE = 1 << 0,
@@ -19,18 +19,18 @@ GType gst_ellipse_overlay_flags_get_type(void);
 
 G_END_DECLS
 
-/// How it is drawn.
+/// The style of the drawing.
 struct OverlayStyle {
   GstEllipseOverlayFlags parts = GST_ELLIPSE_OVERLAY_NONE;
   guint color_argb = 0xff00ff00;
   guint line_width_px = 2;
-  /// Lines get an edge, black around bright and white around dark ones. For formats without colour,
-  /// where a line may have the grey level of what lies behind it.
+  /// Bright lines get a black edge, dark lines a white one. For grey formats, in which a line may
+  /// have the grey level of its background.
   bool has_casing = false;
 };
 
-/// The properties overlay, overlay-color and line-width, the same in every element that draws.
-/// They take the ids first_id to first_id + 2.
+/// Installs the properties overlay, overlay-color and line-width, which all drawing elements share,
+/// with the ids first_id to first_id + 2.
 void install_overlay_properties(GObjectClass* object_class,
                                 guint first_id,
                                 GstEllipseOverlayFlags default_parts);

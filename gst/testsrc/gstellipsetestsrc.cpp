@@ -4,13 +4,12 @@
  * SECTION:element-ellipsetestsrc
  * @title: ellipsetestsrc
  *
- * Renders what a drone's camera sees above a landing pad: scenes from a plain approach to dusk,
- * glare, occlusion, motion blur and clutter without any pad. Each buffer carries the exact ellipse
- * of the pad's outer edge as a #GstEllipseMeta with the role "truth". The scene "wild" is a random
- * one: the seed decides what it shows, and each of its ellipses has such metadata, targets first.
- * Through a lens that distorts the picture it is the ellipse of the ideal plane, with the distorted
- * outline beside it, as #ellipsetrack has them. The same properties give the same frames on any
- * machine.
+ * Renders a drone's view of a landing pad: scenes from a plain approach to dusk, glare, occlusion,
+ * motion blur and clutter without a pad. Each buffer carries the exact ellipse of the pad's outer
+ * edge as a #GstEllipseMeta with the role "truth". The scene "wild" is random: the seed defines it,
+ * and each of its ellipses has such metadata, targets first. With a distorting lens the ellipse is
+ * in undistorted coordinates and the outline in distorted image coordinates, as from #ellipsetrack.
+ * The same properties give the same frames on any x86-64 machine.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc is-live=true ! ellipsetrack ! ellipseoverlay truth=true \
@@ -45,13 +44,13 @@ struct _GstEllipseTestSrc {
 
   // Under the object lock.
   SceneProperties properties;
-  gboolean is_changed;  // since the renderer was made
+  gboolean is_changed;  // since the renderer was created
 
   ellipse::SceneRenderer* renderer;
   GstVideoInfo info;
   guint64 frame;
-  guint64 first_frame;      // since the frame rate was last set
-  GstClockTime first_time;  // of that frame
+  guint64 first_frame;      // since the last change of the frame rate
+  GstClockTime first_time;  // time stamp of that frame
 };
 
 G_DEFINE_TYPE(GstEllipseTestSrc, gst_ellipse_test_src, GST_TYPE_PUSH_SRC)
@@ -120,7 +119,7 @@ static GstCaps* gst_ellipse_test_src_fixate(GstBaseSrc* base, GstCaps* caps) {
   return GST_BASE_SRC_CLASS(gst_ellipse_test_src_parent_class)->fixate(base, caps);
 }
 
-// Frame rate 0/1 says "one picture, or any rate": then time goes on at 30 frames a second.
+// Frame rate 0/1 means a still picture or a variable rate: time then advances at 30 frames/s.
 static GstClockTime time_of(GstEllipseTestSrc* self, guint64 frame) {
   const gint n = GST_VIDEO_INFO_FPS_N(&self->info);
   const auto per_second = static_cast<guint64>(n > 0 ? n : 30);
@@ -147,7 +146,7 @@ static gboolean gst_ellipse_test_src_start(GstBaseSrc* base) {
   return TRUE;
 }
 
-// A live source waits for each frame's time.
+// A live source waits for the time stamp of each frame.
 static void gst_ellipse_test_src_get_times(GstBaseSrc* base,
                                            GstBuffer* buffer,
                                            GstClockTime* start,
@@ -187,7 +186,7 @@ static void attach_ellipse(GstEllipseTestSrc* self,
   if (distortion != nullptr) write_outline(meta, *distortion);
 }
 
-// The pad's outer edge or, of a random scene, all its ellipses, targets first.
+// The pad's outer edge; for a random scene all its ellipses, targets first.
 static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellipse::Truth& truth) {
   const ellipse::Scene& scene = self->renderer->scene();
   if (scene.sheets.empty()) {
@@ -202,7 +201,7 @@ static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellip
   }
 }
 
-// The scene as the properties have it; nullopt where they have not changed.
+// The scene of the properties; nullopt if they have not changed.
 static std::optional<ellipse::Scene> changed_scene(GstEllipseTestSrc* self) {
   GST_OBJECT_LOCK(self);
   const SceneProperties properties = self->properties;

@@ -12,7 +12,7 @@ namespace {
 // In the order of their ids.
 enum { PROP_SCENE, PROP_PATTERN, PROP_GROUND, PROP_LENS, PROP_NOISE, PROP_SEED };
 
-// The value of "scene" beyond the catalog.
+// The value of "scene" after those of the catalog.
 gint wild_scene_number() {
   return static_cast<gint>(ellipse::scene_catalog().size());
 }

@@ -12,19 +12,19 @@ struct SceneFormat {
   gint rate_d = 1;
 };
 
-/// The scene that the properties of ellipsetestsrc choose. A value.
+/// The scene that the properties of ellipsetestsrc select. A value type.
 struct SceneProperties {
-  static constexpr gint kAsTheScene = -1;  ///< Of pattern, ground and noise.
-  static constexpr gint kNoLens = 0;       ///< Beyond it those of the catalog.
+  static constexpr gint kAsTheScene = -1;  ///< For pattern, ground and noise.
+  static constexpr gint kNoLens = 0;       ///< Higher values are the lenses of the catalog.
 
-  gint scene = 0;  ///< Of the catalog; beyond it the random one.
+  gint scene = 0;  ///< Index in the catalog; the next one is the random scene.
   gint pattern = kAsTheScene;
   gint ground = kAsTheScene;
   gint lens = kNoLens;
   gdouble noise = kAsTheScene;  ///< Standard deviation [grey levels].
   guint seed = 1;
 
-  /// Installs them, with ids from first_id on.
+  /// Installs the properties with ids from first_id on.
   static void install(GObjectClass* object_class, guint first_id);
   static constexpr guint kCount = 6;
 
@@ -33,6 +33,6 @@ struct SceneProperties {
   void get(guint which, GValue* value) const;
 
   [[nodiscard]] ellipse::Scene make() const;
-  /// What a peer may leave open: a random scene has its own.
+  /// Used if downstream leaves them open; a random scene has its own.
   [[nodiscard]] SceneFormat preferred_format() const;
 };

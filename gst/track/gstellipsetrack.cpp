@@ -4,9 +4,9 @@
  * SECTION:element-ellipsetrack
  * @title: ellipsetrack
  *
- * Finds and follows an elliptical target in video: a landing pad, any circle seen at an angle. Each
- * buffer on which the target is found gets a #GstEllipseMeta; the pixels stay as they are unless
- * #GstEllipseTrack:overlay asks for drawing.
+ * Detects and tracks an elliptical target in video: a landing pad, any circle seen at an angle.
+ * Each buffer in which the target is found gets a #GstEllipseMeta; the pixels stay unchanged unless
+ * #GstEllipseTrack:overlay enables drawing.
  *
  * |[
  * gst-launch-1.0 ellipsetestsrc ! ellipsetrack overlay=ellipse+centre ! videoconvert !
@@ -33,7 +33,7 @@ enum {
   PROP_0,
   PROP_TARGET,
   PROP_STATS,
-  PROP_FIRST_SETTING,  // those of TrackProperties from here on
+  PROP_FIRST_SETTING,  // the first of TrackProperties
 };
 
 static void gst_ellipse_track_preset_init(gpointer iface, gpointer data);
@@ -63,7 +63,7 @@ static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
       self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("the old value stays"));
 }
 
-// @return Why these values do not fit each other; empty where they do.
+// @return Why the values are not valid together; empty if they are.
 static std::string misfit_of(const TrackProperties& properties) {
   try {
     properties.tracker.validate();
@@ -73,9 +73,9 @@ static std::string misfit_of(const TrackProperties& properties) {
   return "";
 }
 
-// Applies a change if the result is valid. In the state NULL a value that does not fit the others
-// is kept in `wanted`, and comes into force with the one that makes it fit: the two values of a
-// pair may be set in any order. @return Why a change is refused; empty where it is not.
+// Applies a change if the result is valid. In the state NULL an invalid combination is kept in
+// `wanted` and takes effect once another change makes it valid: the two values of a pair may be set
+// in any order. @return Why the change is rejected; empty if it is accepted.
 static std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
   TrackProperties next = shared.preset.value_or(shared.properties);
   change.apply_to(next);
@@ -100,7 +100,8 @@ static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
   return true;
 }
 
-// What a controller sets at every frame is refused aloud once, until it is taken again.
+// A rejected value that a controller sets at every frame is reported once, until a value is
+// accepted again.
 static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
   const bool is_repeated = is_controlled(self, pspec);
   GST_OBJECT_LOCK(self);
@@ -111,7 +112,7 @@ static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool
   return is_repeated && !is_news;
 }
 
-// The object lock, until the end of a scope.
+// Holds the object lock in a scope.
 class ObjectLock {
  public:
   explicit ObjectLock(GstEllipseTrack* self) : object_(GST_OBJECT(self)) {
@@ -125,7 +126,7 @@ class ObjectLock {
   GstObject* object_;
 };
 
-// @return Why the value is refused; empty where it is not.
+// @return Why the value is rejected; empty if it is accepted.
 static std::string set_or_refuse(GstEllipseTrack* self,
                                  guint which,
                                  const GValue* value,
@@ -144,7 +145,7 @@ static std::string set_or_refuse(GstEllipseTrack* self,
   }
 }
 
-// Refuses what does not fit together, names it, and keeps the old value.
+// Rejects an invalid value with a warning that names it, and keeps the old value.
 static void gst_ellipse_track_set_property(GObject* object,
                                            guint id,
                                            const GValue* value,
@@ -186,8 +187,8 @@ static void gst_ellipse_track_get_property(GObject* object,
 
 static gboolean (*load_one_by_one)(GstPreset* preset, const gchar* name);
 
-// The values of a preset fit each other, but not those that they replace one by one: they come into
-// force together.
+// The values of a preset take effect together: they are valid together, but not with the values
+// that they replace one by one.
 static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* name) {
   auto* self = GST_ELLIPSE_TRACK(preset);
   TrackShared& shared = *self->shared;
@@ -248,7 +249,7 @@ static GstFlowReturn gst_ellipse_track_transform_ip(GstBaseTransform* base, GstB
   return GST_FLOW_OK;
 }
 
-// Lateness makes the analysis skip frames; the base class would drop them.
+// Late frames pass without analysis; the base class would drop them.
 static gboolean gst_ellipse_track_src_event(GstBaseTransform* base, GstEvent* event) {
   auto* self = GST_ELLIPSE_TRACK(base);
   if (GST_EVENT_TYPE(event) != GST_EVENT_QOS) {
@@ -308,7 +309,7 @@ static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-// @return Why a start would not do what was asked for; empty where it would.
+// @return Why the settings do not allow a start; empty if they do.
 static std::string obstacle_to_start(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const ObjectLock lock(self);
@@ -318,8 +319,8 @@ static std::string obstacle_to_start(GstEllipseTrack* self) {
   return obstacle;
 }
 
-// What was refused before the start fails it: nobody hears the warnings of a pipeline that is not
-// playing yet.
+// A setting rejected before the start fails the start, because applications do not read the
+// warnings of a pipeline that is not playing yet.
 static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
                                                            GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_NULL_TO_READY) {
@@ -341,7 +342,7 @@ static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
       ->propose_allocation(base, decide_query, query);
 }
 
-// Cropping by metadata is offered upstream where those downstream know it too.
+// Offers cropping by metadata upstream if downstream supports it.
 static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
                                               GstQuery* /*query*/,
                                               GType api,
@@ -349,8 +350,8 @@ static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
   return api == GST_VIDEO_CROP_META_API_TYPE;
 }
 
-// Two fields are two moments: where something moves, its edges are combs. Mixed streams have such
-// frames among others.
+// Warns about interlaced and mixed streams: the two fields of a frame differ in time and turn
+// moving edges into combs.
 static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
                                            GstCaps* /*in_caps*/,
                                            GstVideoInfo* in_info,

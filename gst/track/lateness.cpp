@@ -4,7 +4,7 @@
 static constexpr guint kMaxSkipped = 4;
 
 void Lateness::observe(GstClockTime timestamp, GstClockTimeDiff jitter) {
-  // Twice the lateness, as GStreamer's base classes do it: the next frame is to be in time again.
+  // Twice the lateness, as in GStreamer's base classes, so that the next frame is in time again.
   earliest_time_ = GST_CLOCK_TIME_IS_VALID(timestamp) && jitter > 0
                        ? timestamp + 2 * static_cast<GstClockTime>(jitter)
                        : GST_CLOCK_TIME_NONE;

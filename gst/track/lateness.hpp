@@ -2,17 +2,17 @@
 
 #include <gst/gst.h>
 
-/// Which frames are too late to be worth an analysis, from what the sink says (QoS). A value
-/// without a lock of its own.
+/// Decides from the QoS events of the sink which frames are too late for an analysis. A value type
+/// without a lock.
 class Lateness {
  public:
   /// @param timestamp  Running time of a frame [ns], as in the QoS event; may be NONE.
-  /// @param jitter     By how much it was late [ns]; negative where it was early.
+  /// @param jitter     Its lateness [ns]; negative if it was early.
   void observe(GstClockTime timestamp, GstClockTimeDiff jitter);
 
-  /// Whether the frame of this running time should be skipped. Skipping helps where the analysis is
-  /// what is late. Where another element is, the target must not be out of sight for good: after
-  /// four late frames in a row one is analysed all the same.
+  /// Whether to skip the frame of this running time. Skipping helps if the analysis causes the
+  /// lateness. Another element may cause it: after four skipped frames in a row one is analysed
+  /// anyway, so that the target is not lost for good.
   [[nodiscard]] bool takes_a_skip(GstClockTime running_time);
 
  private:

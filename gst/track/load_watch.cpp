@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kCoarsestStep = 3;
 constexpr int kLastStep = 5;
-// A frame over the limit weighs as much as eight under half of it, because a followed target is
-// looked for in the whole frame at every eighth only.
+// One frame over the limit counts as much as eight frames under half of it, because the detector
+// searches the whole frame about every eighth frame while a target is followed.
 constexpr int kOver = 8;
 constexpr int kTooMuch = 3 * kOver;
 constexpr int kEnoughRest = -128;

@@ -7,7 +7,7 @@
 
 namespace {
 
-// A box with any corner and any size, clipped to a frame.
+// Clips a box of any position and size to a frame.
 ellipse::Rect clipped(std::int64_t x,
                       std::int64_t y,
                       std::int64_t width,
@@ -34,8 +34,9 @@ ellipse::Rect united(const ellipse::Rect& a, const ellipse::Rect& b) {
           std::max(a.y + a.height, b.y + b.height) - top};
 }
 
-// One box around all: a target that goes from one region to the next stays the same target.
-// A type that no region has ever had is no quark, and must not become one: quarks stay for good.
+// The bounding box of all regions, so that a target which passes from one region to the next stays
+// the same target. A type without a quark has no region; none is created, because quarks are never
+// freed.
 ellipse::Rect box_around_regions(GstBuffer* buffer,
                                  const std::string& type,
                                  const ellipse::Rect& frame) {

@@ -5,9 +5,9 @@
 #include "core/image/image_view.hpp"
 #include "gst/track/track_properties.hpp"
 
-/// Where a buffer is searched [px of the whole frame]: what its GstVideoCropMeta leaves of the
-/// frame, and of that what roi-source points to. The box around all regions, where there are
-/// several. Empty where nothing is to be searched. Allocates nothing; thread-safe.
+/// The search region of a buffer [px of the whole frame]: the intersection of its GstVideoCropMeta
+/// and the region of roi-source, which is the bounding box if there are several. Empty if nothing
+/// is to be searched. Allocates nothing; thread-safe.
 [[nodiscard]] ellipse::Rect search_bounds(GstBuffer* buffer,
                                           const GstVideoInfo& info,
                                           const TrackProperties& properties);

@@ -95,7 +95,7 @@ static void attach_candidate_metas(GstBuffer* buffer,
                                    const ellipse::LensView& lens,
                                    const GstVideoInfo& info) {
   for (const ellipse::Detection& candidate : candidates) {
-    // The target itself, which following it made a little different.
+    // The target itself; tracking changes its ellipse slightly.
     const bool is_target =
         target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
     if (is_target) continue;
@@ -109,7 +109,7 @@ static void attach_candidate_metas(GstBuffer* buffer,
   }
 }
 
-// Of what is seen of it in the picture.
+// The bounding box in image coordinates.
 static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
   const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
   const Eigen::Vector2d half = ellipse::half_extent(e);

@@ -11,10 +11,10 @@
 #include "gst/track/track_report.hpp"
 #include "gst/track/video_view.hpp"
 
-// Frames between two looks at what they add to the latency; at the beginning fewer.
+// Frames between two checks of the latency; fewer at the beginning.
 static constexpr guint64 kLatencyInterval = 32;
 
-// Whatever C++ throws ends here. @return Whether nothing was thrown.
+// Turns any exception into an element warning. @return Whether none was thrown.
 template <class Body>
 static bool succeeds(GstEllipseTrack* self, const char* failure, const Body& body) {
   std::string why = "unknown exception";
@@ -42,7 +42,7 @@ static void emit_change(GstEllipseTrack* self,
   gst_structure_free(details);
 }
 
-// @return The metadata of the target, owned by the buffer; nullptr where there is none.
+// @return The metadata of the target, owned by the buffer; nullptr if there is none.
 static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                      GstBuffer* buffer,
                                      const FrameTimes& times,
@@ -74,7 +74,7 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
   return meta;
 }
 
-// Whoever plays a live pipeline asks for the latency again, where what was told does not hold.
+// Posts LATENCY if the reported latency is outdated, so that the application queries it again.
 static void tell_latency(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const guint64 frame = self->stream->frame;
@@ -93,7 +93,7 @@ static void tell_latency(GstEllipseTrack* self) {
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
-// Starts over, and says so to those who still count on the target.
+// Resets the tracker and reports a followed target as lost.
 static void forget_target(GstEllipseTrack* self,
                           const TrackProperties& properties,
                           const FrameTimes& times = {}) {
@@ -149,7 +149,7 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
   if (self->stream->frame++ % properties.interval != 0) return Skip::kInterval;
   if (bounds.empty()) return Skip::kRegion;
   if (is_too_late(self, times)) return Skip::kLate;
-  // A limit that is taken away takes its skips with it.
+  // Without a limit no frame is skipped: reset the load watch.
   if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);
   if (self->stream->load.takes_a_skip()) return Skip::kLoad;
   return std::nullopt;

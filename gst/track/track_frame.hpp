@@ -19,7 +19,7 @@
 GST_DEBUG_CATEGORY_EXTERN(gst_ellipse_track_debug);
 #define GST_CAT_DEFAULT gst_ellipse_track_debug
 
-/// What the streaming thread keeps from frame to frame.
+/// State of the streaming thread.
 struct TrackStream {
   ellipse::Tracker tracker;
   Overlay overlay;
@@ -28,21 +28,21 @@ struct TrackStream {
   std::optional<ellipse::Target> last_target;
 };
 
-/// What several threads touch, under the object lock.
+/// State that threads share under the object lock.
 struct TrackShared {
   TrackProperties properties;
-  std::optional<TrackProperties> preset;  ///< While one is being loaded.
+  std::optional<TrackProperties> preset;  ///< While a preset is being loaded.
   TrackStats stats;
   Lateness lateness;
   std::optional<GstEllipseMeta> target;  ///< In the last analysed frame.
-  ellipse::TrackerState tracker_state = ellipse::TrackerState::kSearching;  ///< After it.
+  ellipse::TrackerState tracker_state = ellipse::TrackerState::kSearching;  ///< After that frame.
   GstClockTime told_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;
-  std::set<std::string> refused;  ///< Properties whose last new value was refused.
-  /// In the state NULL: all values that were asked for, which may not fit each other yet.
+  std::set<std::string> refused;  ///< Properties whose last new value was rejected.
+  /// In the state NULL: all requested values, which may not be valid together yet.
   std::optional<TrackProperties> wanted;
-  /// Why a property's value made no sense, by its name; of those set in the state NULL.
+  /// Errors of values set in the state NULL that are invalid by themselves, by property name.
   std::map<std::string, std::string> senseless;
 };
 
@@ -52,11 +52,11 @@ struct _GstEllipseTrack {
   TrackStream* stream;
 };
 
-/// One buffer's way through ellipsetrack, in the streaming thread: whether it is analysed, what is
-/// found, and who learns of it. Its pixels change only where the overlay is on. Never throws: what
-/// fails becomes an element warning.
+/// Processes one buffer in the streaming thread: decides whether to analyse it, runs the tracker,
+/// and publishes the result. The pixels change only if the overlay is on. Never throws: errors
+/// become element warnings.
 void track_frame(GstEllipseTrack* self, GstBuffer* buffer);
 
-/// Starts over, and says so to those who still count on the target. Never while a buffer is on its
-/// way.
+/// Resets the tracker for a new stream and reports a followed target as lost. Do not call it while
+/// a buffer is being processed.
 void forget_stream(GstEllipseTrack* self);

@@ -37,7 +37,7 @@ enum {
 
 constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                    GST_PARAM_MUTABLE_PLAYING);
-// GLib keeps a copy of a blurb that is put together.
+// GLib copies blurbs that are composed at run time.
 constexpr auto kPlayingOwnBlurb = static_cast<GParamFlags>(kPlaying & ~G_PARAM_STATIC_BLURB);
 
 GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
@@ -58,8 +58,8 @@ GParamSpec* param_spec_of(const ellipse::SettingInfo& info) {
       info.name, info.name, blurb.c_str(), info.range.min, info.range.max, initial, flags);
 }
 
-// The numbers of a vector of doubles, or of ints. An empty array is what GStreamer takes for the
-// default of every array: zeros.
+// Reads a vector of doubles or ints. An empty array, GStreamer's default for every array, is a zero
+// vector.
 std::array<double, 3> vector_from(const GValue* value, const char* name) {
   std::array<double, 3> numbers{};
   if (gst_value_array_get_size(value) == 0) return numbers;
@@ -87,7 +87,7 @@ void write_vector(const std::array<double, 3>& numbers, GValue* value) {
   }
 }
 
-// The same for a region.
+// Reads a region; an empty array is an empty region.
 ellipse::Rect rect_from(const GValue* value) {
   std::array<int, 4> numbers{};
   if (gst_value_array_get_size(value) == 0) return {};
@@ -111,7 +111,7 @@ void write_rect(const ellipse::Rect& rect, GValue* value) {
   }
 }
 
-// nullptr where the property is none of the tracker's numbers.
+// nullptr if the property is not one of the tracker's numbers.
 const ellipse::SettingInfo* number_info(guint which) {
   const auto infos = ellipse::setting_infos();
   const bool is_number = which >= PROP_FIRST_NUMBER && which - PROP_FIRST_NUMBER < infos.size();

@@ -9,7 +9,7 @@
 #include "gst/overlay/overlay_style.hpp"
 #include "gst/track/track_enums.hpp"
 
-/// All that the properties of ellipsetrack set. A value: the streaming thread takes one copy a
+/// The values of ellipsetrack's properties. A value type: the streaming thread copies it once per
 /// frame.
 struct TrackProperties {
   ellipse::TrackerSettings tracker;
@@ -18,30 +18,30 @@ struct TrackProperties {
   int messages = MESSAGES_ON_CHANGE;
   bool attach_roi_meta = true;
   int roi_source = ROI_SOURCE_NONE;
-  ellipse::Rect roi;                     ///< [px] of the frame; clipped to it where it is used.
-  std::string roi_type;                  ///< Of the regions that count; empty = all.
-  std::string camera_file;               ///< That tracker.camera was read from.
-  std::string evidence_file;             ///< That tracker.evidence was read from.
-  GstClockTime max_processing_time = 0;  ///< [ns] a frame; 0 = any.
+  ellipse::Rect roi;                     ///< [px] of the frame; clipped to it when used.
+  std::string roi_type;                  ///< Type of the regions to search; empty = any.
+  std::string camera_file;               ///< File of tracker.camera.
+  std::string evidence_file;             ///< File of tracker.evidence.
+  GstClockTime max_processing_time = 0;  ///< Per frame [ns]; 0 = no limit.
 
-  /// Installs them all, with ids from first_id on; the last ones are those of setting_infos().
+  /// Installs all properties with ids from first_id on; those of setting_infos() are last.
   static void install(GObjectClass* object_class, guint first_id);
 
   /// @param which  The property's id minus first_id.
   void get(guint which, GValue* value) const;
 };
 
-/// A new value of one property, read and yet to be set.
+/// A new value of one property, read but not yet applied.
 class PropertyChange {
  public:
-  /// @param which  The property's id minus that of the first.
-  /// @param value  Borrowed as long as this lives.
-  /// Reads the file that `camera-file` or `evidence-file` names: not to be made under a lock.
-  /// Throws std::invalid_argument where it cannot be read.
+  /// @param which  The property's id minus that of the first property.
+  /// @param value  Borrowed; must outlive this object.
+  /// Reads the file of `camera-file` or `evidence-file`: do not construct it under a lock. Throws
+  /// std::invalid_argument if the file cannot be read.
   PropertyChange(guint which, const GValue* value);
 
-  /// Does not check how the value fits the others: that is tracker.validate(). Throws
-  /// std::invalid_argument and changes nothing, where the value has no meaning.
+  /// Does not check the value against the others; tracker.validate() does. If the value is invalid
+  /// by itself, throws std::invalid_argument and changes nothing.
   void apply_to(TrackProperties& properties) const;
 
  private:

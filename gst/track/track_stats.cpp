@@ -39,7 +39,7 @@ void TrackStats::add_analysed(const std::optional<ellipse::Target>& target,
   }
 }
 
-// @param left_out  So many of the longest do not count.
+// @param left_out  Number of longest times to ignore.
 GstClockTime TrackStats::quantile(double q, std::size_t left_out) const {
   std::array<GstClockTime, kWindow> sorted = times_;
   const std::size_t count = std::min<std::size_t>(analysed_, kWindow);

@@ -10,32 +10,32 @@
 
 /// Why a frame passed without analysis.
 enum class Skip {
-  kInterval,  ///< It was not its turn.
+  kInterval,  ///< Not an n-th frame.
   kLate,      ///< The sink was late (QoS).
-  kLoad,      ///< Analyses take longer than they may.
-  kRegion,    ///< Nothing of it was to be searched.
+  kLoad,      ///< Analyses exceed max-processing-time.
+  kRegion,    ///< The search region was empty.
   kFailed,    ///< It could not be read or analysed.
 };
 
-/// Its name in the field "skipped-...".
+/// The name of a cause in the field "skipped-...".
 [[nodiscard]] const gchar* nick_of(Skip reason);
 
-/// Counts what becomes of the frames of a stream. Not thread-safe: the element's lock guards it.
+/// Counts the frames of a stream by outcome. Not thread-safe: the element's lock guards it.
 class TrackStats {
  public:
   void add_skipped(Skip reason);
-  /// Whatever was followed counts as lost.
+  /// Counts a followed target as lost.
   void forget_target();
   /// @param processing_time  [ns]
   void add_analysed(const std::optional<ellipse::Target>& target, GstClockTime processing_time);
 
-  /// What the analysis adds to a live pipeline's latency [ns]: the 99th percentile of the
-  /// processing times, but not the longest, for the first frame finds the caches cold; in whole ms
-  /// from above, so that it seldom changes. 0 before the second frame.
+  /// Latency of the analysis in a live pipeline [ns]: the 99th percentile of the processing times
+  /// without the longest, because the first frame runs with cold caches; rounded up to whole ms, so
+  /// that it rarely changes. 0 before the second frame.
   [[nodiscard]] GstClockTime latency() const;
 
-  /// Counts, and times [ns] over the last kWindow analysed frames; docs/elements.md names the
-  /// fields. (transfer full)
+  /// Counts, and times [ns] over the last kWindow analysed frames; fields: docs/elements.md.
+  /// (transfer full)
   [[nodiscard]] GstStructure* to_structure() const;
 
  private:
