@@ -72,7 +72,7 @@ Verdict judge_beside(const Detection& member, const Detection& other) {
 // Why a set that is not the best is rejected.
 Verdict judge_set(const ConcentricSet& set, const ConcentricSet& best) {
   if (set.probability < best.probability) {
-    return {Reason::kWeakerSet, set.score, best.score};
+    return {Reason::kWeakerSet, log_odds(set.probability), log_odds(best.probability)};
   }
   if (set.has_two_edges != best.has_two_edges) return {Reason::kSingle};
   return {Reason::kWeakerSet, set.score, best.score};

@@ -175,7 +175,7 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   ScopedFrame looked = frame;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
-    looked.finest_scale = std::max(frame.finest_scale, std::min(kLookScale, settings_.max_scale));
+    looked.finest_scale = std::max(frame.finest_scale, kLookScale);
   }
   const std::optional<Target> chosen = detect(looked);
   since_look_s_ = 0.0;

@@ -205,8 +205,8 @@ TEST(FollowingTracker, ConfirmsOverFrames) {
   int confirming = 0;
   int frame = 0;
   std::optional<Target> target;
-  for (; frame < 60 && !target; ++frame) {
-    const Ellipse disc{-10.0 + frame, 110.0, 40.0, 32.0, 0.3};
+  for (; frame < 300 && !target; ++frame) {
+    const Ellipse disc{-10.0 + 0.2 * frame, 110.0, 40.0, 32.0, 0.3};
     target = tracker.process(rendered(scene, disc).view(), frame * kFrameNs);
     confirming += tracker.state() == TrackerState::kConfirming ? 1 : 0;
   }
