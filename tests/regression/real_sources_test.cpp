@@ -32,7 +32,7 @@ struct Source {
 };
 
 constexpr Source kSources[] = {
-    {"airlab-mbzirc", {631, 0}, {630, 1}},
+    {"airlab-mbzirc", {630, 1}, {630, 1}},
     {"airlab-deformed", {173, 0}, {174, 0}},
     {"airlab-gascola", {454, 0}, {453, 1}},
     {"pupil-infrared", {1099, 12}, {1031, 2}},
