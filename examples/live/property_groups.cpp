@@ -47,7 +47,7 @@ constexpr std::array kGroups = {
     Group{"line-width", "output"},
 };
 
-constexpr std::array<std::string_view, 3> kUnits = {"grey levels per px", "px", "ns"};
+constexpr std::array<std::string_view, 3> kUnits = {"[grey levels per px]", "[px]", "[ns]"};
 
 }  // namespace
 
@@ -60,7 +60,7 @@ std::string_view group_of(std::string_view property) {
 
 std::string_view unit_in(std::string_view blurb) {
   for (const std::string_view unit : kUnits) {
-    if (blurb.find("[" + std::string(unit) + "]") != std::string_view::npos) return unit;
+    if (blurb.find(unit) != std::string_view::npos) return unit.substr(1, unit.size() - 2);
   }
   return "";
 }
