@@ -2,7 +2,6 @@
 #include "examples/live/property_groups.hpp"
 
 #include <array>
-#include <string>
 
 namespace live {
 namespace {

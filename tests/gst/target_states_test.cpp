@@ -152,7 +152,7 @@ TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
             "9 x tracked 2, following\n");
 }
 
-// A disc that comes into view: half of one may be anything.
+// A disc that comes slowly into view: its odds pass through those at which it is only confirmed.
 TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
   const auto harness = support::harness_of(
       "ellipsetrack name=t min-probability=0.98 messages=every-frame ! ellipsejson",
@@ -163,15 +163,15 @@ TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
   scene.pad.pattern = ellipse::Pattern::kDisc;
   std::vector<Told> story;
   for (int frame = 0; frame < 60; ++frame) {
-    auto buffer =
-        support::gray_buffer_of(support::rendered(scene, {-10.0 + frame, 110.0, 40.0, 32.0, 0.3}));
+    auto buffer = support::gray_buffer_of(
+        support::rendered(scene, {-8.0 + 0.1 * frame, 110.0, 40.0, 32.0, 0.3}));
     GST_BUFFER_PTS(buffer.get()) =
         gst_util_uint64_scale(static_cast<guint64>(frame), GST_SECOND, 30);
     story.push_back(by_line(support::push(harness, std::move(buffer)).get()));
     EXPECT_EQ(by_message(bus), story.back()) << frame;
   }
   const auto confirming = std::find(story.begin(), story.end(), "lost, confirming");
-  const auto following = std::find(story.begin(), story.end(), "tracked 1, following");
+  const auto following = std::find(story.begin(), story.end(), "detected 1, following");
   EXPECT_LT(confirming, following);
   EXPECT_NE(following, story.end());
 }

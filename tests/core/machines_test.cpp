@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// What must be the same on every processor. The pictures are drawn with integers, because the
+// renderer of scenes calls sin() and its last digit differs between machines.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <iomanip>
+
+#include "core/detection/arcs/arc_detector.hpp"
+#include "core/edges/chains.hpp"
+#include "core/edges/gradient_map.hpp"
+#include "core/image/scale.hpp"
+#include "core/scene/random.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+struct Disc {
+  int x;
+  int y;
+  int semi_x;
+  int semi_y;
+};
+
+bool is_inside(const Disc& disc, int x, int y) {
+  const std::int64_t along_x = std::int64_t{x - disc.x} * disc.semi_y;
+  const std::int64_t along_y = std::int64_t{y - disc.y} * disc.semi_x;
+  const std::int64_t limit = std::int64_t{disc.semi_x} * disc.semi_y;
+  return along_x * along_x + along_y * along_y <= limit * limit;
+}
+
+/// A disc on a ramp, each pixel the mean of 4 x 4, with noise of +-`noise` grey levels.
+support::Picture draw(const Disc& disc, int noise) {
+  support::Picture picture(kWidth, kHeight);
+  const Disc fine{4 * disc.x, 4 * disc.y, 4 * disc.semi_x, 4 * disc.semi_y};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      int covered = 0;
+      for (int part = 0; part < 16; ++part) {
+        covered += is_inside(fine, 4 * x + part % 4, 4 * y + part / 4) ? 1 : 0;
+      }
+      const auto random = static_cast<int>(hash(static_cast<std::uint64_t>(y * kWidth + x)) % 64);
+      const int shift = random % (2 * noise + 1) - noise;
+      picture.at(x, y) = static_cast<std::uint8_t>(40 + x / 8 + 7 * covered + shift);
+    }
+  }
+  return picture;
+}
+
+constexpr std::array<Disc, 3> kDiscs = {{{160, 120, 70, 40}, {90, 100, 25, 60}, {250, 180, 12, 9}}};
+constexpr int kNoise = 6;  // grey levels
+
+/// [FowlerNollVo] FNV-1a, 64 bits.
+class Digest {
+ public:
+  void add(std::uint64_t value) { digest_ = (digest_ ^ value) * 0x100000001b3u; }
+  [[nodiscard]] std::uint64_t value() const { return digest_; }
+
+ private:
+  std::uint64_t digest_ = 0xcbf29ce484222325u;
+};
+
+std::uint64_t digest_of_stages(const support::Picture& picture, Simd simd) {
+  Digest digest;
+  Scaler scaler;
+  for (const int scale : {1, 2, 4}) {
+    GradientMap map(simd);
+    map.compute(scaler.reduce(picture.view(), scale), {4.0, 8.0});
+    for (int y = 0; y < map.height(); ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        const int at = y * map.stride() + x;
+        digest.add(map.maxima()[at]);
+        if (map.maxima()[at] == 0) continue;
+        digest.add(static_cast<std::uint16_t>(map.gradients()[at].x));
+        digest.add(static_cast<std::uint16_t>(map.gradients()[at].y));
+      }
+    }
+    ChainTracer chains;
+    chains.trace(map);
+    for (const std::int32_t pixel : chains.pixels()) digest.add(static_cast<std::uint32_t>(pixel));
+  }
+  return digest.value();
+}
+
+TEST(Machines, IntegerStagesAreBitEqual) {
+  constexpr std::array<std::uint64_t, 3> kDigests = {
+      69581730297642070U, 7268294265261161847U, 7064622963298312029U};
+  for (std::size_t i = 0; i < kDiscs.size(); ++i) {
+    const support::Picture picture = draw(kDiscs[i], kNoise);
+    EXPECT_EQ(digest_of_stages(picture, Simd::kBaseline), kDigests[i]) << "disc " << i;
+    EXPECT_EQ(digest_of_stages(picture, best_simd()), kDigests[i]) << "disc " << i;
+  }
+}
+
+TEST(Machines, EllipsesAreEqualToATenThousandthOfAPixel) {
+  constexpr std::array<Ellipse, 3> kExpected = {{
+      {159.6241053, 119.6270445, 69.99894202, 39.99609999, 9.965693121e-05},
+      {89.61998968, 99.63891831, 59.99833579, 24.98528067, -1.570601684},
+      {249.6077121, 179.6235667, 11.97633078, 8.990677969, -0.001635924311},
+  }};
+  ArcDetector detector;
+  for (std::size_t i = 0; i < kDiscs.size(); ++i) {
+    const support::Picture picture = draw(kDiscs[i], kNoise);
+    const auto found = detector.detect(picture.view(), Thresholds{});
+    ASSERT_EQ(found.size(), 1U) << "disc " << i;
+    const Ellipse& e = found[0].ellipse;
+    EXPECT_LT(max_difference_px(e, kExpected[i]), 1e-4)
+        << std::setprecision(10) << "disc " << i << ": " << e.cx << ", " << e.cy << ", "
+        << e.semi_major << ", " << e.semi_minor << ", " << e.angle_rad;
+  }
+}
+
+}  // namespace
+}  // namespace ellipse
