@@ -36,6 +36,7 @@ if [ "${1:-}" != "--without-tests" ]; then
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
     valgrind gcovr clang clang-tidy
+    abigail-tools  # compares libgstellipse-1.0 with its earlier version
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen
     python3-yaml  # reads what 06_ros_yaml.py writes

@@ -57,8 +57,6 @@ GType gst_ellipse_state_get_type(void);
  *   its edges, share of all its visible edges that were matched
  * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; for a target followed by its
  *   edges, share of the visible outer edge that was matched
- * @probability: probability that it is a target, 0 to 1: with tracking=edges from all frames so
- *   far, otherwise from the detector in this frame; 1 if the detector gives none; 0 for the truth
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale at which it was found, a power of two
  * @roi_x: left edge of the search region, in px
@@ -95,6 +93,9 @@ GType gst_ellipse_state_get_type(void);
  * @n_outline: number of points of @outline; 0 if the ellipse is in image coordinates
  * @outline: x and y in px of points on the target's outline in distorted image coordinates, if the
  *   ellipse is in undistorted coordinates; NaN for points that the lens does not show
+ * @probability: probability that it is a target, 0 to 1: with tracking=edges from all frames so
+ *   far, otherwise from the detector in this frame; 1 if the detector gives none; 0 for the truth.
+ *   Since: 0.2
  *
  * One ellipse on a video buffer; a buffer may have several. Copying keeps it and scaling transforms
  * it, also if the scale differs in x and y.
@@ -118,7 +119,6 @@ struct _GstEllipseMeta {
   gdouble angle_rad;
   gdouble contour_overlap;
   gdouble ellipse_overlap;
-  gdouble probability;
   gdouble visible_fraction;
   guint scale;
   gint roi_x;
@@ -155,6 +155,7 @@ struct _GstEllipseMeta {
   gdouble position_covariance[6];
   guint n_outline;
   gfloat outline[128];
+  gdouble probability;
 };
 
 #define GST_ELLIPSE_META_API_TYPE (gst_ellipse_meta_api_get_type())

@@ -124,7 +124,7 @@ GstEllipseSearchMeta* gst_buffer_get_ellipse_search_meta(GstBuffer* buffer) {
  * Returns: (transfer none): "searching", "confirming", "following" or "coasting"; "unknown" for any
  *   other number
  *
- * Since: 0.1
+ * Since: 0.2
  */
 const gchar* gst_ellipse_search_meta_get_tracker_state_name(const GstEllipseSearchMeta* meta) {
   g_return_val_if_fail(meta != nullptr, nullptr);

@@ -17,7 +17,7 @@ G_BEGIN_DECLS
  * State of the tracker in a frame. With tracking=redetect and tracking=none it is either searching
  * or following.
  *
- * Since: 0.1
+ * Since: 0.2
  */
 typedef enum {
   GST_ELLIPSE_TRACKER_STATE_UNKNOWN,
@@ -34,7 +34,7 @@ GType gst_ellipse_tracker_state_get_type(void);
  * GstEllipseSearchMeta:
  * @meta: parent
  * @processing_time: processing time of the frame, in ns
- * @tracker_state: state of the tracker
+ * @tracker_state: state of the tracker. Since: 0.2
  *
  * Marks a frame as searched for a target, also if none was found. An element that keeps
  * #GstEllipseMeta also keeps this.
