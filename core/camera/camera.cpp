@@ -68,7 +68,8 @@ struct Distortion {
 };
 
 template <LensModel kModel>
-ELLIPSE_INLINE void distort_all(const Distortion& by, const CurveSamples& places) {
+ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& places) {
+  ELLIPSE_NO_ALIAS
   for (std::size_t k = 0; k < places.count; ++k) {
     const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
     const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
