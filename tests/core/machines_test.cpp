@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What must be the same on every processor. The pictures are drawn with integers, because the
-// renderer of scenes calls sin() and its last digit differs between machines.
+// What must be the same on every processor.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,49 +11,20 @@
 #include "core/edges/chains.hpp"
 #include "core/edges/gradient_map.hpp"
 #include "core/image/scale.hpp"
-#include "core/scene/random.hpp"
-#include "tests/support/picture.hpp"
+#include "tests/support/integer_disc.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+using support::IntegerDisc;
+using support::Picture;
 
-struct Disc {
-  int x;
-  int y;
-  int semi_x;
-  int semi_y;
-};
+constexpr std::array<IntegerDisc, 3> kDiscs = {
+    {{160, 120, 70, 40}, {90, 100, 25, 60}, {250, 180, 12, 9}}};
 
-bool is_inside(const Disc& disc, int x, int y) {
-  const std::int64_t along_x = std::int64_t{x - disc.x} * disc.semi_y;
-  const std::int64_t along_y = std::int64_t{y - disc.y} * disc.semi_x;
-  const std::int64_t limit = std::int64_t{disc.semi_x} * disc.semi_y;
-  return along_x * along_x + along_y * along_y <= limit * limit;
+Picture picture_of(const IntegerDisc& disc) {
+  return disc.draw(320, 240, 6);
 }
-
-/// A disc on a ramp, each pixel the mean of 4 x 4, with noise of +-`noise` grey levels.
-support::Picture draw(const Disc& disc, int noise) {
-  support::Picture picture(kWidth, kHeight);
-  const Disc fine{4 * disc.x, 4 * disc.y, 4 * disc.semi_x, 4 * disc.semi_y};
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      int covered = 0;
-      for (int part = 0; part < 16; ++part) {
-        covered += is_inside(fine, 4 * x + part % 4, 4 * y + part / 4) ? 1 : 0;
-      }
-      const auto random = static_cast<int>(hash(static_cast<std::uint64_t>(y * kWidth + x)) % 64);
-      const int shift = random % (2 * noise + 1) - noise;
-      picture.at(x, y) = static_cast<std::uint8_t>(40 + x / 8 + 7 * covered + shift);
-    }
-  }
-  return picture;
-}
-
-constexpr std::array<Disc, 3> kDiscs = {{{160, 120, 70, 40}, {90, 100, 25, 60}, {250, 180, 12, 9}}};
-constexpr int kNoise = 6;  // grey levels
 
 /// [FowlerNollVo] FNV-1a, 64 bits.
 class Digest {
@@ -66,7 +36,7 @@ class Digest {
   std::uint64_t digest_ = 0xcbf29ce484222325u;
 };
 
-std::uint64_t digest_of_stages(const support::Picture& picture, Simd simd) {
+std::uint64_t digest_of_stages(const Picture& picture, Simd simd) {
   Digest digest;
   Scaler scaler;
   for (const int scale : {1, 2, 4}) {
@@ -92,7 +62,7 @@ TEST(Machines, IntegerStagesAreBitEqual) {
   constexpr std::array<std::uint64_t, 3> kDigests = {
       69581730297642070U, 7268294265261161847U, 7064622963298312029U};
   for (std::size_t i = 0; i < kDiscs.size(); ++i) {
-    const support::Picture picture = draw(kDiscs[i], kNoise);
+    const Picture picture = picture_of(kDiscs[i]);
     EXPECT_EQ(digest_of_stages(picture, Simd::kBaseline), kDigests[i]) << "disc " << i;
     EXPECT_EQ(digest_of_stages(picture, best_simd()), kDigests[i]) << "disc " << i;
   }
@@ -106,7 +76,7 @@ TEST(Machines, EllipsesAreEqualToATenThousandthOfAPixel) {
   }};
   ArcDetector detector;
   for (std::size_t i = 0; i < kDiscs.size(); ++i) {
-    const support::Picture picture = draw(kDiscs[i], kNoise);
+    const Picture picture = picture_of(kDiscs[i]);
     const auto found = detector.detect(picture.view(), Thresholds{});
     ASSERT_EQ(found.size(), 1U) << "disc " << i;
     const Ellipse& e = found[0].ellipse;
