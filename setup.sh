@@ -35,7 +35,7 @@ if [ "${1:-}" != "--without-tests" ]; then
     gstreamer1.0-plugins-bad gstreamer1.0-x
     mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
     locales  # numbers with a comma
-    valgrind gcovr clang clang-tidy
+    valgrind gcovr clang clang-tidy codespell
     abigail-tools  # compares libgstellipse-1.0 with its earlier version
     python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
     gi-docgen

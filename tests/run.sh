@@ -5,7 +5,7 @@
 #   ./tests/run.sh --sanitize          all under AddressSanitizer and UBSan
 #   ./tests/run.sh --sanitize=thread   pipelines under ThreadSanitizer
 #   ./tests/run.sh --coverage          all, and the lines of core/ and gst/ that they reach: 90 %
-#   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin; lint
+#   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin; lint; spelling
 # Each of them takes --werror in front: a warning of the compiler is an error then, as in .ci/run.
 # Closes with what failed, and a line "N passed, N failed, N skipped".
 set -euo pipefail
@@ -114,6 +114,7 @@ case "${1:-}" in
     unset CC CXX
     run build-clang core gst
     check build build-core -Dplugin=disabled
+    check env --chdir "$project" codespell
     check run-clang-tidy -quiet -p "$project/build" "^$project/(core|gst)/.*\.cpp$"
     run build-core --no-suite long
     run build --suite long --verbose
