@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;     // unit of the frame clock
 constexpr double kLook_s = 8.0 * kFrame_s;  // period of detections while tracking
-constexpr int kLookScale = 2;               // frame scale of these while the target is certain
+constexpr int kLookScale = 4;               // frame scale of these while the target is certain
 constexpr double kGivenUp = -3.0;           // log odds below which the hypothesis is dropped
 constexpr double kKeepsNumber_s = 0.4;      // max absence after which a target keeps its id
 constexpr double kEnoughToLock = 0.45;      // min visible share of the perimeter to lock
@@ -138,8 +138,11 @@ double Tracker::wanted_log_odds() const {
 // target may have come into view.
 bool Tracker::wants_look(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  const bool is_time = settings_.wants_candidates || since_look_s_ >= kLook_s;
-  return !is_visible || judge_->log_odds() < wanted_log_odds() || is_time;
+  return !is_visible || judge_->log_odds() < wanted_log_odds() || is_look_due();
+}
+
+bool Tracker::is_look_due() const {
+  return settings_.wants_candidates || since_look_s_ >= kLook_s;
 }
 
 // Reads only the search window of the pad.
@@ -165,23 +168,30 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   target.visible_fraction = visible;
   target.search_region = region;
   if (lens_) target.uncertainty = pad_tracker_->uncertainty();
-  if (track->is_visible) judge_->judge(search_->detector(), window, target, settings_.limits);
+  // A frame has one of the two, the periodic evaluation or the periodic detection.
+  const bool is_put_off = judge_->is_sure() && is_look_due() && !settings_.wants_candidates;
+  if (track->is_visible && !is_put_off) {
+    judge_->judge(search_->detector(), window, target, settings_.limits);
+  }
   return target;
 }
 
-// Runs the detector; on a reduced frame while the target is certain, which limits the frame time.
+// Runs the detector. While the target is certain only a rival seen in a reduced frame makes it
+// search as finely as for a new target, which limits the frame time.
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  ScopedFrame looked = frame;
-  if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
-    looked.finest_scale = std::max(frame.finest_scale, kLookScale);
-  }
-  const std::optional<Target> chosen = detect(looked);
+  const auto is_rival = [&](const std::optional<Target>& seen) {
+    return seen && (!is_visible || is_better(*seen, *followed));
+  };
   since_look_s_ = 0.0;
-  if (!chosen) return followed;
-  if (is_visible && !is_better(*chosen, *followed)) return followed;
-  return acquire(frame, *chosen);
+  if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
+    ScopedFrame reduced = frame;
+    reduced.finest_scale = std::max(frame.finest_scale, kLookScale);
+    if (!is_rival(detect(reduced))) return followed;
+  }
+  const std::optional<Target> chosen = detect(frame);
+  return is_rival(chosen) ? acquire(frame, *chosen) : followed;
 }
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {

@@ -93,6 +93,7 @@ class Tracker {
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;
   [[nodiscard]] double wanted_log_odds() const;
   [[nodiscard]] bool wants_look(const std::optional<Target>& followed) const;
+  [[nodiscard]] bool is_look_due() const;
   [[nodiscard]] std::optional<Target> follow_edges(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> look(const ScopedFrame& frame,
                                            const std::optional<Target>& followed);
