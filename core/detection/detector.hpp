@@ -3,12 +3,11 @@
 #include <optional>
 #include <span>
 
-#include "core/camera/lens_view.hpp"
+#include "core/camera/picture.hpp"
 #include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
 #include "core/detection/verdict.hpp"
 #include "core/geometry/ellipse.hpp"
-#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -38,12 +37,12 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// @param luma        Any size, also empty. Borrowed for the call only.
+  /// @param picture     Any size, also empty. Borrowed for the call only.
   /// @param thresholds  Must pass Thresholds::validate().
   /// @return Every ellipse found, in no particular order. Valid until the next call.
   ///
   /// No content of the picture throws. Deterministic. One object serves one thread at a time.
-  [[nodiscard]] virtual std::span<const Detection> detect(const ImageView& luma,
+  [[nodiscard]] virtual std::span<const Detection> detect(const Picture& picture,
                                                           const Thresholds& thresholds) = 0;
 
   /// Whether the detector computes Detection::probability and applies min_probability.
@@ -54,7 +53,7 @@ class Detector {
   ///
   /// @param e           The outline, as Detection::ellipse.
   /// @param thresholds  Only the edge and overlap thresholds apply.
-  [[nodiscard]] virtual std::optional<double> log_odds_of(const ImageView& /*luma*/,
+  [[nodiscard]] virtual std::optional<double> log_odds_of(const Picture& /*picture*/,
                                                           const Ellipse& /*e*/,
                                                           const Thresholds& /*thresholds*/) {
     return std::nullopt;
@@ -69,16 +68,12 @@ class Detector {
   /// bit-identical. Borrowed.
   void set_trace(DetectionTrace* trace) { trace_ = trace; }
 
-  /// Sets the lens of later pictures; none by default.
-  void set_lens(const LensView& lens) { lens_ = lens; }
-
   /// Sets the evidence table of later calls, if the detector computes probabilities.
   void set_evidence(const EvidenceTable& table) { evidence_ = table; }
 
  protected:
   DetectionTrace* trace_ = nullptr;
   EvidenceTable evidence_ = built_in_evidence();
-  LensView lens_;
 };
 
 }  // namespace ellipse

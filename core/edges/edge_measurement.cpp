@@ -226,14 +226,14 @@ OutlineSupport EdgeMeasurer::measure(const GradientMap& map,
   return support;
 }
 
-OutlineSupport EdgeMeasurer::measure(const ImageView& luma,
-                                     const LensView& lens,
+OutlineSupport EdgeMeasurer::measure(const Picture& picture,
                                      const Ellipse& e,
                                      Polarity polarity,
                                      std::size_t samples,
                                      double min_gradient) {
-  const OutlineSamples outline(e, samples, lens);
-  return measure_along(outline, polarity, PictureSearch(luma, outline.origin(), min_gradient));
+  const OutlineSamples outline(e, samples, picture.lens);
+  const PictureSearch search(picture.luma, outline.origin(), min_gradient);
+  return measure_along(outline, polarity, search);
 }
 
 }  // namespace ellipse

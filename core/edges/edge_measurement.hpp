@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <span>
 
+#include "core/camera/picture.hpp"
 #include "core/edges/gradient_map.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/geometry/ellipse_fit.hpp"
-#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -58,8 +58,7 @@ class EdgeMeasurer {
   /// Matches the highest gradient maxima within two pixels on the picture itself; computes no
   /// gradient elsewhere. Leaves the standard deviations at 0, since the noise is unknown.
   /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
-  OutlineSupport measure(const ImageView& luma,
-                         const LensView& lens,
+  OutlineSupport measure(const Picture& picture,
                          const Ellipse& e,
                          Polarity polarity,
                          std::size_t samples,

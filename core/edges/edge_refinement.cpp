@@ -14,21 +14,20 @@ constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // of each step [px]
 
 }  // namespace
 
-std::optional<RefinedEllipse> refined_on_picture(const ImageView& luma,
+std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
                                                  const Ellipse& e,
                                                  Polarity polarity,
                                                  double min_gradient,
-                                                 std::size_t samples,
-                                                 const LensView& lens) {
+                                                 std::size_t samples) {
   EdgeMeasurer measurer;
   RefinedEllipse refined{e, {}, 0.0, 0.0};
-  refined.support = measurer.measure(luma, lens, e, polarity, samples, min_gradient).support;
+  refined.support = measurer.measure(picture, e, polarity, samples, min_gradient).support;
   const std::span<const EdgeMeasurement> edges = measurer.edges();
   if (edges.size() < kMinEdgesOfEllipse) return std::nullopt;
   const auto count = static_cast<double>(edges.size());
   std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples> ideal;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    ideal[i] = lens.near_ideal(measurer.origin() + edges[i].point.cast<double>());
+    ideal[i] = picture.lens.near_ideal(measurer.origin() + edges[i].point.cast<double>());
     refined.gradient += edges[i].contrast / count;
   }
   for (const double reach_px : kTukeyReach) {

@@ -2,11 +2,10 @@
 
 #include <optional>
 
-#include "core/camera/lens_view.hpp"
+#include "core/camera/picture.hpp"
 #include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/geometry/ellipse_fit.hpp"
-#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -25,15 +24,15 @@ inline constexpr std::size_t kRefinementSamples = 96;
 ///
 /// @param samples  As of OutlineSamples. Fewer samples are faster and noisier.
 /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
-/// @param lens    Distorts the perimeter for the search; `e` and the result are in the ideal plane.
+/// @param picture  Its lens distorts the perimeter for the search; `e` and the result are in the
+///                 ideal plane.
 /// @return nullopt if too few gradient maxima are near or the fit fails. Allocates nothing;
 ///         O(samples).
 [[nodiscard]] std::optional<RefinedEllipse> refined_on_picture(
-    const ImageView& luma,
+    const Picture& picture,
     const Ellipse& e,
     Polarity polarity,
     double min_gradient,
-    std::size_t samples = kRefinementSamples,
-    const LensView& lens = {});
+    std::size_t samples = kRefinementSamples);
 
 }  // namespace ellipse

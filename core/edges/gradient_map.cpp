@@ -274,7 +274,9 @@ void GradientMap::measure_noise(const ImageView& luma) {
   noise_ = std::max(kMinNoise, quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile)));
 }
 
-void GradientMap::compute(const ImageView& luma, const EdgeThresholds& thresholds) {
+void GradientMap::compute(const Picture& picture, const EdgeThresholds& thresholds) {
+  const ImageView& luma = picture.luma;
+  lens_ = picture.lens;
   resize(luma);
   if (luma.empty()) return;
   measure_noise(luma);

@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/camera/lens_view.hpp"
-#include "core/image/image_view.hpp"
+#include "core/camera/picture.hpp"
 #include "core/image/simd.hpp"
 
 namespace ellipse {
@@ -59,10 +58,8 @@ class GradientMap {
 
   /// @param thresholds  0 = derived from the other one; both 0 = from the picture's noise.
   /// Allocates only when the picture grows. O(pixels).
-  void compute(const ImageView& luma, const EdgeThresholds& thresholds = {});
+  void compute(const Picture& picture, const EdgeThresholds& thresholds = {});
 
-  /// Sets the lens of the picture; none by default.
-  void set_lens(const LensView& lens) { lens_ = lens; }
   [[nodiscard]] const LensView& lens() const { return lens_; }
 
   [[nodiscard]] int width() const { return width_; }

@@ -52,9 +52,9 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
                                                int scale,
                                                const Thresholds& thresholds,
                                                const std::optional<Ellipse>& last_target) {
-  const ImageView reduced = scaler_.reduce(read(frame, region), scale);
-  detector_->set_lens(frame.lens.part(Eigen::Vector2d(region.x, region.y)).reduced(scale));
-  const auto detections = detector_->detect(reduced, thresholds);
+  const LensView lens = frame.lens.part(Eigen::Vector2d(region.x, region.y)).reduced(scale);
+  const auto detections =
+      detector_->detect({scaler_.reduce(read(frame, region), scale), lens}, thresholds);
   candidates_.assign(detections.begin(), detections.end());
   for (Detection& candidate : candidates_) {
     candidate.ellipse = to_frame(candidate.ellipse, region, scale);

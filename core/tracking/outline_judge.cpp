@@ -64,9 +64,9 @@ void OutlineJudge::judge(Detector& detector,
   Thresholds thresholds = limits;
   thresholds.contour_overlap = detector.tracking_overlaps().contour;
   thresholds.ellipse_overlap = detector.tracking_overlaps().ellipse;
-  detector.set_lens(window.lens.part(origin));
-  const auto judged = detector.log_odds_of(
-      part.luma, translated(target.ellipse, -origin.x(), -origin.y()), thresholds);
+  const auto judged = detector.log_odds_of({part.luma, window.lens.part(origin)},
+                                           translated(target.ellipse, -origin.x(), -origin.y()),
+                                           thresholds);
   if (judged) add(*judged);
 }
 

@@ -23,8 +23,9 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 // What all peers have in common: a picture of OpenCV's in, detections within the limits out.
 class Peer : public ellipse::Detector {
  public:
-  std::span<const ellipse::Detection> detect(const ellipse::ImageView& luma,
+  std::span<const ellipse::Detection> detect(const ellipse::Picture& picture,
                                              const ellipse::Thresholds& limits) final {
+    const ellipse::ImageView& luma = picture.luma;
     detections_.clear();
     // Smaller ones hold no ellipse, and some of OpenCV's functions do not take them.
     if (std::min(luma.width, luma.height) < kMinSizePx) return detections_;

@@ -194,7 +194,7 @@ TEST_F(Allocations, OfContourDetectorAreThoseOfOpenCv) {
 // A detector without allocations, which leaves only those of the tracker.
 class OneEllipse final : public Detector {
  public:
-  std::span<const Detection> detect(const ImageView&, const Thresholds&) override {
+  std::span<const Detection> detect(const ellipse::Picture&, const Thresholds&) override {
     return {&detection_, 1};
   }
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.9, 0.9}; }

@@ -52,10 +52,9 @@ INSTANTIATE_TEST_SUITE_P(Lens, DistortedPicture, testing::Values("barrel", "fish
 
 TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
   ArcDetector detector;
-  detector.set_lens(lens_);
   for (const double time_s : {0.0, 1.0, 2.5, 4.0}) {
     const Shot seen = shot(time_s);
-    const auto target = select_target(detector.detect(seen.picture.view(), {}));
+    const auto target = select_target(detector.detect({seen.picture.view(), lens_}, {}));
     ASSERT_TRUE(target && seen.truth.outer_edge) << time_s;
     EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.15) << time_s;
   }
@@ -72,10 +71,9 @@ TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
 
 TEST_P(DistortedPicture, ContoursAreTakenToTheIdealPlane) {
   ContourDetector detector;
-  detector.set_lens(lens_);
   scene_.flight.lowest *= 4.0;  // so small that its distorted image is nearly an ellipse
   const Shot seen = shot(1.0);
-  const auto target = select_target(detector.detect(seen.picture.view(), {}));
+  const auto target = select_target(detector.detect({seen.picture.view(), lens_}, {}));
   ASSERT_TRUE(target && seen.truth.outer_edge);
   EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.5);
 }
@@ -85,10 +83,9 @@ TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
   ASSERT_TRUE(seen.truth.outer_edge);
   Ellipse guess = translated(*seen.truth.outer_edge, 0.4, -0.3);
   guess.semi_major += 0.3;
-  const auto refined = refined_on_picture(
-      seen.picture.view(), guess, Polarity::kBrightInside, 200.0, kRefinementSamples, lens_);
-  const auto other = refined_on_picture(
-      seen.picture.view(), guess, Polarity::kDarkInside, 200.0, kRefinementSamples, lens_);
+  const ellipse::Picture picture(seen.picture.view(), lens_);
+  const auto refined = refined_on_picture(picture, guess, Polarity::kBrightInside, 200.0);
+  const auto other = refined_on_picture(picture, guess, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined || other);
   const Ellipse& e = refined ? refined->ellipse : other->ellipse;
   EXPECT_LT(max_difference_px(e, *seen.truth.outer_edge), 0.1);

@@ -26,8 +26,9 @@ class ScriptedDetector final : public ellipse::Detector {
 
   explicit ScriptedDetector(Script& script) : script_(script) {}
 
-  std::span<const ellipse::Detection> detect(const ellipse::ImageView& luma,
+  std::span<const ellipse::Detection> detect(const ellipse::Picture& picture,
                                              const ellipse::Thresholds& thresholds) override {
+    const ellipse::ImageView& luma = picture.luma;
     const std::size_t turn = std::min(script_.calls.size(), script_.answers.size() - 1);
     script_.calls.push_back({luma.width, luma.height, thresholds});
     answer_ = script_.answers[turn];

@@ -48,27 +48,26 @@ bool is_inside_of(const Arc& b, const Arc& a) {
 
 }  // namespace
 
-std::span<const Detection> ArcDetector::detect(const ImageView& luma,
+std::span<const Detection> ArcDetector::detect(const Picture& picture,
                                                const Thresholds& thresholds) {
   if (trace_ != nullptr) trace_->clear();
   found_.clear();
-  search_scales(luma, thresholds);
-  refine_at_full_size(luma, thresholds);
+  search_scales(picture, thresholds);
+  refine_at_full_size(picture, thresholds);
   report();
-  ring_corrector_.correct(luma, min_gradient_, polarities_, lens_, detections_);
+  ring_corrector_.correct(picture, min_gradient_, polarities_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
 
 // At the coarsest scale that resolves the outline, for the better polarity; may be -infinity.
-std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
+std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
   int scale = 1;
   while (scale < kCoarsest && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
   GradientMap& map = map_at(scale);
-  map.compute(scaler_.reduce(luma, scale), {thresholds.edge_low, thresholds.edge_high});
-  map.set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
+  map.compute(reduced(picture, scale), {thresholds.edge_low, thresholds.edge_high});
   chains_.trace(map);
   Thresholds overlaps = kNoLimits;
   overlaps.contour_overlap = thresholds.contour_overlap;
@@ -84,24 +83,27 @@ std::optional<double> ArcDetector::log_odds_of(const ImageView& luma,
   return best;
 }
 
-void ArcDetector::search_scales(const ImageView& luma, const Thresholds& thresholds) {
+Picture ArcDetector::reduced(const Picture& picture, int scale) {
+  return {scaler_.reduce(picture.luma, scale), picture.lens.reduced(scale)};
+}
+
+void ArcDetector::search_scales(const Picture& picture, const Thresholds& thresholds) {
   for (const int scale : kScales) {
-    search(scaler_.reduce(luma, scale), thresholds, scale);
+    search(reduced(picture, scale), thresholds, scale);
     if (!thresholds.wants_all && is_beyond_doubt()) return;
   }
   confirm_at_finer_scales(thresholds);
 }
 
-void ArcDetector::search(const ImageView& luma, const Thresholds& full, int scale) {
+void ArcDetector::search(const Picture& picture, const Thresholds& full, int scale) {
   scale_ = scale;
   rejected_.clear();
-  if (luma.empty()) return;
+  if (picture.luma.empty()) return;
   const Thresholds thresholds = full.at_scale(scale);
   map_ = &map_at(scale);
-  map_->compute(luma, {thresholds.edge_low, thresholds.edge_high});
-  map_->set_lens(scale > 1 ? lens_.reduced(scale) : lens_);
+  map_->compute(picture, {thresholds.edge_low, thresholds.edge_high});
   min_gradient_ = kGradientGain * map_->thresholds().low / scale;
-  if (trace_ != nullptr) trace_edges(luma);
+  if (trace_ != nullptr) trace_edges(picture.luma);
   chains_.trace(*map_);
   arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
   if (trace_ != nullptr) trace_arcs();
@@ -267,12 +269,12 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
 }
 
 // Drops ellipses whose refined axes are beyond the limits.
-void ArcDetector::refine_at_full_size(const ImageView& luma, const Thresholds& thresholds) {
+void ArcDetector::refine_at_full_size(const Picture& picture, const Thresholds& thresholds) {
   std::erase_if(found_, [&](Found& found) {
     if (found.scale == 1) return false;
     MeasuredEllipse& measured = found.measured;
-    const auto refined = refined_on_picture(
-        luma, measured.ellipse, measured.polarity, min_gradient_, kRefinementSamples, lens_);
+    const auto refined =
+        refined_on_picture(picture, measured.ellipse, measured.polarity, min_gradient_);
     if (refined) measured.ellipse = refined->ellipse;
     const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
     if (!verdict.is_accepted()) reject(measured.candidate, verdict);

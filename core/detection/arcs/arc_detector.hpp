@@ -36,10 +36,10 @@ class ArcDetector final : public Detector {
   explicit ArcDetector(Simd simd = best_simd())
       : maps_{GradientMap(simd), GradientMap(simd), GradientMap(simd)} {}
 
-  [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
+  [[nodiscard]] std::span<const Detection> detect(const Picture& picture,
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] bool tells_probability() const override { return true; }
-  [[nodiscard]] std::optional<double> log_odds_of(const ImageView& luma,
+  [[nodiscard]] std::optional<double> log_odds_of(const Picture& picture,
                                                   const Ellipse& e,
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
@@ -57,8 +57,9 @@ class ArcDetector final : public Detector {
     int scale;                 // of its pass
   };
 
-  void search_scales(const ImageView& luma, const Thresholds& thresholds);
-  void search(const ImageView& luma, const Thresholds& thresholds, int scale);
+  [[nodiscard]] Picture reduced(const Picture& picture, int scale);
+  void search_scales(const Picture& picture, const Thresholds& thresholds);
+  void search(const Picture& picture, const Thresholds& thresholds, int scale);
   [[nodiscard]] GradientMap& map_at(int scale) {
     return maps_[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)))];
   }
@@ -76,7 +77,7 @@ class ArcDetector final : public Detector {
   void use_arcs_on(const Ellipse& e, Polarity polarity);
   [[nodiscard]] bool is_beyond_doubt();
   void confirm_at_finer_scales(const Thresholds& full);
-  void refine_at_full_size(const ImageView& luma, const Thresholds& thresholds);
+  void refine_at_full_size(const Picture& picture, const Thresholds& thresholds);
   void report();
   void reject(int candidate, const Verdict& verdict);
   void trace_edges(const ImageView& luma);

@@ -20,19 +20,17 @@ RingCorrector::RingCorrector() {
   prepare_repulsion();  // takes a few milliseconds; kept out of the first frame
 }
 
-void RingCorrector::correct(const ImageView& luma,
+void RingCorrector::correct(const Picture& picture,
                             double min_gradient,
                             std::span<const Polarity> polarities,
-                            const LensView& lens,
                             std::span<Detection> detections) {
   maxima_.clear();
   for (const Detection& detection : detections) maxima_.push_back(detection.ellipse);
   for (std::size_t i = 0; i < maxima_.size(); ++i) {
     const Ellipse& maximum = maxima_[i];
     if (maximum.semi_minor > kMaxPx) continue;
-    const auto edge =
-        refined_on_picture(luma, maximum, polarities[i], min_gradient, kRefinementSamples, lens);
-    const auto next = edge ? next_edge(luma, min_gradient, polarities, lens, i) : std::nullopt;
+    const auto edge = refined_on_picture(picture, maximum, polarities[i], min_gradient);
+    const auto next = edge ? next_edge(picture, min_gradient, polarities, i) : std::nullopt;
     if (!next || next->support < kMinSupport) continue;
     if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
     const bool is_outer = maximum.semi_major > next->ellipse.semi_major;
@@ -43,15 +41,14 @@ void RingCorrector::correct(const ImageView& luma,
 
 // The closest partner among the detections; otherwise an edge on the picture that is too close or
 // too small to be detected by itself.
-std::optional<RefinedEllipse> RingCorrector::next_edge(const ImageView& luma,
+std::optional<RefinedEllipse> RingCorrector::next_edge(const Picture& picture,
                                                        double min_gradient,
                                                        std::span<const Polarity> polarities,
-                                                       const LensView& lens,
                                                        std::size_t i) const {
   const Ellipse& edge = maxima_[i];
   const Polarity other = opposite(polarities[i]);
   const auto look_at = [&](const Ellipse& guess) {
-    return refined_on_picture(luma, guess, other, min_gradient, kRefinementSamples, lens);
+    return refined_on_picture(picture, guess, other, min_gradient);
   };
   const Ellipse* closest = nullptr;
   for (std::size_t k = 0; k < maxima_.size(); ++k) {

@@ -8,7 +8,6 @@
 #include "core/edges/edge_refinement.hpp"
 #include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
-#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -22,17 +21,15 @@ class RingCorrector {
   /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
   /// @param polarities    Of the detections.
   /// Allocates only when the detections outnumber those of every earlier call.
-  void correct(const ImageView& luma,
+  void correct(const Picture& picture,
                double min_gradient,
                std::span<const Polarity> polarities,
-               const LensView& lens,
                std::span<Detection> detections);
 
  private:
-  [[nodiscard]] std::optional<RefinedEllipse> next_edge(const ImageView& luma,
+  [[nodiscard]] std::optional<RefinedEllipse> next_edge(const Picture& picture,
                                                         double min_gradient,
                                                         std::span<const Polarity> polarities,
-                                                        const LensView& lens,
                                                         std::size_t i) const;
 
   std::vector<Ellipse> maxima_;  // the detections before correction

@@ -306,8 +306,10 @@ void ContourDetector::try_parts(const Thresholds& thresholds) {
   }
 }
 
-std::span<const Detection> ContourDetector::detect(const ImageView& luma,
+std::span<const Detection> ContourDetector::detect(const Picture& picture,
                                                    const Thresholds& thresholds) {
+  const ImageView& luma = picture.luma;
+  lens_ = picture.lens;
   detections_.clear();
   if (luma.empty()) {
     if (trace_ != nullptr) trace_->clear();
@@ -325,12 +327,12 @@ std::span<const Detection> ContourDetector::detect(const ImageView& luma,
   return detections_;
 }
 
-std::optional<double> ContourDetector::log_odds_of(const ImageView& luma,
+std::optional<double> ContourDetector::log_odds_of(const Picture& picture,
                                                    const Ellipse& e,
                                                    const Thresholds& thresholds) {
-  const auto seen = distorted(lens_, e);
-  if (luma.empty() || !seen) return std::nullopt;
-  detect_edges(luma, thresholds);
+  const auto seen = distorted(picture.lens, e);
+  if (picture.luma.empty() || !seen) return std::nullopt;
+  detect_edges(picture.luma, thresholds);
   cv::dilate(edges_, thick_edges_, cv::Mat());
   const double overlap = perimeter_support(*seen, view_of(thick_edges_)).ellipse_overlap();
   return log_odds(overlap) - log_odds(thresholds.ellipse_overlap);

@@ -17,10 +17,10 @@ struct TracedPiece;
 /// Reuses its buffers between calls. OpenCV's edge and contour functions allocate internally.
 class ContourDetector final : public Detector {
  public:
-  [[nodiscard]] std::span<const Detection> detect(const ImageView& luma,
+  [[nodiscard]] std::span<const Detection> detect(const Picture& picture,
                                                   const Thresholds& thresholds) override;
   /// Log odds of EllipseOverlap minus those of its threshold.
-  [[nodiscard]] std::optional<double> log_odds_of(const ImageView& luma,
+  [[nodiscard]] std::optional<double> log_odds_of(const Picture& picture,
                                                   const Ellipse& e,
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
@@ -40,6 +40,7 @@ class ContourDetector final : public Detector {
   void try_parts(const Thresholds& thresholds);
   void trace_edges(const ImageView& luma);
 
+  LensView lens_;  // of the current picture
   cv::Mat smooth_;
   cv::Mat gradient_x_;
   cv::Mat gradient_y_;

@@ -38,12 +38,11 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        double min_contrast) {
   const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
   if (!predicted) return std::nullopt;
-  const auto edge = refined_on_picture(luma,
+  const auto edge = refined_on_picture({luma, view.lens},
                                        *predicted,
                                        polarity_of(circle.is_bright_outside),
                                        kGradientOfStep * min_contrast,
-                                       kSamples,
-                                       view.lens);
+                                       kSamples);
   if (!edge || edge->support < kMinSupport) return std::nullopt;
   return FittedEllipse{edge->ellipse, edge->uncertainty};
 }

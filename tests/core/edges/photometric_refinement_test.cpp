@@ -12,13 +12,13 @@
 #include "core/tracking/pad/pad_model.hpp"
 #include "tests/support/picture.hpp"
 
-using namespace ellipse;
+namespace ellipse {
+namespace {
+
 using support::bar_px;
 using support::Picture;
 using support::plain_ring;
 using support::rendered;
-
-namespace {
 
 constexpr double kContrast = 145.0;  // of plain_ring()
 
@@ -98,8 +98,6 @@ Errors errors_of(double radius, double blur_px, double noise) {
   errors.rms_px = std::sqrt(errors.rms_px);
   return errors;
 }
-
-}  // namespace
 
 TEST(PhotometricRefinement, ComesNearToTheCramerRaoBound) {
   for (const double radius : {12.0, 20.0, 40.0, 70.0}) {
@@ -214,3 +212,6 @@ TEST(OuterEdge, IsNotTakenFromAnotherEdgeFarAway) {
   const Eigen::Matrix3d far_off = image_from_pad(translated(truth, 30.0, 0.0));
   EXPECT_FALSE(refined_outer_edge(picture.view(), far_off, *model, 1.0, Refinement::kPhotometric));
 }
+
+}  // namespace
+}  // namespace ellipse

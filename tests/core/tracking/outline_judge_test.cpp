@@ -17,12 +17,12 @@ constexpr double kNever_s = std::numeric_limits<double>::infinity();
 // Returns the same odds for every outline.
 class CountingDetector final : public Detector {
  public:
-  std::span<const Detection> detect(const ImageView&, const Thresholds&) override { return {}; }
-  std::optional<double> log_odds_of(const ImageView& luma,
+  std::span<const Detection> detect(const Picture&, const Thresholds&) override { return {}; }
+  std::optional<double> log_odds_of(const Picture& picture,
                                     const Ellipse& e,
                                     const Thresholds&) override {
     ++calls;
-    size = {0, 0, luma.width, luma.height};
+    size = {0, 0, picture.luma.width, picture.luma.height};
     outline = e;
     return answer;
   }
