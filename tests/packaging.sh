@@ -8,7 +8,6 @@ build=$2
 version=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-shopt -s nullglob globstar
 faults=0
 fault() {
   echo "packaging.sh: $*" >&2
@@ -33,9 +32,9 @@ fi
 # Every file is in exactly one package, or said not to be in any.
 for list in "$debian"/*.install; do
   for pattern in $(patterns "$list"); do
-    files=$(find $pattern ! -type d 2> /dev/null) || true
-    [ -n "$files" ] || fault "$(basename "$list") lists $pattern, which is not installed"
-    echo "$files" >> packaged
+    find $pattern ! -type d > matched 2> /dev/null || true
+    [ -s matched ] || fault "$(basename "$list") lists $pattern, which is not installed"
+    cat matched >> packaged
   done
 done
 for pattern in $(patterns "$debian/not-installed"); do
