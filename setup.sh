@@ -4,11 +4,13 @@
 # prints the list and stops. Touches no network when everything is there.
 #   ./setup.sh                   all of it
 #   ./setup.sh --without-tests   only what building and running takes
+#   ./setup.sh --packaging       that, and what Debian packages are built with
 set -euo pipefail
 
 packages=(
   # build
   g++ meson ninja-build pkg-config
+  help2man  # the programs' manual pages
   dpkg-dev  # tells meson where Debian keeps libraries
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libopencv-dev libeigen3-dev
@@ -21,32 +23,33 @@ packages=(
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
+tests=(
+  libgtest-dev libbenchmark-dev
+  # what the metadata is sent through, and what carries the JSON lines
+  gstreamer1.0-plugins-bad gstreamer1.0-x
+  mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
+  locales  # numbers with a comma
+  valgrind gcovr clang clang-tidy codespell
+  abigail-tools  # compares libgstellipse-1.0 with its earlier version
+  python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
+  gi-docgen
+  python3-yaml  # reads what 06_ros_yaml.py writes
+  opencv-doc  # pictures: 96 MB to download, 281 MB on disk
+  chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
+)
+# For examples/mavlink and the page's tests. Where Node came from elsewhere it has its own npm, and
+# excludes Debian's.
+command -v npm > /dev/null || tests+=(nodejs npm)
+
 case "${1:-}" in
-  "" | --without-tests) ;;
+  "") packages+=("${tests[@]}") ;;
+  --without-tests) ;;
+  --packaging) packages+=(debhelper lintian) ;;
   *)
-    echo "usage: setup.sh [--without-tests]" >&2
+    echo "usage: setup.sh [--without-tests | --packaging]" >&2
     exit 2
     ;;
 esac
-if [ "${1:-}" != "--without-tests" ]; then
-  packages+=(
-    libgtest-dev libbenchmark-dev
-    # what the metadata is sent through, and what carries the JSON lines
-    gstreamer1.0-plugins-bad gstreamer1.0-x
-    mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
-    locales  # numbers with a comma
-    valgrind gcovr clang clang-tidy codespell
-    abigail-tools  # compares libgstellipse-1.0 with its earlier version
-    python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
-    gi-docgen
-    python3-yaml  # reads what 06_ros_yaml.py writes
-    opencv-doc  # pictures: 96 MB to download, 281 MB on disk
-    chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
-  )
-  # For examples/mavlink and the page's tests. Where Node came from elsewhere it has its own npm, and
-  # excludes Debian's.
-  command -v npm > /dev/null || packages+=(nodejs npm)
-fi
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   echo "setup.sh: this is no Debian system. Install what corresponds to:" >&2

@@ -60,7 +60,7 @@ ldd "$metadata" > "$work/loaded" || fail "libgstellipse-1.0 is not installed"
 ! grep -E 'opencv|libellipse|tbb|lapack' "$work/loaded" || fail "libgstellipse-1.0 loads more than it needs"
 nm -DC --defined-only "$metadata" > "$work/defined"
 grep -q gst_buffer_get_ellipse_meta "$work/defined" || fail "libgstellipse-1.0 has no metadata"
-! grep 'ellipse::' "$work/defined" || fail "libgstellipse-1.0 exports what libellipse has"
+! grep 'ellipse::' "$work/defined" || fail "libgstellipse-1.0 exports what libellipse-1.0 has"
 
 # The headers include nothing that is not installed, and nothing of the renderer of scenes.
 headers=$(find "$work/root" -type d -path '*/include/ellipse-1.0')
@@ -69,7 +69,7 @@ c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3) "$work/a
   fail "the installed headers do not compile by themselves"
 grep -q tracking/tracker.hpp "$work/all.cpp" || fail "the tracker's header is not installed"
 ! grep -q scene "$work/all.cpp" || fail "the renderer's headers are installed"
-library=$(find "$work/root" -name libellipse.so)
-nm -DC "$library" > "$work/symbols" || fail "libellipse is not installed"
-grep -q 'ellipse::Tracker::process' "$work/symbols" || fail "libellipse has no tracker"
-! grep -q SceneRenderer "$work/symbols" || fail "libellipse has the renderer"
+library=$(find "$work/root" -name libellipse-1.0.so)
+nm -DC "$library" > "$work/symbols" || fail "libellipse-1.0 is not installed"
+grep -q 'ellipse::Tracker::process' "$work/symbols" || fail "libellipse-1.0 has no tracker"
+! grep -q SceneRenderer "$work/symbols" || fail "libellipse-1.0 has the renderer"

@@ -62,15 +62,8 @@ base() {
   local root=$folder/$1
   [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase "$2" "$root" ${MIRROR:+"$MIRROR"}
   mkdir -p "$root/root/gst-ellipse"
-  project_files | tar -C "$project" --null -T - -c | tar -C "$root/root/gst-ellipse" -x
+  "$project/examples/packaging/list_files.sh" | tar -C "$project" --null -T - -c | tar -C "$root/root/gst-ellipse" -x
   echo "Debian $(cat "$root/etc/debian_version")"
-}
-
-# The files of the project, each closed by a 0 byte.
-project_files() {
-  if ! git -C "$project" ls-files -z --cached --others --exclude-standard 2> /dev/null; then
-    (cd "$project" && find . -path './build*' -prune -o -type f -print0)
-  fi
 }
 
 packages_work() {
