@@ -10,11 +10,11 @@
 #include <memory>
 #include <stdexcept>
 
-#include "examples/live/api.hpp"
-#include "examples/live/http_server.hpp"
+#include "examples/live/http/api.hpp"
+#include "examples/live/http/http_server.hpp"
+#include "examples/live/http/security.hpp"
 #include "examples/live/options.hpp"
-#include "examples/live/presets.hpp"
-#include "examples/live/security.hpp"
+#include "examples/live/pipeline/presets.hpp"
 #include "examples/live/session.hpp"
 
 namespace {

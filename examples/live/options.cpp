@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "examples/live/source_spec.hpp"
+#include "examples/live/pipeline/source_spec.hpp"
 
 namespace live {
 namespace {

@@ -4,15 +4,15 @@
 #include <optional>
 #include <string>
 
-#include "examples/live/frame_review.hpp"
-#include "examples/live/frame_store.hpp"
-#include "examples/live/line_feed.hpp"
-#include "examples/live/live_pipeline.hpp"
 #include "examples/live/options.hpp"
-#include "examples/live/properties.hpp"
-#include "examples/live/recorder.hpp"
-#include "examples/live/rtsp_output.hpp"
-#include "examples/live/video_feed.hpp"
+#include "examples/live/outputs/line_feed.hpp"
+#include "examples/live/outputs/recorder.hpp"
+#include "examples/live/outputs/rtsp_output.hpp"
+#include "examples/live/outputs/video_feed.hpp"
+#include "examples/live/pipeline/frame_review.hpp"
+#include "examples/live/pipeline/frame_store.hpp"
+#include "examples/live/pipeline/live_pipeline.hpp"
+#include "examples/live/pipeline/properties.hpp"
 
 namespace live {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "examples/live/frame_guard.hpp"
-#include "examples/live/rtsp_guard.hpp"
+#include "examples/live/http/frame_guard.hpp"
+#include "examples/live/outputs/rtsp_guard.hpp"
 
 namespace {
 

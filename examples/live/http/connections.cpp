@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/http/connections.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+#include <algorithm>
+
+namespace live {
+namespace {
+
+constexpr std::size_t kMost = 160;
+constexpr std::ptrdiff_t kMaxOfAddress = 40;
+constexpr guint kGlanceMs = 1000;
+constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // until all of a request has come
+constexpr guint kSilenceSeconds = 20;               // of who neither sends nor takes
+constexpr gint kUnheardMs = 30'000;                 // of who is no longer there
+
+std::string text_of(GSocketAddress* address) {
+  const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
+  return text.get();
+}
+
+}  // namespace
+
+Connections::Connections() : glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
+
+Connections::~Connections() {
+  g_source_remove(glance_);
+}
+
+bool Connections::admit(GSocketConnection* connection) {
+  GSocket* socket = g_socket_connection_get_socket(connection);
+  const Ref<GSocketAddress> remote(g_socket_get_remote_address(socket, nullptr));
+  if (!remote || !G_IS_INET_SOCKET_ADDRESS(remote.get())) return false;
+  GInetAddress* address = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(remote.get()));
+  const Ref<gchar> name(g_inet_address_to_string(address));
+  if (!has_room(address, name.get())) return false;
+  g_socket_set_timeout(socket, kSilenceSeconds);
+  g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
+  g_socket_set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kUnheardMs, nullptr);
+  const std::string client = text_of(remote.get());
+  (*open_)[client] = {share(socket), name.get(), g_get_monotonic_time() + kRequestUs};
+  g_object_weak_ref(G_OBJECT(connection), on_gone, new Gone{open_, client});
+  return true;
+}
+
+// Programs of this machine come from one address, and so does a tunnel.
+bool Connections::has_room(GInetAddress* address, const std::string& name) const {
+  if (open_->size() >= kMost) return false;
+  if (g_inet_address_get_is_loopback(address)) return true;
+  return std::count_if(open_->begin(), open_->end(), [&name](const auto& each) {
+           return each.second.address == name;
+         }) < kMaxOfAddress;
+}
+
+GSocket* Connections::keep(GSocketAddress* client) {
+  const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
+  if (found == open_->end()) return nullptr;
+  found->second.deadline_us = 0;
+  g_socket_set_timeout(found->second.socket.get(), kSilenceSeconds);
+  return found->second.socket.get();
+}
+
+void Connections::allow_silence(GSocketAddress* client) {
+  const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
+  if (found != open_->end()) g_socket_set_timeout(found->second.socket.get(), 0);
+}
+
+void Connections::on_gone(gpointer data, GObject* /*connection*/) {
+  const std::unique_ptr<Gone> gone(static_cast<Gone*>(data));
+  gone->open->erase(gone->client);
+}
+
+// Who sends a byte now and then is never silent. What is shut down reads its end, and goes.
+gboolean Connections::on_glance(gpointer data) {
+  const gint64 now_us = g_get_monotonic_time();
+  for (auto& [client, each] : *static_cast<Connections*>(data)->open_) {
+    if (each.deadline_us == 0 || now_us < each.deadline_us) continue;
+    g_socket_shutdown(each.socket.get(), TRUE, TRUE, nullptr);
+    each.deadline_us = 0;
+  }
+  return G_SOURCE_CONTINUE;
+}
+
+}  // namespace live

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "examples/live/outputs/line_feed.hpp"
+
+#include <utility>
+
+namespace live {
+namespace {
+
+constexpr guint kGlanceMs = 1000;
+constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
+constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
+constexpr std::size_t kLongestQueue = 30;  // a second of video
+constexpr int kBufferBytes = 32 * 1024;    // a hundred lines
+
+class SocketListener : public LineFeed::Listener {
+ public:
+  SocketListener(std::unique_ptr<WebSocket> socket, std::function<void()> on_closed)
+      : socket_(std::move(socket)) {
+    socket_->listen({{}, std::move(on_closed)});
+    socket_->limit_buffer(kBufferBytes);
+  }
+  bool send(const std::string& line) override {
+    if (!socket_->can_send()) return false;
+    socket_->send_text(line.c_str());
+    return true;
+  }
+  void end() override { socket_->close("too slow"); }
+
+ private:
+  std::unique_ptr<WebSocket> socket_;
+};
+
+// That a client has gone shows where something is written: where frames are long in coming, that is
+// a comment.
+class EventListener : public LineFeed::Listener {
+ public:
+  EventListener(SoupServerMessage* request,
+                std::function<void()> on_ready,
+                std::function<void()> on_closed)
+      : stream_(request, "text/event-stream") {
+    stream_.listen({std::move(on_ready), std::move(on_closed)});
+    stream_.limit_buffer(kBufferBytes);
+    write(": frames\n\n");
+  }
+  bool send(const std::string& line) override {
+    if (!stream_.is_ready()) return false;
+    write("data: " + line + "\n");
+    return true;
+  }
+  void take_glance() override {
+    if (stream_.is_ready() && g_get_monotonic_time() - written_us_ >= kQuietUs) write(": \n\n");
+  }
+  void end() override { stream_.end(); }
+
+ private:
+  void write(const std::string& text) {
+    stream_.write(text);
+    written_us_ = g_get_monotonic_time();
+  }
+
+  HttpStream stream_;
+  gint64 written_us_ = 0;
+};
+
+}  // namespace
+
+LineFeed::LineFeed() : glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
+
+LineFeed::~LineFeed() {
+  g_source_remove(glance_);
+}
+
+void LineFeed::add(std::unique_ptr<WebSocket> socket) {
+  auto& place = listeners_.emplace_back();
+  place =
+      std::make_unique<SocketListener>(std::move(socket), [this, &place] { remove(place.get()); });
+  greet(*place);
+}
+
+void LineFeed::add_events(SoupServerMessage* request) {
+  auto& place = listeners_.emplace_back();
+  place = std::make_unique<EventListener>(
+      request, [this, &place] { flush(*place); }, [this, &place] { remove(place.get()); });
+  greet(*place);
+}
+
+void LineFeed::greet(Listener& listener) {
+  if (last_.empty()) return;
+  listener.queue.push_back(last_);
+  flush(listener);
+}
+
+void LineFeed::remove(const Listener* listener) {
+  listeners_.remove_if([listener](const auto& each) { return each.get() == listener; });
+}
+
+void LineFeed::send(const std::vector<std::string>& lines) {
+  if (!lines.empty()) last_ = lines.back();
+  for (const auto& listener : listeners_) {
+    for (const std::string& line : lines) listener->queue.push_back(line);
+    for (; listener->queue.size() > kLongestQueue; ++lost_) listener->queue.pop_front();
+    flush(*listener);
+  }
+}
+
+void LineFeed::flush(Listener& listener) {
+  while (!listener.queue.empty() && listener.send(listener.queue.front())) {
+    listener.queue.pop_front();
+    listener.moved_us = g_get_monotonic_time();
+  }
+  if (listener.queue.empty()) listener.moved_us = g_get_monotonic_time();
+}
+
+gboolean LineFeed::on_glance(gpointer data) {
+  auto* self = static_cast<LineFeed*>(data);
+  for (const auto& listener : self->listeners_) {
+    self->flush(*listener);
+    if (listener->queue.empty()) listener->take_glance();
+    if (g_get_monotonic_time() - listener->moved_us > kPatienceUs) listener->end();
+  }
+  return G_SOURCE_CONTINUE;
+}
+
+}  // namespace live
