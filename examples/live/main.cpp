@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipse-live: runs the tracker on a machine without a screen, to be watched and tuned from a
-// browser. Read examples/live/README.md first.
+// ellipse-live: runs the tracker on a machine without a screen, controlled from a browser. See
+// examples/live/README.md.
 #include <glib-unix.h>
 #include <gst/gst.h>
 
@@ -26,8 +26,7 @@ gboolean on_signal(gpointer loop) {
   return G_SOURCE_CONTINUE;
 }
 
-// By Ctrl-C, by a service manager, or because its terminal is gone. nohup has SIGHUP ignored, and
-// so it stays.
+// Ends on Ctrl-C, SIGTERM, or when the terminal closes. SIGHUP stays ignored under nohup.
 void end_on_signals(GMainLoop* loop) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction now {};
@@ -58,11 +57,11 @@ void tell_addresses(const live::Options& options,
 int run(live::Options options) {
   options.token = token_for(options);
   const MainLoop loop(g_main_loop_new(nullptr, FALSE), g_main_loop_unref);
-  // Before the session: its streams end while there is somebody to end them.
+  // Created before the session, so that the session's streams are destroyed first.
   live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
   bool has_failed = false;
   live::Session session(options, [&] {
-    // Who changes the source while it runs sees what was wrong, and can choose another.
+    // A client that can change the source sees the error and can choose another one.
     if (session.pipeline().frames() > 0 || options.allows_source_change) return;
     has_failed = true;
     g_main_loop_quit(loop.get());

@@ -12,8 +12,7 @@
 namespace live {
 namespace {
 
-// It stands in a cookie, in a link and in the address of RTSP, where other characters mean
-// something.
+// The token is part of a cookie, a link and an RTSP URL, where other characters have a meaning.
 std::string is_token(const std::string& text) {
   const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '~' || c == '-';

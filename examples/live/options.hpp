@@ -4,25 +4,25 @@
 
 namespace live {
 
-/// What the command line asks for.
+/// The options of the command line.
 struct Options {
   std::string source = "test:approach";
-  std::string fps;  ///< Of a folder, for parse_rate(); empty = the usual one.
+  std::string fps;  ///< For a folder, see parse_rate(); empty = default.
   bool loops = false;
   unsigned port = 8080;
   std::string bind = "127.0.0.1";
   std::string token;
-  int rtsp_port = -1;  ///< -1 = none, 0 = one that is free.
-  std::string record;  ///< A file; empty = nothing is recorded.
+  int rtsp_port = -1;  ///< -1 = off, 0 = any free port.
+  std::string record;  ///< File; empty = no recording.
   std::string preset;
-  std::string labels;   ///< A folder; empty = nothing is labelled.
-  std::string cameras;  ///< A folder; empty = clients set no camera-file.
-  std::string page;     ///< A folder; empty = the page that is built in.
-  int quality = 80;     ///< Of the JPEGs, 1 to 100.
+  std::string labels;   ///< Folder; empty = no labelling.
+  std::string cameras;  ///< Folder; empty = clients cannot set camera-file.
+  std::string page;     ///< Folder; empty = the compiled page.
+  int quality = 80;     ///< JPEG quality, 1 to 100.
   bool allows_source_change = false;
 };
 
-/// Ends the program with its help, or with what is wrong with the command line.
+/// Parses the command line. Prints help or an error and exits the program where necessary.
 [[nodiscard]] Options parse_options(int argc, char** argv);
 
 }  // namespace live

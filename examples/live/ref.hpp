@@ -6,7 +6,7 @@
 
 namespace live {
 
-/// Gives back what GLib, GStreamer or libsoup handed out.
+/// Releases objects of GLib, GStreamer and libsoup.
 struct Release {
   void operator()(GstSample* sample) const { gst_sample_unref(sample); }
   void operator()(GstBuffer* buffer) const { gst_buffer_unref(buffer); }
@@ -23,11 +23,11 @@ struct Release {
   }
 };
 
-/// One reference that is given back at the end.
+/// Owns one reference.
 template <class T>
 using Ref = std::unique_ptr<T, Release>;
 
-/// One more reference to a GObject.
+/// Takes another reference to a GObject.
 template <class T>
 [[nodiscard]] Ref<T> share(T* object) {
   return Ref<T>(static_cast<T*>(g_object_ref(object)));

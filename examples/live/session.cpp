@@ -41,7 +41,7 @@ void Session::open(const std::string& source, const std::string& fps) {
   SourceSpec spec =
       parse_source(source, fps.empty() ? std::nullopt : std::optional(parse_rate(fps)));
   pipeline_.close();
-  store_.clear();  // what is held, analysed or labelled from now on is of the new one
+  store_.clear();  // the old source's frame can no longer be held, analysed or labelled
   pipeline_.open(std::move(spec), loops_);
 }
 
@@ -81,7 +81,7 @@ void Session::review() {
   if (const FramePtr frame = store_.newest()) review_.begin(frame, properties_);
 }
 
-// RTSP shows what a live source sends meanwhile. A recording has each picture once.
+// For a live source, RTSP continues to show the stream. A recording contains each picture once.
 void Session::on_review(const FramePtr& before, FramePtr after) {
   const bool is_shown = after && store_.replace(before, after);
   if (is_shown && rtsp_ && !pipeline_.source().is_live) rtsp_->put(after);

@@ -16,27 +16,28 @@
 
 namespace live {
 
-/// A pipeline and all who look at it. Frames go from the pipeline to the store, to RTSP and to the
-/// recording in its own thread; everything else happens in the main loop.
+/// Connects a pipeline to its outputs. The streaming thread passes frames to the store, RTSP and
+/// the recording; everything else runs in the main loop.
 class Session {
  public:
-  /// @param on_failure  The source cannot be used; called in the main loop.
-  /// Throws std::runtime_error where what was asked for cannot be set up.
+  /// @param on_failure  Called in the main loop when the source failed for good.
+  /// Throws std::runtime_error if the pipeline, RTSP or the recording cannot be set up.
   Session(const Options& options, std::function<void()> on_failure);
 
-  /// Plays another source. Throws std::invalid_argument where it is none.
-  /// @param fps  Of a folder, for parse_rate(); empty = the usual one.
+  /// Replaces the source. Throws std::invalid_argument if it is invalid.
+  /// @param fps  For a folder, see parse_rate(); empty = default.
   void open(const std::string& source, const std::string& fps);
 
-  /* A file is paused itself. A live source goes on, and the view of it is held. */
+  /* These pause a file. A live source continues; only the view of it is held. */
   void play();
   void pause();
   void step();
-  /// [ns]. @return false where the source cannot be sought.
+  /// @param position  [ns]
+  /// @return false if the source cannot seek.
   bool seek(GstClockTime position);
   [[nodiscard]] bool is_playing() const;
-  /// To be called when settings have changed: a frame that stands still is analysed again with
-  /// them, as a seek to it would, and is shown in the place of the old one.
+  /// Call after settings have changed. Analyses a paused or held frame again with them and replaces
+  /// it.
   void review();
 
   [[nodiscard]] FrameStore& store() { return store_; }
@@ -57,10 +58,10 @@ class Session {
   LineFeed lines_;
   std::optional<RtspOutput> rtsp_;
   std::optional<Recorder> recorder_;
-  LivePipeline pipeline_;  // last of those who get frames: it stops before they are gone
+  LivePipeline pipeline_;  // the last consumer: stops before the others are destroyed
   Properties properties_;
   FrameReview review_;
-  bool reviews_again_ = false;  // settings have changed since the review began
+  bool reviews_again_ = false;  // settings changed during the review
 };
 
 }  // namespace live

@@ -17,7 +17,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxCandidates = 2000;  // some hundred bytes each
+constexpr std::size_t kMaxCandidates = 2000;  // a few hundred bytes of JSON each
 
 bool is_found(const ellipse::TracedCandidate& candidate) {
   return candidate.verdict.is_accepted() ||
@@ -88,7 +88,7 @@ void write_candidate(JsonWriter& json, const ellipse::TracedCandidate& candidate
   json.end_object();
 }
 
-// What was found comes first: it is never among those that are too many to be told of.
+// Found ellipses come first, so truncation never drops them.
 void write_candidates(JsonWriter& json, const ellipse::DetectionTrace& trace) {
   std::vector<const ellipse::TracedCandidate*> candidates;
   for (const auto& candidate : trace.candidates()) candidates.push_back(&candidate);
@@ -119,7 +119,7 @@ void write_candidates(JsonWriter& json, const ellipse::DetectionTrace& trace) {
   json.end_object();
 }
 
-// As a data URL; null where there is nothing to draw.
+// Writes the picture as a data URL, or null if no pass was traced.
 void write_picture(JsonWriter& json, const ellipse::DetectionTrace& trace, ellipse::Stage stage) {
   json.key("picture");
   if (trace.passes().empty()) {
@@ -148,7 +148,7 @@ std::string analysis_json(const AnalysisRequest& request) {
   ellipse::TrackerSettings settings = request.settings;
   settings.tracking = ellipse::TrackingMode::kNone;
 
-  // Once for the time that it takes, once for what it does meanwhile.
+  // The first run is timed. The second one records the trace, which takes time itself.
   const gint64 start_us = g_get_monotonic_time();
   (void)ellipse::Tracker(settings).process(view, 0);
   const gint64 time_us = g_get_monotonic_time() - start_us;

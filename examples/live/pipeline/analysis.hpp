@@ -9,17 +9,18 @@
 
 namespace live {
 
-/// One frame that is to be looked at apart from the pipeline.
+/// A frame to analyse outside the pipeline.
 struct AnalysisRequest {
   FramePtr frame;
   ellipse::TrackerSettings settings;
-  std::optional<ellipse::Stage> stage = {};  ///< Whose picture is wanted.
+  std::optional<ellipse::Stage> stage = {};  ///< Stage to draw; none = no picture.
 };
 
-/// Detects in the whole frame, as if nothing were known of the target, and tells what was found,
-/// what was refused, and why: a JSON object, see docs/live.md. Any thread.
+/// Runs the detector on the whole frame, without prior knowledge of the target. Returns a JSON
+/// object with the passes and all candidates, accepted or rejected, with the reasons; docs/live.md
+/// describes it. Thread-safe.
 ///
-/// Throws std::runtime_error where the frame cannot be read.
+/// Throws std::runtime_error if the frame cannot be mapped.
 [[nodiscard]] std::string analysis_json(const AnalysisRequest& request);
 
 }  // namespace live

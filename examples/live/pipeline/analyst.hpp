@@ -12,11 +12,11 @@
 
 namespace live {
 
-/// A thread of its own for analyses, one after the other, so that neither the pipeline nor the
-/// viewers wait for them.
+/// Runs analyses one after the other in its own thread, so that they block neither the pipeline nor
+/// the viewers.
 class Analyst {
  public:
-  /// Called in the main loop: the JSON, or what went wrong.
+  /// Called in the main loop. On success `error` is empty.
   using Answer = std::function<void(const std::string& json, const std::string& error)>;
 
   Analyst();
@@ -24,7 +24,7 @@ class Analyst {
   Analyst(const Analyst&) = delete;
   Analyst& operator=(const Analyst&) = delete;
 
-  /// @return false where too many wait already. For the main loop's thread.
+  /// Main loop only. @return false if too many requests are waiting.
   [[nodiscard]] bool ask(AnalysisRequest request, Answer answer);
 
  private:

@@ -23,7 +23,7 @@ std::string CameraFolder::path_of(const std::string& name) const {
   const bool is_inside =
       !error && std::mismatch(folder_.begin(), folder_.end(), path.begin(), path.end()).first ==
                     folder_.end();
-  // A pipe would not let go of who opens it.
+  // Opening a FIFO would block.
   if (!is_inside || !fs::is_regular_file(path, error)) {
     throw std::invalid_argument("camera-file: no such file in the folder of --cameras");
   }

@@ -5,17 +5,19 @@
 
 namespace live {
 
-/// The calibrations that clients may have read: those in one folder, or none.
+/// The folder of camera calibrations that clients may select from. Without one, they may select
+/// none.
 class CameraFolder {
  public:
-  /// @param folder  Empty = none. Throws std::filesystem::filesystem_error where there is no such.
+  /// @param folder  Empty = none. Throws std::filesystem::filesystem_error if it does not exist.
   explicit CameraFolder(const std::filesystem::path& folder);
 
   [[nodiscard]] bool is_open() const { return !folder_.empty(); }
 
-  /// @param name  Of a file, by itself or with its path.
-  /// @return Its path without links. Throws std::invalid_argument where it is not in the folder,
-  /// whatever is there, and where it is no calibration. Reads at most 1 MB.
+  /// @param name  A file name in the folder, or a path to a file in it.
+  /// @return The canonical path. Throws std::invalid_argument if the file is not in the folder or
+  /// is not a calibration. The message does not reveal whether a file outside exists. Reads at most
+  /// 1 MB.
   [[nodiscard]] std::string path_of(const std::string& name) const;
 
  private:

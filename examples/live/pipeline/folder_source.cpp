@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// So that an extension finds its pictures whatever their names: 000001.png, 000002.png ...
-// Not from 0: imagesequencesrc 1.22 does not stop behind a stop-index of 0.
+// Temporary folder of links named 000001.png, 000002.png ..., for imagesequencesrc. Numbers start
+// at 1 because imagesequencesrc 1.22 does not stop at stop-index 0.
 class NumberedFolder {
  public:
   NumberedFolder() {
@@ -48,7 +48,8 @@ class NumberedFolder {
   fs::path path_;
 };
 
-// The pictures of the kind that most of them are, in the order of their names, 9 before 10.
+// The pictures of the more frequent type (.png or .jpg), in natural order of their names: 9 before
+// 10.
 std::vector<fs::path> pictures_in(const std::string& text) {
   std::map<std::string, std::vector<fs::path>> by_extension;
   for (const fs::directory_entry& entry : fs::directory_iterator(text)) {
@@ -72,10 +73,10 @@ std::vector<fs::path> pictures_in(const std::string& text) {
   return pictures;
 }
 
-/* As imagesequencesrc reads them */
+/* Patterns for imagesequencesrc */
 
 struct Numbered {
-  std::string pattern;  // a path with one %d or %06d in it
+  std::string pattern;  // path with one %d or %06d
   std::size_t first = 1;
 };
 
@@ -92,7 +93,7 @@ std::string with_percents(const std::string& text) {
   return result;
 }
 
-// The digits that end last in a name, as [begin, end).
+// The last run of digits in the name, as [begin, end).
 std::pair<std::size_t, std::size_t> number_in(const std::string& name) {
   std::size_t end = name.size();
   while (end > 0 && std::isdigit(static_cast<unsigned char>(name[end - 1])) == 0) --end;
@@ -101,7 +102,7 @@ std::pair<std::size_t, std::size_t> number_in(const std::string& name) {
   return {begin, end};
 }
 
-// Whether names are the first one with another number each, one after the other.
+// Whether the names differ only in their number, and the numbers are consecutive.
 bool are_numbered(const std::vector<fs::path>& pictures, std::size_t first, int digits) {
   const std::string name = pictures.front().filename();
   const auto [begin, end] = number_in(name);
@@ -115,14 +116,14 @@ bool are_numbered(const std::vector<fs::path>& pictures, std::size_t first, int 
   return true;
 }
 
-// The pattern of the names themselves; nullopt where they have none that imagesequencesrc reads.
+// The pattern of the file names; nullopt if imagesequencesrc cannot read them by a pattern.
 std::optional<Numbered> pattern_of(const std::vector<fs::path>& pictures) {
   constexpr std::size_t kMaxDigits = 9;
   const std::string name = pictures.front().filename();
   const auto [begin, end] = number_in(name);
   if (begin == end || end - begin > kMaxDigits) return std::nullopt;
   const std::size_t first = std::stoul(name.substr(begin, end - begin));
-  const bool stops = first + pictures.size() > 1;  // 1.22 does not, behind a stop-index of 0
+  const bool stops = first + pictures.size() > 1;  // see NumberedFolder
   for (const int digits : {1, static_cast<int>(end - begin)}) {
     if (!stops || !are_numbered(pictures, first, digits)) continue;
     const std::string number = digits == 1 ? "%d" : "%0" + std::to_string(digits) + "d";
@@ -134,7 +135,7 @@ std::optional<Numbered> pattern_of(const std::vector<fs::path>& pictures) {
   return std::nullopt;
 }
 
-// Commands that link the pictures under numbers in a new folder, and go there.
+// Shell commands that create links with numbered names in a temporary folder and change to it.
 std::string linking(const fs::path& folder, bool is_png) {
   const Ref<gchar> where(g_shell_quote(fs::absolute(folder).lexically_normal().c_str()));
   const std::string names = is_png ? "-iname '*.png'" : "'(' -iname '*.jpg' -o -iname '*.jpeg' ')'";

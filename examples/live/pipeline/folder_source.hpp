@@ -6,11 +6,12 @@
 
 namespace live {
 
-/// A folder of .png or .jpg: those of the kind that most of them are, in the order of their names,
-/// 9 before 10. Its gst-launch line names the pictures themselves where their names are numbered,
-/// and links them under numbers in a new temporary folder otherwise.
+/// Makes a source of the .png or .jpg pictures in a folder. If both types exist, the more frequent
+/// one is used. Pictures are in natural order of their names: 9 before 10. The gst-launch line
+/// names the files themselves if their names are numbered; otherwise it links them under numbers in
+/// a temporary folder.
 ///
-/// Throws std::invalid_argument where there is no picture.
+/// Throws std::invalid_argument if the folder has no picture.
 [[nodiscard]] SourceSpec folder_source(const std::string& text, FrameRate rate);
 
 }  // namespace live

@@ -7,26 +7,25 @@
 
 namespace live {
 
-/// One analysed frame, never changed after it was made: any thread may read it.
+/// One analysed frame. Immutable after construction, so any thread may read it.
 struct Frame {
-  Ref<GstSample> sample;  ///< Its pixels, caps and metadata.
-  Ref<GstBuffer> input;   ///< As it came to the tracker: without its metadata and its drawing.
-  guint64 number = 0;     ///< Its own: another analysis of the same picture is another frame.
-  guint64 index = 0;      ///< Counts the pictures of this run of the program, from 0.
-  GstClockTime pts = 0;   ///< [ns] What viewers know it by.
-  gint64 arrived_us = 0;  ///< When the source handed it over, of the monotonic clock.
+  Ref<GstSample> sample;  ///< Pixels, caps and metadata.
+  Ref<GstBuffer> input;   ///< The tracker's input buffer, without its metadata and overlay.
+  guint64 number = 0;     ///< Unique. A second analysis of the same picture has another number.
+  guint64 index = 0;      ///< Of the picture, from 0. All analyses of a picture share it.
+  GstClockTime pts = 0;   ///< [ns] Identifies the frame to viewers.
+  gint64 arrived_us = 0;  ///< Monotonic time at the tracker's input.
   int width = 0;          ///< [px]
   int height = 0;         ///< [px]
-  double rate = 0.0;      ///< Frames per second that the caps promise; 0 = they do not.
-  std::string line;       ///< The JSON line of its ellipses, with the newline.
+  double rate = 0.0;      ///< Frame rate in the caps [1/s]; 0 = unknown.
+  std::string line;       ///< JSON line of the ellipses, with the newline.
 };
 
 using FramePtr = std::shared_ptr<const Frame>;
 
-/// Makes a frame of what a tracker has handed on. Any thread.
-/// @param theirs  Copied: appsink 1.22 writes on its own sample after a flush without asking who
-///                else holds it.
-/// @return null where it is no video.
+/// Makes a frame from the tracker's output. Thread-safe.
+/// @param sample  Copied, because appsink 1.22 overwrites its own sample after a flush.
+/// @return nullptr if the sample is not video.
 [[nodiscard]] FramePtr make_frame(GstSample* theirs,
                                   Ref<GstBuffer> input,
                                   guint64 index,

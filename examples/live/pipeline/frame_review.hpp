@@ -11,13 +11,13 @@
 
 namespace live {
 
-/// Analyses a frame that is shown once more, apart from the pipeline: a tracker of its own, with
-/// the settings of now, to which it is the first frame. So a changed setting shows on a picture
-/// that stands still. One at a time, in a thread of its own. For the main loop's thread.
+/// Analyses a frame again outside the pipeline, with a new tracker that has the current settings.
+/// The frame is that tracker's first one. This shows the effect of a changed setting on a paused
+/// picture. Handles one frame at a time. Main loop only; the analysis runs in its own thread.
 class FrameReview {
  public:
-  /// @param before  The frame that was to be analysed.
-  /// @param after   The same picture; null where it could not be analysed.
+  /// @param before  The frame passed to begin().
+  /// @param after   The new analysis of the same picture; nullptr if it failed.
   using Answer = std::function<void(const FramePtr& before, FramePtr after)>;
 
   explicit FrameReview(Answer answer);
@@ -25,7 +25,7 @@ class FrameReview {
   FrameReview(const FrameReview&) = delete;
   FrameReview& operator=(const FrameReview&) = delete;
 
-  /// Only while not busy.
+  /// Requires !is_busy().
   void begin(const FramePtr& frame, const Properties& properties);
   [[nodiscard]] bool is_busy() const { return frame_ != nullptr; }
 
@@ -36,7 +36,7 @@ class FrameReview {
   void stop();
 
   Answer answer_;
-  FramePtr frame_;  // that is being analysed
+  FramePtr frame_;  // being analysed; null = idle
   GstElement* pipeline_ = nullptr;
   guint bus_watch_ = 0;
   Wakeup wakeup_;

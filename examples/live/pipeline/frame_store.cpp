@@ -10,7 +10,7 @@ namespace live {
 FrameStore::FrameStore(std::function<void()> on_change) : wakeup_(std::move(on_change)) {}
 
 void FrameStore::put(FramePtr frame) {
-  FramePtr old;  // given back outside the lock
+  FramePtr old;  // released after the lock
   {
     const std::lock_guard lock(mutex_);
     if (is_held_ && steps_ == 0 && newest_) return;
@@ -31,7 +31,7 @@ bool FrameStore::replace(const FramePtr& before, FramePtr after) {
   return true;
 }
 
-// With the lock held. @return The one that was the newest.
+// Requires the lock. @return The previous newest frame.
 FramePtr FrameStore::take(FramePtr frame) {
   if (lines_.size() == kMaxLines) lines_.pop_front();
   lines_.push_back(frame->line);
@@ -63,7 +63,7 @@ void FrameStore::release() {
 }
 
 void FrameStore::clear() {
-  FramePtr old;  // given back after the lock
+  FramePtr old;  // released after the lock
   const std::lock_guard lock(mutex_);
   is_held_ = false;
   old = std::move(newest_);

@@ -11,34 +11,34 @@
 
 namespace live {
 
-/// Where the pipeline leaves its frames for those who look at them: the newest frame, and the JSON
-/// lines that were not taken yet. Bounded; whoever does not fetch in time misses the oldest.
+/// Passes frames from the pipeline to the main loop: the newest frame, and the JSON lines that have
+/// not been fetched. Bounded: the oldest lines are dropped.
 ///
-/// The view can be held: then the newest frame stays what it is, while the pipeline runs on.
+/// While the view is held, the newest frame does not change and the pipeline continues.
 class FrameStore {
  public:
-  /// @param on_change  Called in the main loop after one or more frames have come.
+  /// @param on_change  Called in the main loop after new frames. Several frames may share one call.
   explicit FrameStore(std::function<void()> on_change);
 
-  /// Any thread; waits for nothing but a short lock.
+  /// Thread-safe; blocks only for a short lock.
   void put(FramePtr frame);
 
-  /// Puts another analysis of the same picture in the place of the newest frame, where that is
-  /// still `before`. @return false where it is not. Any thread.
+  /// Replaces the newest frame by another analysis of the same picture. Thread-safe. @return false
+  /// if the newest frame is no longer `before`.
   bool replace(const FramePtr& before, FramePtr after);
 
-  /// The newest frame, null before the first one. Any thread.
+  /// The newest frame; nullptr before the first one. Thread-safe.
   [[nodiscard]] FramePtr newest() const;
 
-  /// The lines since the last call, oldest first. Any thread.
+  /// The lines since the last call, oldest first. Thread-safe.
   [[nodiscard]] std::vector<std::string> take_lines();
 
-  /// Before the first frame, that one is still let through.
+  /// Holds the view. If there is no frame yet, the first one is still accepted.
   void hold();
   void release();
-  /// As before the first frame.
+  /// Discards the newest frame and releases the view.
   void clear();
-  /// Lets one more frame through while the view is held.
+  /// Accepts one more frame while the view is held.
   void step();
   [[nodiscard]] bool is_held() const;
 

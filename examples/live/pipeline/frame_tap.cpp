@@ -7,7 +7,7 @@ namespace live {
 
 FrameTap::FrameTap(GstElement* tracker, GstAppSink* sink, FrameSink on_frame)
     : on_frame_(std::move(on_frame)) {
-  // One buffer at most waits here, and only while on_sample() takes it.
+  // The queue holds at most one buffer, which on_sample() takes at once.
   g_object_set(sink, "max-buffers", 1, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
   GstAppSinkCallbacks callbacks{};
   callbacks.new_sample = on_sample;
@@ -17,7 +17,7 @@ FrameTap::FrameTap(GstElement* tracker, GstAppSink* sink, FrameSink on_frame)
   gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, on_arrival, this, nullptr);
 }
 
-// No queue lies between the tracker and the sink: what arrives is what the sink gets next.
+// There is no queue between tracker and sink, so this buffer is the sink's next one.
 GstPadProbeReturn FrameTap::on_arrival(GstPad* /*pad*/, GstPadProbeInfo* info, gpointer data) {
   auto* self = static_cast<FrameTap*>(data);
   self->arrived_us_ = g_get_monotonic_time();
@@ -40,7 +40,7 @@ GstFlowReturn FrameTap::on_preroll(GstAppSink* sink, gpointer data) {
 }
 
 void FrameTap::take(GstSample* sample) {
-  // What was shown when paused comes once more when it plays on.
+  // The sink delivers a prerolled buffer again when playback resumes.
   if (last_ && gst_sample_get_buffer(last_->sample.get()) == gst_sample_get_buffer(sample)) return;
   FramePtr frame = make_frame(sample, std::move(input_), frames_, arrived_us_);
   if (!frame) return;

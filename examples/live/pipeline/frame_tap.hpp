@@ -10,22 +10,22 @@
 
 namespace live {
 
-/// Makes a Frame of each buffer that leaves the tracker. In the streaming thread, but for its
-/// making.
+/// Makes a Frame of each buffer that leaves the tracker, in the streaming thread. Constructed and
+/// destroyed in the main loop.
 class FrameTap {
  public:
   using FrameSink = std::function<void(FramePtr)>;
 
-  /// Both elements are borrowed, and must have stopped before this goes away.
-  /// @param on_frame  In the streaming thread: must not wait.
+  /// Borrows both elements; they must be stopped before the destructor runs.
+  /// @param on_frame  Called in the streaming thread; must not block.
   FrameTap(GstElement* tracker, GstAppSink* sink, FrameSink on_frame);
   FrameTap(const FrameTap&) = delete;
   FrameTap& operator=(const FrameTap&) = delete;
 
-  /// How many there were. Any thread.
+  /// Number of frames. Thread-safe.
   [[nodiscard]] guint64 frames() const { return frames_; }
-  /// How often the sink has shown one while it played; what was shown in a pause comes again. Any
-  /// thread.
+  /// Number of buffers rendered while playing. A buffer that was prerolled in a pause counts when
+  /// playback resumes. Thread-safe.
   [[nodiscard]] guint64 rendered() const { return rendered_; }
 
  private:
@@ -38,7 +38,7 @@ class FrameTap {
   std::atomic<guint64> frames_{0};
   std::atomic<guint64> rendered_{0};
   FramePtr last_;
-  Ref<GstBuffer> input_;  // of the frame that is being analysed
+  Ref<GstBuffer> input_;  // input buffer of the frame in the tracker
   gint64 arrived_us_ = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace live {
 namespace {
 
-// So that a shell takes each word as it is.
+// Quotes each word for the shell where necessary.
 std::string for_shell(const std::string& description) {
   std::istringstream words(description);
   std::string line;
@@ -34,7 +34,7 @@ std::string launch_line(const SourceSpec& source, const Properties& properties) 
       "gst-launch-1.0 " +
       for_shell(video + " ! videoconvert ! ellipsetrack" + properties.launch_settings() +
                 " ! ellipseoverlay ! videoconvert ! autovideosink");
-  // In a shell of its own, whose folder may change.
+  // In a subshell, because the preparation changes the working directory.
   return source.preparation.empty() ? line + "\n"
                                     : "(" + source.preparation + " && " + line + ")\n";
 }

@@ -7,7 +7,7 @@
 
 namespace live {
 
-/// A command for a shell that runs the same source and the same settings, and shows the result on a
+/// A shell command that runs the same source with the same settings and shows the result on the
 /// screen.
 [[nodiscard]] std::string launch_line(const SourceSpec& source, const Properties& properties);
 

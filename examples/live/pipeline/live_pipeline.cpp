@@ -10,8 +10,8 @@ namespace live {
 namespace {
 
 constexpr guint kGlanceMs = 1000;
-// Glances without a frame, after which a live source has dropped: one that has to connect, or to
-// wait for a key frame, and one that has begun.
+// Ticks without a frame until a live source counts as dropped. The first frame takes longer: the
+// source has to connect and wait for a key frame.
 constexpr guint kFirstPatience = 15;
 constexpr guint kPatience = 5;
 constexpr guint kLookMs = 2;
@@ -25,7 +25,7 @@ GstElement* add(GstElement* pipeline, const char* factory) {
   return element;
 }
 
-// What went wrong; of a missing decoder also which.
+// The error text, with the name of a missing decoder if any.
 std::string error_of(GstMessage* message) {
   GError* error = nullptr;
   gchar* details = nullptr;
@@ -38,7 +38,7 @@ std::string error_of(GstMessage* message) {
                             : text;
 }
 
-// A bin with one pad, of raw video. The pad is there before a decoder knows its own.
+// A bin with one raw-video source pad. The pad exists before a decoder has created its own.
 GstElement* source_bin(const std::string& description) {
   GError* problem = nullptr;
   GstElement* bin = gst_parse_bin_from_description_full(
@@ -100,7 +100,7 @@ LivePipeline::~LivePipeline() {
   gst_object_unref(pipeline_);
 }
 
-/* The source, in the main loop */
+/* Opening and playing the source, in the main loop */
 
 void LivePipeline::close() {
   cancel_retry();
@@ -129,13 +129,13 @@ void LivePipeline::start(GstState wanted) {
   }
   gst_bin_add(GST_BIN(pipeline_), source_);
   gst_element_link(source_, tracker_);
-  // A file is shown at its own pace; of a camera the newest frame is wanted at once.
+  // Files play in real time. Cameras deliver the newest frame without waiting for its time.
   const GstStateChangeReturn paused = gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   if (paused == GST_STATE_CHANGE_NO_PREROLL) spec_.is_live = true;
   g_object_set(sink_, "sync", spec_.is_live ? FALSE : TRUE, nullptr);
   if (paused == GST_STATE_CHANGE_FAILURE) return;
   state_ = wanted == GST_STATE_PLAYING ? PlayState::kPlaying : PlayState::kPausing;
-  // One in a network waits for a frame that comes only when it plays.
+  // A live source delivers its first frame only in PLAYING.
   if (spec_.is_live) gst_element_set_state(pipeline_, GST_STATE_PLAYING);
   settle();
 }
@@ -143,7 +143,7 @@ void LivePipeline::start(GstState wanted) {
 void LivePipeline::stop() {
   gst_element_set_state(pipeline_, GST_STATE_NULL);
   const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
-  gst_bus_set_flushing(bus.get(), TRUE);  // what the old source still had to say
+  gst_bus_set_flushing(bus.get(), TRUE);  // drop messages of the old source
   gst_bus_set_flushing(bus.get(), FALSE);
   if (source_ == nullptr) return;
   gst_element_unlink(source_, tracker_);
@@ -170,9 +170,9 @@ void LivePipeline::hold_still() {
   settle();
 }
 
-// Goes on to what is wanted, by steps, each from where all elements have arrived. GStreamer 1.22
-// may stay between two states for good where it is sent back on its way to play; and a sink that is
-// to pause before it has gone on from its last pause plays on.
+// Advances towards the requested state, one transition at a time, each after the previous one is
+// complete. GStreamer 1.22 can hang between two states if it is reversed during a transition to
+// PLAYING, and a sink paused before it has resumed from its last pause continues to play.
 void LivePipeline::settle() {
   GstState now = GST_STATE_VOID_PENDING;
   if (state_ != PlayState::kPlaying && state_ != PlayState::kPausing) return;
@@ -187,7 +187,7 @@ void LivePipeline::settle() {
   }
 }
 
-// A sink that is paused waits for one more frame, and shows it.
+// A paused sink waits for one more frame and renders it.
 void LivePipeline::halt() {
   if (tap_.rendered() == rendered_before_ && !is_at_end()) {
     if (look_ == 0) look_ = g_timeout_add(kLookMs, on_look, this);
@@ -206,7 +206,7 @@ gboolean LivePipeline::on_look(gpointer data) {
 
 void LivePipeline::stand_still() {
   state_ = PlayState::kPaused;
-  // A sink that is paused tells nobody of the end that it was stepped to, or sought behind.
+  // A paused sink does not post EOS when a step or seek reaches the end.
   if (std::exchange(is_moving_, false) && is_at_end() && tap_.frames() == frames_before_) {
     end_of_stream();
   } else if (steps_ > 0) {
@@ -233,7 +233,7 @@ bool LivePipeline::is_at_end() const {
   return gst_app_sink_is_eos(GST_APP_SINK(sink_)) != FALSE;
 }
 
-// It stands still at the first frame.
+// Stays paused at the first frame.
 void LivePipeline::rewind() {
   frames_at_rewind_ = tap_.frames();
   if (seek(0)) return;
@@ -243,7 +243,7 @@ void LivePipeline::rewind() {
 
 bool LivePipeline::seek(GstClockTime position) {
   if (!is_seekable()) return false;
-  // Behind the last frame there is none to be shown.
+  // There is no frame at or after the duration.
   const GstClockTime length = duration();
   if (GST_CLOCK_TIME_IS_VALID(length) && length > 0) position = std::min(position, length - 1);
   is_moving_ = true;
@@ -283,7 +283,7 @@ GstClockTime LivePipeline::duration() const {
   return is_known ? static_cast<GstClockTime>(duration) : GST_CLOCK_TIME_NONE;
 }
 
-/* What becomes of it */
+/* Bus messages and reconnection */
 
 gboolean LivePipeline::on_message(GstBus* /*bus*/, GstMessage* message, gpointer data) {
   auto* self = static_cast<LivePipeline*>(data);
@@ -314,7 +314,7 @@ void LivePipeline::end_of_stream() {
   }
   const bool was_playing = state_ == PlayState::kPlaying;
   state_ = PlayState::kEnded;
-  // It stands still: when it is sought, one frame comes, and not those that follow it.
+  // Paused at the end, so that a later seek shows one frame and does not play on.
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   const bool has_frames = tap_.frames() != frames_at_rewind_;
   if (!loops_ || !has_frames) return;
@@ -326,7 +326,7 @@ void LivePipeline::source_dropped(const std::string& why) {
   const bool is_news = why != trouble_;
   trouble_ = why;
   stop();
-  glanced_frames_ = tap_.frames();  // what had come before does not say that it is back
+  glanced_frames_ = tap_.frames();  // earlier frames do not count as recovery
   if (!spec_.is_live) {
     state_ = PlayState::kFailed;
     handlers_.on_trouble(trouble_);
@@ -359,7 +359,7 @@ gboolean LivePipeline::on_glance(gpointer data) {
   return G_SOURCE_CONTINUE;
 }
 
-// A network camera may fall silent without a word.
+// A network camera can stop sending without an error.
 void LivePipeline::watch_arrivals() {
   const guint64 frames = tap_.frames();
   const bool has_arrived = frames != std::exchange(glanced_frames_, frames);

@@ -15,40 +15,39 @@ enum class PlayState { kStarting, kPlaying, kPausing, kPaused, kEnded, kReconnec
 
 [[nodiscard]] const char* nick_of(PlayState state);
 
-/// Source, ellipsetrack and a sink that hands over each frame. Nothing behind that sink holds the
-/// pipeline up: the FrameTap only takes references.
+/// The source, ellipsetrack and an appsink that passes each frame to the FrameTap, which only takes
+/// references and never blocks.
 ///
-/// The tracker stays one and the same, with its settings, when the source is replaced or comes back
-/// after it dropped. All functions are for the main loop's thread.
+/// The tracker element and its settings persist when the source is replaced or reconnects. Main
+/// loop only.
 class LivePipeline {
  public:
   using Notice = std::function<void(const std::string&)>;
 
   struct Handlers {
-    FrameTap::FrameSink on_frame;      ///< In the streaming thread: must not wait.
-    Notice on_trouble;                 ///< What is wrong with the source, or that it is back.
-    std::function<void()> on_failure;  ///< The source cannot be used and will not come back.
+    FrameTap::FrameSink on_frame;      ///< Called in the streaming thread; must not block.
+    Notice on_trouble;                 ///< The source's error; empty when it has recovered.
+    std::function<void()> on_failure;  ///< The source failed and will not be retried.
   };
 
-  /// Throws std::runtime_error that names an element that is missing.
+  /// Throws std::runtime_error that names a missing element.
   explicit LivePipeline(Handlers handlers);
   ~LivePipeline();
   LivePipeline(const LivePipeline&) = delete;
   LivePipeline& operator=(const LivePipeline&) = delete;
 
-  /// Plays this from now on. Trouble is told by the handlers.
+  /// Replaces the source and plays it. Errors go to the handlers.
   void open(SourceSpec spec, bool loops);
-  /// No frame comes from now on.
+  /// Stops the source; no frame arrives afterwards.
   void close();
 
   void play();
-  /// kPausing until the picture stands still: the frame that is under way is still shown.
+  /// The state is kPausing until the frame in progress has been rendered.
   void pause();
-  /// Shows the next frame of what is paused, or is about to be. Behind the last one it has ended,
-  /// or begins again where it loops.
+  /// Shows the next frame, now or once paused. Past the last frame, the source ends or loops.
   void step();
-  /// To a time [ns] of what can be sought; at once also where it is paused. A time behind the end
-  /// is the last one; where no frame is there it has ended. @return false where it cannot.
+  /// Seeks to a time [ns]; a paused source shows the frame at once. A time past the end selects the
+  /// last frame; where there is no frame, the source ends. @return false if the source cannot seek.
   bool seek(GstClockTime position);
 
   [[nodiscard]] GstElement* tracker() const { return tracker_; }
@@ -58,7 +57,7 @@ class LivePipeline {
   [[nodiscard]] guint64 reconnections() const { return reconnections_; }
   [[nodiscard]] guint64 frames() const { return tap_.frames(); }
   [[nodiscard]] bool is_seekable() const;
-  /// [ns]; GST_CLOCK_TIME_NONE where it is not known.
+  /// [ns]; GST_CLOCK_TIME_NONE if unknown.
   [[nodiscard]] GstClockTime position() const;
   [[nodiscard]] GstClockTime duration() const;
 
@@ -93,18 +92,18 @@ class LivePipeline {
   guint glance_ = 0;
   guint retry_ = 0;
   guint look_ = 0;
-  guint retries_ = 0;  // since it last delivered
+  guint retries_ = 0;  // since the last frame
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
-  guint steps_ = 0;            // that wait until it is paused
-  bool is_moving_ = false;     // a step or a seek is under way
-  guint64 frames_before_ = 0;  // the last of these
+  guint steps_ = 0;            // to do once paused
+  bool is_moving_ = false;     // a step or a seek is in progress
+  guint64 frames_before_ = 0;  // frame count when that step or seek began
   guint64 frames_at_rewind_ = 0;
-  guint64 rendered_before_ = 0;  // when it was last sent to play
+  guint64 rendered_before_ = 0;  // count when playback was last requested
   guint64 reconnections_ = 0;
   guint64 glanced_frames_ = 0;
   guint glances_without_frames_ = 0;
-  bool has_begun_ = false;  // a frame has come since the source was started
+  bool has_begun_ = false;  // a frame has arrived since the source was started
 };
 
 }  // namespace live

@@ -24,7 +24,7 @@ std::vector<std::string> names_of(GstElement* tracker) {
   return result;
 }
 
-// It becomes the name of a group in a key file.
+// The name becomes a group name in a key file.
 void check_name(const std::string& name) {
   const bool is_odd = name.empty() || name.size() > kLongestName || name.starts_with('_') ||
                       !g_utf8_validate(name.data(), static_cast<gssize>(name.size()), nullptr) ||
@@ -40,8 +40,8 @@ void check_exists(GstElement* tracker, const std::string& name) {
   throw std::invalid_argument("no such preset: \"" + name + "\"");
 }
 
-// GStreamer copies all presets that it knows into the file of one's own: only the mark tells which
-// were made here.
+// GStreamer copies system presets into the user's file, so only this mark identifies presets
+// created here.
 bool is_own(GstElement* tracker, const std::string& name) {
   gchar* origin = nullptr;
   gst_preset_get_meta(GST_PRESET(tracker), name.c_str(), kOrigin, &origin);

@@ -6,11 +6,11 @@
 
 namespace live {
 
-/// Presets of the tracker, GStreamer's own: what is saved here is there in gst-launch-1.0, too
-/// (`ellipsetrack @preset=NAME`). All functions throw std::invalid_argument that says what is wrong
-/// with a name.
+/// Presets of the tracker, stored by GStreamer: gst-launch-1.0 can load them with `ellipsetrack
+/// @preset=NAME`. All functions throw std::invalid_argument for a name that is invalid, unknown or
+/// not the program's own, and std::runtime_error if the file cannot be written. Main loop only.
 
-/// An array of {"name", "comment", "is_own"}: one's own can be deleted.
+/// An array of {"name", "comment", "is_own"}. Only presets with is_own can be deleted.
 [[nodiscard]] std::string presets_json(GstElement* tracker);
 
 void save_preset(GstElement* tracker, const std::string& name);

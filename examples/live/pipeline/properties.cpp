@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kCameraFile[] = "camera-file";
 
-// A GValue that clears itself.
+// RAII wrapper of a GValue.
 class Value {
  public:
   explicit Value(const GParamSpec* spec) { g_value_init(&value_, G_PARAM_SPEC_VALUE_TYPE(spec)); }
@@ -43,7 +43,7 @@ struct Change {
   std::unique_ptr<Value> value;
 };
 
-// Those that a person tunes: writable at any time, and the element's own.
+// The element's own writable properties.
 std::vector<GParamSpec*> tunable(GstElement* tracker) {
   guint count = 0;
   const Ref<gchar> list(reinterpret_cast<gchar*>(
@@ -51,14 +51,14 @@ std::vector<GParamSpec*> tunable(GstElement* tracker) {
   auto** specs = reinterpret_cast<GParamSpec**>(list.get());
   std::vector<GParamSpec*> result;
   std::copy_if(specs, specs + count, std::back_inserter(result), [tracker](const GParamSpec* spec) {
-    // A client that could set a path could open any file of this machine.
+    // A client that could set this path could make the program open any file.
     return spec->owner_type == G_OBJECT_TYPE(tracker) && (spec->flags & G_PARAM_WRITABLE) != 0 &&
            g_strcmp0(spec->name, "evidence-file") != 0;
   });
   return result;
 }
 
-// Any path else would be opened by who asks. What it is already needs no folder.
+// Restricts a client's camera-file to the calibration folder. The current value is always accepted.
 void check_camera(GstElement* tracker, const CameraFolder& cameras, Change& change) {
   if (g_strcmp0(change.spec->name, kCameraFile) != 0) return;
   Value now(change.spec);
@@ -94,7 +94,7 @@ std::vector<Change> parse_changes(GstElement* tracker,
   return changes;
 }
 
-/* What the tracker makes of them */
+/* Conversion to TrackerSettings */
 
 void take_in(ellipse::TrackerSettings& settings, const char* name, const GValue* value) {
   const std::string property = name;
@@ -128,8 +128,8 @@ ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<C
   return settings;
 }
 
-// The order in which two settings that fit come from one to the other without a pair that is turned
-// around in between: first what widens a pair, then what narrows it.
+// Whether a change widens a pair of minimum and maximum. Widening changes are set before narrowing
+// ones, so that no minimum ever exceeds its maximum.
 bool widens(const GParamSpec* spec, const GValue* from, const GValue* to) {
   const std::string name = spec->name;
   const bool is_upper = name.starts_with("max-") || name == "edge-high";
@@ -137,11 +137,11 @@ bool widens(const GParamSpec* spec, const GValue* from, const GValue* to) {
   if (!G_IS_PARAM_SPEC_DOUBLE(spec) || (!is_upper && !is_lower)) return false;
   const double before = g_value_get_double(from);
   const double after = g_value_get_double(to);
-  if (name == "edge-high" && (before == 0.0 || after == 0.0)) return after == 0.0;  // 0: no limit
+  if (name == "edge-high" && (before == 0.0 || after == 0.0)) return after == 0.0;  // 0 = no limit
   return is_upper ? after > before : after < before;
 }
 
-// A region without a width, a direction without a length.
+// A region without a width, or a vector of length 0.
 bool is_unset(const GParamSpec* spec, const GValue* value) {
   constexpr guint kWidth = 2;
   if (is_rect(spec)) {
@@ -155,7 +155,7 @@ bool is_unset(const GParamSpec* spec, const GValue* value) {
   return true;
 }
 
-// Those that fit together as a whole.
+// Requires changes that are valid together.
 void make_changes(GstElement* tracker, std::vector<Change>& changes) {
   std::stable_partition(changes.begin(), changes.end(), [tracker](const Change& change) {
     Value now(change.spec);
@@ -208,7 +208,7 @@ void Properties::copy_to(GstElement* other) const {
 }
 
 std::string Properties::launch_settings() const {
-  // gst-launch-1.0 sets one after the other, from the defaults on.
+  // gst-launch-1.0 sets one property after the other, starting from the defaults.
   std::string widening;
   std::string others;
   for (GParamSpec* spec : tunable(tracker_)) {

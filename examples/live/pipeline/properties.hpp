@@ -10,31 +10,31 @@
 
 namespace live {
 
-/// The properties of the tracker, as JSON for those who tune it. For the main loop's thread.
+/// The tracker's properties as JSON. Main loop only.
 class Properties {
  public:
-  /// @param tracker  Borrowed for as long as this lives.
-  /// @param cameras  Where a camera-file may be.
+  /// @param tracker  Borrowed; must outlive this object.
+  /// @param cameras  The folder that a camera-file must be in.
   Properties(GstElement* tracker, CameraFolder cameras)
       : tracker_(tracker), cameras_(std::move(cameras)) {}
 
-  /// An array with one object a property, made from its GParamSpec: name, nick, blurb, type, range,
-  /// default, value, unit, group, and whether it can be set.
+  /// An array with one object per property, derived from its GParamSpec: name, nick, blurb, type,
+  /// range, default, value, unit, group, and whether clients can set it.
   [[nodiscard]] std::string to_json() const;
 
-  /// Sets those that an object {"name": value, ...} names: all of them, or none. They act from the
-  /// next frame on. @return Whether one has another value now. Throws std::invalid_argument that
-  /// names the property and what it takes.
+  /// Sets the properties in an object {"name": value, ...}, all of them or none. They apply from
+  /// the next frame. @return Whether any value changed. Throws std::invalid_argument that names the
+  /// property and its accepted values.
   bool set(const std::string& json);
 
-  /// What the tracker works by now, with the changes of such an object, which may be empty text.
-  /// Throws as set().
+  /// The current settings with the changes in such an object, or without changes if the text is
+  /// empty. Throws as set().
   [[nodiscard]] ellipse::TrackerSettings settings_with(const std::string& json) const;
 
-  /// Sets another tracker to what this one is set to.
+  /// Copies all settings to another tracker.
   void copy_to(GstElement* other) const;
 
-  /// `name=value` of each that is not at its default, as gst-launch-1.0 takes them.
+  /// `name=value` for each property that differs from its default, in gst-launch-1.0 syntax.
   [[nodiscard]] std::string launch_settings() const;
 
  private:

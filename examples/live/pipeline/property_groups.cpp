@@ -7,11 +7,11 @@ namespace live {
 namespace {
 
 struct Group {
-  std::string_view start;  // of a property's name
+  std::string_view start;  // prefix of the property name
   std::string_view name;
 };
 
-// The first that fits counts.
+// The first match applies.
 constexpr std::array kGroups = {
     Group{"detector", "detection"},
     Group{"detect-", "detection"},

@@ -4,12 +4,13 @@
 
 namespace live {
 
-/// The group of a property of ellipsetrack, as the paper groups its parameters: "detection",
-/// "tracking", "scale", "ROI", "edges"; and "camera", "output" and "load", which it does not have.
-/// "other" for one that is not known here.
+/// The group of an ellipsetrack property. "detection", "tracking", "scale", "ROI" and "edges"
+/// follow the paper; "camera", "output" and "load" are added here. Unknown properties are in
+/// "other".
 [[nodiscard]] std::string_view group_of(std::string_view property);
 
-/// The unit in brackets in a property's description: "px", "ns", "grey levels per px", or nothing.
+/// The unit in square brackets in a property's description: "px", "ns", "grey levels per px"; empty
+/// if it has none.
 [[nodiscard]] std::string_view unit_in(std::string_view blurb);
 
 }  // namespace live

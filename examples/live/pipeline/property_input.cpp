@@ -20,7 +20,7 @@ double number_of(const GParamSpec* spec, JsonNode* node) {
   const GType type = json_node_get_value_type(node);
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE) refuse(spec, "expected a number");
   const double number = json_node_get_double(node);
-  if (!std::isfinite(number)) refuse(spec, "the number is too large");  // 1e999
+  if (!std::isfinite(number)) refuse(spec, "the number is too large");  // JSON allows 1e999
   return number;
 }
 
@@ -44,7 +44,7 @@ std::string text_of(const GParamSpec* spec, JsonNode* node) {
   return json_node_get_string(node);
 }
 
-// The numbers of an array; all 0 where it is empty, as a default is.
+// The numbers of an array. An empty array, which is the default value, gives zeros.
 std::vector<double> numbers_of(const GParamSpec* spec,
                                JsonNode* node,
                                std::size_t count,
@@ -113,7 +113,7 @@ void read_value(GParamSpec* spec, JsonNode* node, GValue* value) {
     const double number = in_range(spec, G_PARAM_SPEC_UINT(spec), whole_number_of(spec, node));
     g_value_set_uint(value, static_cast<guint>(number));
   } else if (G_IS_PARAM_SPEC_UINT64(spec)) {
-    // 2^53: what lies beyond is no exact number in JSON.
+    // Doubles represent integers exactly up to 2^53 only.
     const double number = whole_number_of(spec, node);
     if (number < 0.0 || number > 9007199254740992.0) refuse(spec, "out of range");
     g_value_set_uint64(value, static_cast<guint64>(number));

@@ -123,8 +123,8 @@ void write_nick(JsonWriter& json,
   value ? json.value(nicks[static_cast<std::size_t>(*value)]) : json.null();
 }
 
-// Of one of the tracker's settings: with what it acts, and the value in force where it is 0 and
-// stands for another. Nothing of the element's other properties.
+// Writes when a tracker setting has an effect, and the value in force where 0 selects another
+// value. Writes nothing for other properties.
 void write_effect(JsonWriter& json, const char* name, const ellipse::TrackerSettings& settings) {
   const auto infos = ellipse::setting_infos();
   const auto info = std::find_if(
@@ -195,12 +195,12 @@ std::string word_of(const GParamSpec* spec, const GValue* value) {
   if (is_rect(spec) || is_vector(spec)) {
     JsonWriter numbers;
     write_array(numbers, value);
-    std::string word = numbers.text();  // [x,y,width,height], [x,y,z]
+    std::string word = numbers.text();  // from [x,y,width,height] or [x,y,z]
     word.front() = '<';
     word.back() = '>';
     return word;
   }
-  // The shortest that is read as the same number: GStreamer writes 0.2 as 0.20000000000000001.
+  // The shortest representation that round-trips; GStreamer would write 0.2 as 0.20000000000000001.
   if (G_VALUE_HOLDS_DOUBLE(value)) return JsonWriter().value(g_value_get_double(value)).text();
   if (G_VALUE_HOLDS_FLAGS(value)) return flag_nicks(value);
   if (G_VALUE_HOLDS_ENUM(value)) return enum_nick(value);

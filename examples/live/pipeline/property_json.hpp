@@ -9,23 +9,23 @@
 
 namespace live {
 
-/// Whether a property is a region: an array of four whole numbers.
+/// Whether a property is a region: an array of four integers.
 [[nodiscard]] bool is_rect(const GParamSpec* spec);
 
-/// Whether a property is a direction: an array of three numbers.
+/// Whether a property is a vector: an array of three numbers.
 [[nodiscard]] bool is_vector(const GParamSpec* spec);
 
-/// Writes an object that tells all that a control needs: name, nick, blurb, type, range, default,
-/// value, unit, group, whether clients can set it; of the tracker's settings also with what they
-/// act, and the value in force where a 0 stands for it.
-/// @param settings  The tracker's, all of them.
+/// Writes everything that a control needs: name, nick, blurb, type, range, default, value, unit,
+/// group, whether clients can set it. Tracker settings also have the conditions of their effect,
+/// and the value in force where 0 selects another value.
+/// @param settings  The tracker's current settings.
 void write_property(JsonWriter& json,
                     GstElement* object,
                     GParamSpec* spec,
                     bool is_writable,
                     const ellipse::TrackerSettings& settings);
 
-/// A property's value as one word of a gst-launch line, unquoted.
+/// A property's value as one unquoted word of a gst-launch line.
 [[nodiscard]] std::string word_of(const GParamSpec* spec, const GValue* value);
 
 }  // namespace live

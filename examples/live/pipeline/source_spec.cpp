@@ -136,7 +136,7 @@ FrameRate parse_rate(const std::string& text) {
 
 SourceSpec parse_source(const std::string& text, std::optional<FrameRate> rate) {
   if (text.empty()) refuse(text, "empty");
-  std::error_code ignored;  // what cannot be read is told below
+  std::error_code ignored;  // unreadable paths are reported below
   const bool is_folder = text.find("://") == std::string::npos && fs::is_directory(text, ignored);
   if (rate && !is_folder) refuse(text, "a frame rate applies to a folder of pictures only");
   if (text.starts_with('[') && text.ends_with(']')) return fragment_source(text);

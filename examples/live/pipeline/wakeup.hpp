@@ -6,8 +6,8 @@
 
 namespace live {
 
-/// Calls a function in the main loop, soon after any thread has asked for it. However often it is
-/// asked before the loop gets there, it is called once: a slow loop is never flooded.
+/// Calls a function in the main loop at the request of any thread. Requests that arrive before the
+/// loop handles them share one call, so a slow loop is not flooded.
 class Wakeup {
  public:
   explicit Wakeup(std::function<void()> action);
@@ -15,7 +15,7 @@ class Wakeup {
   Wakeup(const Wakeup&) = delete;
   Wakeup& operator=(const Wakeup&) = delete;
 
-  /// Any thread; never waits.
+  /// Thread-safe; never blocks.
   void raise();
 
  private:
