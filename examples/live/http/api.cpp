@@ -21,7 +21,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxStreams = 120;  // of the connections, of which there may be 160
+constexpr std::size_t kMaxStreams = 120;  // leaves 40 of the 160 connections for requests
 constexpr char kTooMany[] = "too many clients";
 
 void write_time(JsonWriter& json, const char* name, GstClockTime time) {
@@ -39,7 +39,7 @@ void add_page(HttpServer& server, const Options& options) {
   server.route("GET", "/*", [page](const Request& request) { return page.get(request.rest); });
 }
 
-// Those who stay leave connections to those who only ask.
+// Streams must leave connections for requests.
 bool has_room(Session& session) {
   return session.video().viewers() + session.lines().listeners() < kMaxStreams;
 }
@@ -62,7 +62,7 @@ void add_feeds(HttpServer& server, Session& session) {
   stream("/api/events", [&](auto* message) { session.lines().add_events(message); });
 }
 
-/* What it sees */
+/* State */
 
 std::string target_json(GstElement* tracker) {
   GstStructure* fields = nullptr;
@@ -110,7 +110,7 @@ void add_state(HttpServer& server, Session& session) {
   });
 }
 
-/* How it is set */
+/* Settings */
 
 void add_settings(HttpServer& server, Session& session) {
   GstElement* tracker = session.pipeline().tracker();
@@ -143,7 +143,7 @@ void add_settings(HttpServer& server, Session& session) {
   });
 }
 
-/* What it plays */
+/* Source and playback */
 
 std::string source_json(Session& session, const Options& options) {
   const LivePipeline& pipeline = session.pipeline();
@@ -168,7 +168,7 @@ std::string source_json(Session& session, const Options& options) {
   return json.end_object().text() + "\n";
 }
 
-// A number, or text: 30000/1001 is no JSON.
+// A number, or a string such as "30000/1001".
 std::string rate_in(const RequestJson& json) {
   JsonNode* fps = json.node("fps");
   if (fps == nullptr) return "";
@@ -202,7 +202,7 @@ void add_playback(HttpServer& server, Session& session, const Options& options) 
   });
 }
 
-/* Why it finds what it finds */
+/* Analysis */
 
 std::optional<ellipse::Stage> stage_in(const RequestJson& json) {
   if (!json.has("stage")) return std::nullopt;

@@ -6,8 +6,8 @@
 
 namespace live {
 
-/// Gives the server all that clients may ask of a session: docs/live.md lists it.
-/// @param session  Borrowed, as the server is, for as long as it serves.
+/// Adds the HTTP interface of a session to the server, as listed in docs/live.md.
+/// @param session  Borrowed; must exist while the main loop runs.
 void add_api(HttpServer& server, Session& session, const Options& options);
 
 }  // namespace live

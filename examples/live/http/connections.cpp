@@ -12,9 +12,9 @@ namespace {
 constexpr std::size_t kMost = 160;
 constexpr std::ptrdiff_t kMaxOfAddress = 40;
 constexpr guint kGlanceMs = 1000;
-constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // until all of a request has come
-constexpr guint kSilenceSeconds = 20;               // of who neither sends nor takes
-constexpr gint kUnheardMs = 30'000;                 // of who is no longer there
+constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // for a complete request
+constexpr guint kSilenceSeconds = 20;               // without reading or writing
+constexpr gint kUnheardMs = 30'000;                 // without TCP acknowledgement
 
 std::string text_of(GSocketAddress* address) {
   const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
@@ -45,7 +45,7 @@ bool Connections::admit(GSocketConnection* connection) {
   return true;
 }
 
-// Programs of this machine come from one address, and so does a tunnel.
+// Local programs share one address, and so do the clients of a tunnel.
 bool Connections::has_room(GInetAddress* address, const std::string& name) const {
   if (open_->size() >= kMost) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
@@ -72,7 +72,8 @@ void Connections::on_gone(gpointer data, GObject* /*connection*/) {
   gone->open->erase(gone->client);
 }
 
-// Who sends a byte now and then is never silent. What is shut down reads its end, and goes.
+// A client that sends a byte now and then never times out, so requests have a deadline. The
+// shutdown ends libsoup's read, which closes the connection.
 gboolean Connections::on_glance(gpointer data) {
   const gint64 now_us = g_get_monotonic_time();
   for (auto& [client, each] : *static_cast<Connections*>(data)->open_) {

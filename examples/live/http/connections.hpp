@@ -10,8 +10,8 @@
 
 namespace live {
 
-/// The open connections of a server: how many there may be, and how long one may take to ask. For
-/// the main loop's thread.
+/// Tracks the open connections of a server, limits their number and the time for a request. Main
+/// loop only.
 class Connections {
  public:
   Connections();
@@ -19,15 +19,16 @@ class Connections {
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
-  /// Takes one in until it is gone. @return false where there are too many already: of all, or of
-  /// the same address in a network.
+  /// Registers a connection until it is destroyed. @return false if the total limit, or that of its
+  /// remote address, is reached.
   bool admit(GSocketConnection* connection);
 
-  /// Its request has come: from now on it may stay. @return Its socket; null where it has gone.
+  /// Removes the deadline of a client whose request is complete. @return Its socket; null if it is
+  /// gone.
   GSocket* keep(GSocketAddress* client);
 
-  /// It may send nothing for as long as it likes. To be said before a WebSocket waits for its
-  /// bytes: who waits already does so for the time that was allowed before.
+  /// Disables a client's silence timeout. Must be called before a WebSocket starts to read: a
+  /// pending read keeps the timeout that it started with.
   void allow_silence(GSocketAddress* client);
 
   [[nodiscard]] std::size_t size() const { return open_->size(); }
@@ -39,7 +40,7 @@ class Connections {
     gint64 deadline_us = 0;  // 0 = none
   };
   using ByClient = std::map<std::string, Open>;  // address and port
-  // A connection that will be gone one day, later than this where a viewer keeps it.
+  // Unregisters a connection when it is destroyed, which can be after the Connections object.
   struct Gone {
     std::shared_ptr<ByClient> open;
     std::string client;

@@ -51,14 +51,14 @@ bool FrameGuard::take_header_byte(std::uint8_t byte) {
   return header_bytes_ == 1 || length_bytes_ > 0 || mask_bytes_ > 0 || begin_payload();
 }
 
-// The header is whole.
+// Called when the header is complete.
 bool FrameGuard::begin_payload() {
   header_bytes_ = 0;
   const bool is_control = opcode_ >= 8;
   if (!(is_control ? controls_ : frames_).take()) return false;
   if (payload_length_ > kMaxMessage) return false;
   payload_ = payload_length_;
-  if (is_control) return true;  // may come between the fragments of a message
+  if (is_control) return true;  // control frames may be interleaved with the fragments of a message
   message_ += payload_length_;
   if (message_ > kMaxMessage) return false;
   if (is_last_) message_ = 0;

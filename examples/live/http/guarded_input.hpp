@@ -9,14 +9,14 @@
 
 namespace live {
 
-/// Looks at the bytes that a client has sent before a library parses them. Called for each piece,
-/// in their order, in the thread that reads.
-/// @return false where no more may be read.
+/// Checks a client's bytes before a library parses them. Called for each piece in order, in the
+/// reading thread.
+/// @return false to end the stream.
 using InputGuard = std::function<bool(std::span<const guint8>)>;
 
-/// The same stream, whose input is behind a guard: it has ended where the guard says so, and the
-/// piece that it refused is not handed on.
-/// @param base  Its input has to be pollable. It is closed with the last reference to the result.
+/// Wraps a stream so that its input passes a guard. When the guard rejects a piece, the piece is
+/// dropped and the stream ends.
+/// @param base  Its input must be pollable. Closed with the last reference to the result.
 [[nodiscard]] Ref<GIOStream> guard_stream(Ref<GIOStream> base, InputGuard guard);
 
 }  // namespace live

@@ -48,7 +48,7 @@ std::string cookie_of(SoupServerMessage* message) {
   return cookies.substr(begin, cookies.find(';', begin) - begin);
 }
 
-// libsoup reads a body to its end, whatever was answered, and would keep all of it.
+// libsoup reads a body to its end even after an error reply, and would store all of it.
 void forget_body(SoupServerMessage* message) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(message), FALSE);
 }
@@ -108,7 +108,8 @@ bool HttpGate::has_token(SoupServerMessage* message) const {
   return is_same_secret(cookie_of(message), token_);
 }
 
-// The link that was printed, /?token=...: a browser goes on with a cookie, and a clean address.
+// Exchanges the token of the printed link, /?token=..., for a cookie and redirects to the plain
+// address.
 bool HttpGate::take_token_from_link(SoupServerMessage* message, const std::string& path) const {
   const char* query = g_uri_get_query(soup_server_message_get_uri(message));
   constexpr std::string_view kStart = "token=";

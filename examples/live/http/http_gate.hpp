@@ -10,15 +10,14 @@
 
 namespace live {
 
-/// The checks that concern every request: who asks, from where, how often, how much. For the main
-/// loop's thread.
+/// Checks every request: rate, Host and Origin, size, token. Main loop only.
 class HttpGate {
  public:
-  /// @param token  Empty = none is asked for, and clients are on this machine.
+  /// @param token  Empty = no token required, and only local clients are accepted.
   explicit HttpGate(std::string token) : token_(std::move(token)) {}
 
-  /// Answers what may not pass, and the link with the token, which it makes a cookie of.
-  /// @return Whether the request was refused.
+  /// Answers a request that is rejected, or that exchanges the link's token for a cookie.
+  /// @return Whether the request was rejected.
   bool refuses(SoupServerMessage* message, const std::string& path);
 
  private:
@@ -27,7 +26,7 @@ class HttpGate {
   bool may_ask_now(SoupServerMessage* message);
 
   std::string token_;
-  std::map<std::string, Allowance> allowances_;  // by the client's address
+  std::map<std::string, Allowance> allowances_;  // by client address
 };
 
 }  // namespace live

@@ -13,7 +13,7 @@ void answer(SoupServerMessage* message, const Reply& reply) {
   soup_server_message_set_status(message, static_cast<guint>(reply.status), nullptr);
   SoupMessageHeaders* headers = soup_server_message_get_response_headers(message);
   soup_message_headers_replace(headers, "Cache-Control", "no-store");
-  // libsoup keeps those connections alive only that it has accepted itself.
+  // libsoup keeps alive only connections that it accepted itself.
   soup_message_headers_replace(headers, "Connection", "close");
   soup_server_message_set_response(
       message, reply.type.c_str(), SOUP_MEMORY_COPY, reply.body.data(), reply.body.size());

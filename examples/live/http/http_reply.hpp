@@ -8,23 +8,23 @@
 
 namespace live {
 
-/// What a client is told.
+/// A complete HTTP reply.
 struct Reply {
   int status = 200;
   std::string type = "application/json";
   std::string body;
 };
 
-/// `{"error":"..."}` with this status.
+/// A reply with this status and the body `{"error":"..."}`.
 [[nodiscard]] Reply error_reply(int status, const std::string& message);
 
-/// Answers a request. For the main loop's thread.
+/// Sends a reply. Main loop only.
 void answer(SoupServerMessage* message, const Reply& reply);
 
-/// Says with a reply what a browser may do with all that comes from here.
+/// Adds the security headers (content type, referrer, resource and content policy) to a reply.
 void add_policy(SoupServerMessage* message);
 
-/// Answers a request later. For the main loop's thread.
+/// Pauses a request and answers it later. Main loop only.
 class LaterReply {
  public:
   explicit LaterReply(SoupServerMessage* message);

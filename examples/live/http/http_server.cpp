@@ -7,7 +7,7 @@
 namespace live {
 namespace {
 
-constexpr int kWaiting = 160;  // to be let in
+constexpr int kWaiting = 160;  // backlog of connections to accept
 
 std::string body_of(SoupServerMessage* message) {
   const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
@@ -16,8 +16,8 @@ std::string body_of(SoupServerMessage* message) {
   return data != nullptr ? std::string(data, size) : std::string();
 }
 
-// libsoup answers as many ranges as a header names, each with a copy. No reply here is so large
-// that a client needs a part of it, and a server may ignore them [RFC 9110, section 14.2].
+// libsoup answers any number of ranges in a header, each with a copy. Replies are small, and a
+// server may ignore ranges [RFC 9110, section 14.2].
 void ignore_ranges(SoupServerMessage* message) {
   soup_message_headers_remove(soup_server_message_get_request_headers(message), "Range");
 }
@@ -102,7 +102,7 @@ gboolean HttpServer::on_incoming(GSocketService* /*service*/,
   auto* self = static_cast<HttpServer*>(data);
   if (!self->connections_.admit(connection)) {
     ++self->counters_.refused;
-    return TRUE;  // closed with its last reference
+    return TRUE;  // the last reference closes it
   }
   GSocket* socket = g_socket_connection_get_socket(connection);
   const Ref<GSocketAddress> local(g_socket_get_local_address(socket, nullptr));
@@ -147,7 +147,7 @@ void HttpServer::on_request(SoupServer* /*server*/,
   }
 }
 
-// What stands where a route has its "*"; nullopt where the path is not the route's.
+// The part of the path at the route's "*"; nullopt if the path does not match.
 std::optional<std::string> HttpServer::rest_of(const std::string& path, const Route& route) {
   if (!route.has_rest) return path == route.before ? std::optional<std::string>("") : std::nullopt;
   const std::size_t around = route.before.size() + route.after.size();
@@ -165,7 +165,7 @@ void HttpServer::dispatch(SoupServerMessage* message, const std::string& path) {
     const std::optional<std::string> rest = rest_of(path, route);
     if (!rest) continue;
     is_known = true;
-    // Of what has no end there is no head by itself.
+    // A HEAD request to an endless reply would open a stream.
     const bool is_head = method == "HEAD" && route.method == "GET" && route.has_end;
     if (route.method != method && !is_head) continue;
     const Request request{

@@ -20,33 +20,34 @@ namespace live {
 struct Request {
   SoupServerMessage* message;  ///< Borrowed for the call.
   std::string path;
-  std::string rest;  ///< What of the path came where the route has its "*".
+  std::string rest;  ///< Part of the path that matched the route's "*".
   std::string body;
 };
 
-/// HTTP and WebSockets on libsoup, behind the gate that every request passes. In the main loop's
-/// thread.
+/// HTTP and WebSocket server on libsoup. Every request passes the HttpGate. Main loop only.
 class HttpServer {
  public:
   struct Settings {
     std::string address = "127.0.0.1";
-    guint port = 8080;  ///< 0 = one that is free.
-    std::string token;  ///< Empty = none is asked for.
+    guint port = 8080;  ///< 0 = any free port.
+    std::string token;  ///< Empty = no token required.
   };
   struct Counters {
     guint64 requests = 0;
-    guint64 refused = 0;  ///< Without a right to it, too often, too much.
+    guint64 refused = 0;  ///< Rejected requests and connections.
   };
 
-  /// Throws std::runtime_error where it cannot listen there.
+  /// Throws std::runtime_error if it cannot listen on the address.
   explicit HttpServer(Settings settings);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// A path may have one "*", for one part of a path. std::invalid_argument becomes a 400.
+  /// Adds a route. The path may contain one "*", which matches one path segment. A handler's
+  /// std::invalid_argument becomes status 400, any other exception 500.
   void route(const char* method, const std::string& path, std::function<Reply(const Request&)>);
-  /// The same, for what answers later or without an end: it has to set a status or to pause.
+  /// Adds a route that replies later or endlessly: the handler must set a status or pause the
+  /// message.
   void route_open(const char* method, const std::string& path, std::function<void(const Request&)>);
   void websocket(const std::string& path, WebSocketHandler on_open);
 
@@ -57,10 +58,10 @@ class HttpServer {
  private:
   struct Route {
     std::string method;
-    std::string before;  // the "*"
+    std::string before;  // up to the "*"
     std::string after;
     bool has_rest;
-    bool has_end;  // of its reply
+    bool has_end;  // false = the handler replies later or endlessly
     std::function<void(const Request&)> handle;
   };
 

@@ -56,7 +56,7 @@ void HttpStream::on_wrote_chunk(SoupServerMessage* /*message*/, gpointer data) {
 void HttpStream::on_finished(SoupServerMessage* /*message*/, gpointer data) {
   auto* self = static_cast<HttpStream*>(data);
   self->is_open_ = false;
-  const auto closed = std::move(self->handlers_.on_closed);  // outlives what it deletes
+  const auto closed = std::move(self->handlers_.on_closed);  // may delete this object
   if (closed) closed();
 }
 

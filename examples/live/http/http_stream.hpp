@@ -9,16 +9,16 @@
 
 namespace live {
 
-/// A reply without an end, written piece by piece. One piece at a time is on its way: who waits for
-/// is_ready() keeps no more than that for a slow client. For the main loop's thread.
+/// An endless chunked reply. A caller that writes only when is_ready() has at most one chunk in
+/// memory for a slow client. Main loop only.
 class HttpStream {
  public:
   struct Handlers {
     std::function<void()> on_ready;
-    std::function<void()> on_closed;  ///< Once, and the last call; deletes what it wants.
+    std::function<void()> on_closed;  ///< Called once, as the last call. May delete the stream.
   };
 
-  /// Begins the reply to this request.
+  /// Starts the reply to a request.
   HttpStream(SoupServerMessage* message, const std::string& content_type);
   ~HttpStream();
   HttpStream(const HttpStream&) = delete;
@@ -30,9 +30,9 @@ class HttpStream {
   void write(GBytes* bytes);
   void write(const std::string& text);
 
-  /// How much the system may keep for a client that takes nothing, so that this shows soon.
+  /// Limits the socket's send buffer, so that a client that reads nothing is detected soon.
   void limit_buffer(int bytes);
-  /// Ends the connection, whatever is still on its way.
+  /// Closes the connection and discards unsent data.
   void end();
 
  private:
@@ -40,7 +40,7 @@ class HttpStream {
   static void on_finished(SoupServerMessage* message, gpointer data);
 
   Ref<SoupServerMessage> message_;
-  Ref<GSocket> socket_;  // null where it has gone already
+  Ref<GSocket> socket_;  // null if already closed
   Handlers handlers_;
   bool is_open_ = true;
   bool is_writing_ = false;

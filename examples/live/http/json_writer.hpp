@@ -7,8 +7,8 @@
 
 namespace live {
 
-/// Writes JSON text from front to back. Numbers are as short as they can be without losing a bit,
-/// in every locale; what is not finite becomes null.
+/// Writes JSON text sequentially. Numbers have the shortest form that round-trips, in every locale;
+/// non-finite numbers become null.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }
@@ -26,10 +26,10 @@ class JsonWriter {
     return raw(std::to_string(number));
   }
   JsonWriter& null() { return raw("null"); }
-  /// Text that is JSON already.
+  /// Appends text that already is JSON.
   JsonWriter& raw(std::string_view json);
 
-  /// A value under its name.
+  /// Appends a key and its value.
   template <class Value>
   JsonWriter& member(std::string_view name, const Value& content) {
     return key(name).value(content);
@@ -47,7 +47,7 @@ class JsonWriter {
   bool needs_comma_ = false;
 };
 
-/// An object with one member, "error".
+/// The object {"error": message}.
 [[nodiscard]] std::string error_json(std::string_view message);
 
 }  // namespace live

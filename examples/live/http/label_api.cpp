@@ -40,7 +40,7 @@ ellipse::Ellipse drawn_ellipse(const RequestJson& json) {
   return e;
 }
 
-// The number of one in the frame's line, an ellipse itself, or "none".
+// The choice: an index into the frame's ellipses, an ellipse, or "none".
 std::optional<ellipse::Ellipse> chosen(const RequestJson& json, const Frame& frame) {
   JsonNode* choice = json.node("choice");
   if (choice != nullptr && JSON_NODE_HOLDS_OBJECT(choice)) {

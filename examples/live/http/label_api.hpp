@@ -6,8 +6,8 @@
 
 namespace live {
 
-/// Lets clients write labelled snapshots into the folder for them, where there is one. See
-/// docs/live.md.
+/// Adds the route that saves labelled snapshots to the folder of --labels; an error without one.
+/// See docs/live.md. Throws std::runtime_error if the folder cannot be created.
 void add_labels(HttpServer& server, Session& session, const Options& options);
 
 }  // namespace live

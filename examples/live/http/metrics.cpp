@@ -9,7 +9,7 @@
 namespace live {
 namespace {
 
-// A number as text, with a point in every locale.
+// Locale-independent.
 std::string number(double value) {
   return JsonWriter().value(value).text();
 }

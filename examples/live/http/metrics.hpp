@@ -7,7 +7,7 @@
 
 namespace live {
 
-/// What happens, as Prometheus reads it (text format 0.0.4).
+/// The program's metrics in the Prometheus text format 0.0.4.
 [[nodiscard]] std::string metrics_text(Session& session, const HttpServer& server);
 
 }  // namespace live

@@ -7,14 +7,13 @@
 
 namespace live {
 
-/// The files of the page: those built into the program, or those of a folder, for whoever works on
-/// the page.
+/// The files of the page, either compiled into the program or, for development, in a folder.
 class PageFiles {
  public:
-  /// @param folder  Empty = the ones built in.
+  /// @param folder  Empty = compiled files.
   explicit PageFiles(std::string folder) : folder_(std::move(folder)) {}
 
-  /// @param name  "index.html", "app.js": one part of a path. Nothing else is ever opened.
+  /// @param name  A plain file name such as "app.js". Anything else gets 404 and opens no file.
   [[nodiscard]] Reply get(const std::string& name) const;
 
  private:

@@ -52,14 +52,14 @@ double RequestJson::number(const char* name) const {
     throw std::invalid_argument(std::string(name) + ": expected a number");
   }
   const double number = json_node_get_double(member);
-  if (std::isfinite(number)) return number;  // 1e999 is not
+  if (std::isfinite(number)) return number;  // JSON allows 1e999
   throw std::invalid_argument(std::string(name) + ": the number is too large");
 }
 
 GstClockTime RequestJson::time(const char* name) const {
   constexpr double kLatest = 9e18;
   if (has(name) && is_text(node(name))) {
-    // Of a page, whose numbers are doubles, while nanoseconds since 1970 have more digits.
+    // JavaScript numbers are doubles, which cannot represent nanoseconds since 1970 exactly.
     const std::string digits = text(name);
     guint64 time = 0;
     if (g_ascii_string_to_unsigned(digits.c_str(), 10, 0, G_MAXINT64, &time, nullptr)) return time;

@@ -8,20 +8,20 @@
 
 namespace live {
 
-/// The JSON object in a request's body. Every function throws std::invalid_argument that names the
-/// member that is missing or of another type.
+/// The JSON object in a request's body. All functions throw std::invalid_argument that names a
+/// member that is missing or has the wrong type.
 class RequestJson {
  public:
   explicit RequestJson(const std::string& body);
-  /// A part of another one, which has to outlive this.
+  /// A nested object, borrowed from another RequestJson.
   explicit RequestJson(JsonObject* part) : object_(part) {}
 
   [[nodiscard]] std::string text(const char* name) const;
   [[nodiscard]] double number(const char* name) const;
-  /// A time [ns]: a number, or text of its digits.
+  /// A time [ns], as a number or a string of digits.
   [[nodiscard]] GstClockTime time(const char* name) const;
   [[nodiscard]] bool has(const char* name) const;
-  /// Owned by this; null where there is none.
+  /// Borrowed; null if the member is missing.
   [[nodiscard]] JsonNode* node(const char* name) const;
   [[nodiscard]] JsonObject* object() const { return object_; }
 

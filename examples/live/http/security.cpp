@@ -64,7 +64,7 @@ std::string make_token() {
 }
 
 bool is_same_secret(std::string_view given, std::string_view secret) {
-  // Every byte of the secret is looked at, whatever was given.
+  // Compares all bytes, so that the time does not depend on the position of the first difference.
   unsigned difference = given.size() == secret.size() ? 0U : 1U;
   for (std::size_t i = 0; i < secret.size(); ++i) {
     const char other = i < given.size() ? given[i] : '\0';

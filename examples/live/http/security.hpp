@@ -6,13 +6,13 @@
 
 namespace live {
 
-/// So many things a second, and a store of some more for those who were quiet. Not thread-safe.
+/// Rate limit with a burst size (token bucket). Not thread-safe.
 class Allowance {
  public:
-  using Clock = std::int64_t (*)();  ///< [us], and never goes back.
+  using Clock = std::int64_t (*)();  ///< Monotonic time [us].
 
   Allowance(double per_second, double most, Clock clock = nullptr);
-  /// @return false where it is used up.
+  /// @return false if the limit is exceeded.
   bool take();
 
  private:
@@ -23,28 +23,28 @@ class Allowance {
   std::int64_t last_us_;
 };
 
-/// What of a request says where it comes from; empty where it says nothing.
+/// Request headers that identify the requesting site; empty if absent.
 struct Origin {
   std::string host;            ///< "Host"
-  std::string origin;          ///< "Origin": browsers send it with writes and WebSockets.
-  std::string sec_fetch_site;  ///< "Sec-Fetch-Site": browsers send it with everything.
+  std::string origin;          ///< "Origin": sent by browsers with writes and WebSockets.
+  std::string sec_fetch_site;  ///< "Sec-Fetch-Site": sent by browsers with every request.
 };
 
-/// Whether a page of another site is behind a request. A program sends neither "Origin" nor
-/// "Sec-Fetch-Site", and is none.
+/// Whether a request comes from a page of another site. Programs other than browsers send neither
+/// "Origin" nor "Sec-Fetch-Site" and are accepted.
 [[nodiscard]] bool is_foreign(const Origin& origin);
 
-/// Whether the name that a client used for this machine is the machine itself. Without a token this
-/// keeps out pages of other sites whose name was made to point here.
+/// Whether a Host header names the loopback interface. Without a token, this check rejects DNS
+/// rebinding: pages of other sites whose name resolves to this machine.
 [[nodiscard]] bool is_loopback_host(const std::string& host);
 
-/// Whether an address to listen at is reached from this machine alone.
+/// Whether an address accepts connections from this machine only.
 [[nodiscard]] bool is_loopback_address(const std::string& address);
 
-/// 32 hexadecimal digits from the system's random numbers.
+/// Generates 32 random hexadecimal digits.
 [[nodiscard]] std::string make_token();
 
-/// Whether two secrets are the same. Takes as long for any two of the same length.
+/// Compares two secrets in constant time for inputs of the same length.
 [[nodiscard]] bool is_same_secret(std::string_view given, std::string_view secret);
 
 }  // namespace live

@@ -6,8 +6,8 @@
 
 namespace live {
 
-/// Writes the fields of a structure as members; "-" in a name becomes "_". Times that are not known
-/// are null. Fields that are no number, text or boolean are left out.
+/// Writes the fields of a structure as members; "-" in a name becomes "_". Unknown times become
+/// null. Fields of other types than number, string and boolean are omitted.
 void write_fields(JsonWriter& json, const GstStructure* structure);
 
 }  // namespace live

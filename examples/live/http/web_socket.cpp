@@ -13,13 +13,13 @@ namespace {
 
 constexpr guint kKeepaliveSeconds = 20;
 
-// A request that becomes a WebSocket once the reply to it is written.
+// A request that becomes a WebSocket when its reply has been written.
 struct Opening {
   Ref<GSocket> socket;
   WebSocketHandler on_open;
 };
 
-// Without extensions: a compressed message has no bound that is seen before it is unpacked.
+// Extensions are disabled: the size of a compressed message is unknown until it is unpacked.
 void on_reply_written(SoupServerMessage* message, gpointer data) {
   const std::unique_ptr<Opening> opening(static_cast<Opening*>(data));
   g_signal_handlers_disconnect_by_data(message, data);
@@ -39,7 +39,7 @@ void on_reply_written(SoupServerMessage* message, gpointer data) {
   opening->on_open(std::make_unique<WebSocket>(connection.get(), opening->socket.get()));
 }
 
-// The client left before.
+// The client disconnected during the handshake.
 void on_finished(SoupServerMessage* message, gpointer data) {
   g_signal_handlers_disconnect_by_data(message, data);
   delete static_cast<Opening*>(data);
@@ -49,8 +49,7 @@ void on_finished(SoupServerMessage* message, gpointer data) {
 
 void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open) {
   if (!soup_websocket_server_process_handshake(message, nullptr, nullptr, nullptr, nullptr)) return;
-  // Now, before anything waits for its bytes: what waits does so for the time that was allowed
-  // then.
+  // Before anything reads from the socket: a pending read keeps the timeout that it started with.
   g_socket_set_timeout(socket, 0);
   auto* opening = new Opening{share(socket), on_open};
   g_signal_connect(message, "wrote-informational", G_CALLBACK(on_reply_written), opening);
@@ -109,7 +108,7 @@ void WebSocket::on_message(SoupWebsocketConnection* /*connection*/,
 
 void WebSocket::on_closed(SoupWebsocketConnection* /*connection*/, gpointer data) {
   auto* self = static_cast<WebSocket*>(data);
-  const auto closed = std::move(self->handlers_.on_closed);  // outlives what it deletes
+  const auto closed = std::move(self->handlers_.on_closed);  // may delete this object
   if (closed) closed();
 }
 

@@ -10,13 +10,13 @@
 
 namespace live {
 
-/// One WebSocket of a client. What is sent waits nowhere but in the socket: ask can_send() before,
-/// and what is lost is lost. For the main loop's thread.
+/// A client's WebSocket. It has no queue of its own: messages go to the socket's send buffer. Check
+/// can_send() before sending. Main loop only.
 class WebSocket {
  public:
   struct Handlers {
     std::function<void(std::string_view)> on_text;
-    std::function<void()> on_closed;  ///< Once, and the last call; deletes what it wants.
+    std::function<void()> on_closed;  ///< Called once, as the last call. May delete the WebSocket.
   };
 
   WebSocket(SoupWebsocketConnection* connection, GSocket* socket);
@@ -26,12 +26,12 @@ class WebSocket {
 
   void listen(Handlers handlers) { handlers_ = std::move(handlers); }
 
-  /// Whether it is open and the system takes more for it now.
+  /// Whether the WebSocket is open and its send buffer has space.
   [[nodiscard]] bool can_send() const;
   void send_binary(GBytes* bytes);
   void send_text(const char* text);
   void close(const char* why);
-  /// How much the system may keep for a client that takes nothing, so that this shows soon.
+  /// Limits the socket's send buffer, so that a client that reads nothing is detected soon.
   void limit_buffer(int bytes);
 
  private:
@@ -48,9 +48,9 @@ class WebSocket {
 
 using WebSocketHandler = std::function<void(std::unique_ptr<WebSocket>)>;
 
-/// Answers a request for a WebSocket, and hands it over once the answer is written. What the client
-/// sends passes a FrameGuard. A request that is none is answered with what is wrong.
-/// @param socket  The client's.
+/// Answers a WebSocket handshake and passes the WebSocket to `on_open` once the reply is written.
+/// The client's input passes a FrameGuard. An invalid handshake gets an error reply.
+/// @param socket  The client's socket.
 void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open);
 
 }  // namespace live
