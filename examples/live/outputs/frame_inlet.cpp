@@ -11,7 +11,7 @@ std::string frame_inlet(const std::string& name, int most_frames) {
 }
 
 void push_frame(GstAppSrc* inlet, const Frame& frame) {
-  // A buffer of its own, whose stamps can be replaced, over the same pixels and metadata.
+  // A writable buffer for the timestamps; it shares the pixels and has the metadata.
   GstBuffer* buffer = gst_buffer_copy(gst_sample_get_buffer(frame.sample.get()));
   GST_BUFFER_PTS(buffer) = GST_CLOCK_TIME_NONE;
   GST_BUFFER_DTS(buffer) = GST_CLOCK_TIME_NONE;

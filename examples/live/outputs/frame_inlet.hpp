@@ -6,12 +6,12 @@
 
 namespace live {
 
-/// The piece of a gst-launch line that push_frame() fills: an appsrc of this name, which forgets
-/// its oldest frames rather than let anybody wait.
+/// Start of a gst-launch line for push_frame(): an appsrc with this name. It never blocks; when
+/// full, it drops its oldest frames.
 [[nodiscard]] std::string frame_inlet(const std::string& name, int most_frames);
 
-/// Gives a frame to such an appsrc, stamped with the time of its own pipeline. Any thread; never
-/// waits; copies no pixel.
+/// Pushes a frame into such an appsrc, timestamped by that pipeline's clock. Thread-safe; never
+/// blocks; copies no pixel.
 void push_frame(GstAppSrc* inlet, const Frame& frame);
 
 }  // namespace live

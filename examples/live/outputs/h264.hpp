@@ -4,9 +4,8 @@
 
 namespace live {
 
-/// The part of a gst-launch line that encodes raw video as H.264, at once rather than well: the
-/// first encoder that is installed of x264enc, openh264enc. Throws std::runtime_error where none
-/// is.
+/// Part of a gst-launch line that encodes raw video as H.264 with low latency, by x264enc or
+/// openh264enc. Throws std::runtime_error if neither is installed.
 [[nodiscard]] std::string h264_encoder();
 
 }  // namespace live

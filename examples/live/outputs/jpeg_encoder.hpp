@@ -10,28 +10,28 @@
 
 namespace live {
 
-/// A frame as its viewers get it.
+/// A frame encoded for viewers.
 struct Picture {
-  guint64 number = 0;     ///< That of its frame.
+  guint64 number = 0;     ///< Frame::number.
   GstClockTime pts = 0;   ///< [ns]
-  gint64 arrived_us = 0;  ///< As that of its frame.
+  gint64 arrived_us = 0;  ///< Frame::arrived_us.
   Ref<GBytes> jpeg = {};
-  Ref<GBytes> stamped = {};  ///< The PTS as eight bytes, lowest first, and the JPEG.
+  Ref<GBytes> stamped = {};  ///< The PTS in 8 bytes, little-endian, followed by the JPEG.
 };
 
-/// Turns a frame into a JPEG when it is asked to, in a thread of its own; one at a time. Idle
-/// otherwise. For the main loop's thread.
+/// Encodes frames as JPEG on request, one at a time, in its own thread. Main loop only.
 class JpegEncoder {
  public:
   /// @param quality     1 to 100.
   /// @param on_picture  Called in the main loop.
-  /// Throws std::runtime_error where GStreamer's jpegenc is missing.
+  ///
+  /// Throws std::runtime_error if jpegenc is not installed.
   JpegEncoder(int quality, std::function<void(Picture)> on_picture);
   ~JpegEncoder();
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  /// Begins with this frame; only while not busy. A frame that cannot be encoded gives no picture.
+  /// Starts to encode a frame. Requires !is_busy(). If encoding fails, there is no picture.
   void encode(const FramePtr& frame);
   [[nodiscard]] bool is_busy() const { return frame_ != nullptr; }
   [[nodiscard]] guint64 encoded() const { return encoded_; }
@@ -43,7 +43,7 @@ class JpegEncoder {
   void recover();
 
   std::function<void(Picture)> on_picture_;
-  FramePtr frame_;  // the one that is being encoded
+  FramePtr frame_;  // being encoded; null = idle
   guint64 encoded_ = 0;
   GstElement* pipeline_;
   Ref<GstElement> source_;

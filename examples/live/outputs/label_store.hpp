@@ -9,16 +9,16 @@
 
 namespace live {
 
-/// A data set that grows by one picture with its truth at a time, in the form that ellipse-evaluate
-/// reads: `gt.csv` and `images/`. What is there already stays.
+/// Appends labelled frames to a data set in the format of ellipse-evaluate: `gt.csv` and `images/`.
+/// Existing entries are kept.
 class LabelStore {
  public:
-  /// Throws std::runtime_error where the folder cannot be made.
+  /// Throws std::runtime_error if the folder cannot be created.
   explicit LabelStore(std::filesystem::path folder);
 
-  /// @param target  As the person said; nullopt where the picture shows none.
-  /// @return The picture's name inside the folder. Throws std::runtime_error where it cannot be
-  ///         written; then there is no new line in the table.
+  /// @param target  The true ellipse; nullopt if the frame shows no target.
+  /// @return The picture's path relative to the folder. Throws std::runtime_error if the picture or
+  /// the table cannot be written. The table is written last.
   std::string add(const Frame& frame, const std::optional<ellipse::Ellipse>& target);
 
  private:

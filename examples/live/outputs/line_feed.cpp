@@ -9,8 +9,8 @@ namespace {
 constexpr guint kGlanceMs = 1000;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
 constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
-constexpr std::size_t kLongestQueue = 30;  // a second of video
-constexpr int kBufferBytes = 32 * 1024;    // a hundred lines
+constexpr std::size_t kLongestQueue = 30;  // 1 s of video at 30 Hz
+constexpr int kBufferBytes = 32 * 1024;    // about a hundred lines
 
 class SocketListener : public LineFeed::Listener {
  public:
@@ -30,8 +30,7 @@ class SocketListener : public LineFeed::Listener {
   std::unique_ptr<WebSocket> socket_;
 };
 
-// That a client has gone shows where something is written: where frames are long in coming, that is
-// a comment.
+// A disconnected client is detected only by a write, so a comment is sent when there are no frames.
 class EventListener : public LineFeed::Listener {
  public:
   EventListener(SoupServerMessage* request,

@@ -12,9 +12,9 @@
 
 namespace live {
 
-/// Sends the JSON lines of all frames to everybody who listens. Who joins gets the last one at
-/// once: the next may be long in coming, where the source is paused. Each has a queue of its own,
-/// from which the oldest lines are lost where it is slow. For the main loop's thread.
+/// Sends the JSON lines of all frames to all listeners. A new listener receives the latest line
+/// immediately, because a paused source sends no other. Each listener has a bounded queue that
+/// drops its oldest lines. Main loop only.
 class LineFeed {
  public:
   LineFeed();
@@ -22,9 +22,9 @@ class LineFeed {
   LineFeed(const LineFeed&) = delete;
   LineFeed& operator=(const LineFeed&) = delete;
 
-  /// One text message a line.
+  /// Sends one text message per line.
   void add(std::unique_ptr<WebSocket> socket);
-  /// Server-sent events, one a line.
+  /// Sends one server-sent event per line.
   void add_events(SoupServerMessage* request);
 
   void send(const std::vector<std::string>& lines);
@@ -35,15 +35,16 @@ class LineFeed {
   class Listener {
    public:
     virtual ~Listener() = default;
-    /// @return false where it can take no more now.
+    /// @return false if the listener cannot accept a line now.
     virtual bool send(const std::string& line) = 0;
-    /// Closes it: it has taken nothing for too long.
+    /// Closes a listener that has read nothing for too long.
     virtual void end() = 0;
-    /// Once a second, where there is nothing to send.
+    /// Called once a second when the queue is empty.
     virtual void take_glance() {}
 
     std::deque<std::string> queue;
-    gint64 moved_us = g_get_monotonic_time();  ///< When it last took something, or had all.
+    gint64 moved_us =
+        g_get_monotonic_time();  ///< When it last accepted a line or had an empty queue.
   };
 
  private:
@@ -53,7 +54,7 @@ class LineFeed {
   void remove(const Listener* listener);
 
   std::list<std::unique_ptr<Listener>> listeners_;
-  std::string last_;  // the newest line; empty before the first
+  std::string last_;  // newest line; empty before the first one
   guint glance_;
   guint64 lost_ = 0;
 };

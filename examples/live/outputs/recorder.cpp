@@ -10,7 +10,7 @@
 namespace live {
 namespace {
 
-constexpr int kMaxWaiting = 8;  // frames: their memory may be a camera's
+constexpr int kMaxWaiting = 8;  // frames; small, because they can hold a camera's buffers
 constexpr guint64 kMaxLines = 300;
 
 std::filesystem::path numbered(const std::filesystem::path& file, int number) {

@@ -12,19 +12,20 @@
 
 namespace live {
 
-/// Writes what the pipeline delivers: H.264 into FILE.mkv, the JSON lines into FILE.ndjson. Frames
-/// of another size go on in FILE-2.mkv. A slow disk loses frames and holds nobody up.
+/// Records the pipeline's frames: H.264 to FILE.mkv and the JSON lines to FILE.ndjson. When the
+/// frame size changes, recording continues in FILE-2.mkv. A slow disk causes dropped frames and
+/// never blocks the pipeline.
 class Recorder {
  public:
-  /// @param on_trouble  Called once in the main loop, where it cannot go on.
-  /// Throws std::runtime_error where the file cannot be written, or no encoder is installed.
+  /// @param on_trouble  Called in the main loop when recording has stopped with an error.
+  /// Throws std::runtime_error if the file cannot be written or no H.264 encoder is installed.
   Recorder(std::filesystem::path file, std::function<void(const std::string&)> on_trouble);
-  /// Ends the file as a whole one; waits for that, some seconds at most.
+  /// Finishes the files; blocks for at most 5 s.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// The streaming thread; never waits.
+  /// Called in the streaming thread; never blocks.
   void put(const FramePtr& frame);
 
  private:
@@ -41,7 +42,7 @@ class Recorder {
   Ref<GstElement> video_;
   Ref<GstElement> lines_;
   std::atomic<bool> takes_frames_{false};
-  int width_ = 0;  // of this file; the streaming thread's
+  int width_ = 0;  // of this file; used by the streaming thread only
   int height_ = 0;
   Wakeup other_size_;
 };

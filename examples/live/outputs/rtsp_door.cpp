@@ -15,12 +15,13 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxVisits = 40;  // the sessions, and as many that are about to have one
+constexpr std::size_t kMaxVisits =
+    40;  // kMaxSessions of RtspOutput, and clients that have none yet
 constexpr std::ptrdiff_t kMaxVisitsOfAddress = 10;
 constexpr guint kGlanceMs = 1000;
 constexpr guint kMaxGlances = 10;       // without a session
-constexpr gint kMaxUnheardMs = 30'000;  // without an acknowledgement of what was sent
-constexpr guint kMaxBody = 0;           // no request that is answered here has one
+constexpr gint kMaxUnheardMs = 30'000;  // without a TCP acknowledgement
+constexpr guint kMaxBody = 0;           // the supported requests have no body
 
 Ref<GInetSocketAddress> inet(GSocketAddress* address) {
   if (address == nullptr || !G_IS_INET_SOCKET_ADDRESS(address)) return nullptr;
@@ -35,7 +36,7 @@ Ref<GInetSocketAddress> local_of(GSocket* socket) {
   return inet(g_socket_get_local_address(socket, nullptr));
 }
 
-/* A connection of this process with itself */
+/* Loopback socket pairs */
 
 struct Pair {
   Ref<GSocket> ours;
@@ -46,7 +47,7 @@ Ref<GSocket> loopback_socket(GSocketFamily family) {
   return Ref<GSocket>(g_socket_new(family, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP, nullptr));
 }
 
-// Another program of this machine may have come first.
+// Skips connections of other local programs.
 Ref<GSocket> accept_from(GSocket* listener, GSocket* wanted) {
   constexpr int kTries = 8;
   const Ref<GInetSocketAddress> local = local_of(wanted);
@@ -62,7 +63,7 @@ Ref<GSocket> accept_from(GSocket* listener, GSocket* wanted) {
   return nullptr;
 }
 
-// Of the client's family: the server chooses that of its UDP sockets by it.
+// Uses the client's address family, because the server selects the family of its UDP sockets by it.
 std::optional<Pair> make_pair(GSocketFamily family) {
   const Ref<GInetAddress> loopback(g_inet_address_new_loopback(family));
   const Ref<GSocketAddress> any_port(g_inet_socket_address_new(loopback.get(), 0));
@@ -86,7 +87,7 @@ Ref<GSocketConnection> connection_of(GSocket* socket) {
   return Ref<GSocketConnection>(g_socket_connection_factory_create_connection(socket));
 }
 
-// Hands bytes on in both directions, a few KiB at a time, until one side has ended.
+// Forwards bytes in both directions, a few KiB at a time, until one side ends.
 void relay(GSocket* client, GSocket* server, GAsyncReadyCallback on_end, gpointer data) {
   g_socket_set_option(client, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
   g_socket_set_option(client, IPPROTO_TCP, TCP_USER_TIMEOUT, kMaxUnheardMs, nullptr);
@@ -146,7 +147,7 @@ gboolean RtspDoor::on_incoming(GSocket* listener, GIOCondition /*condition*/, gp
   return G_SOURCE_CONTINUE;
 }
 
-// A socket that is not let in is closed with its last reference.
+// Returning without registering the socket closes it.
 void RtspDoor::let_in(Ref<GSocket> socket) {
   const Ref<GInetSocketAddress> remote = remote_of(socket.get());
   GInetAddress* address = remote ? g_inet_socket_address_get_address(remote.get()) : nullptr;
@@ -164,7 +165,7 @@ void RtspDoor::let_in(Ref<GSocket> socket) {
   relay(socket.get(), pair->ours.get(), on_end, new Ending{visits_, std::prev(visits_->end())});
 }
 
-// The programs of this machine share one address, and so do those behind a tunnel.
+// Local programs share one address, and so do the clients of a tunnel.
 bool RtspDoor::has_room(GInetAddress* address) const {
   if (visits_->size() >= kMaxVisits) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
@@ -177,14 +178,15 @@ void RtspDoor::on_connected(GstRTSPServer* /*server*/, GstRTSPClient* client, gp
   static_cast<RtspDoor*>(data)->entering_ = share(client);
 }
 
-// One side has closed the connection, or was refused by the guard.
+// Called when either side has closed the connection or the guard has rejected the input.
 void RtspDoor::on_end(GObject* /*stream*/, GAsyncResult* result, gpointer data) {
   const std::unique_ptr<Ending> ending(static_cast<Ending*>(data));
   g_io_stream_splice_finish(result, nullptr);
   ending->visits->erase(ending->visit);
 }
 
-// Who sends a byte now and then is never silent.
+// A client that sends a byte now and then never times out, so clients without a session have a
+// deadline.
 gboolean RtspDoor::on_glance(gpointer data) {
   for (Visit& visit : *static_cast<RtspDoor*>(data)->visits_) {
     visit.glances = has_session(visit.client.get()) ? 0 : visit.glances + 1;

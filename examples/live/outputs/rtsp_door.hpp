@@ -9,16 +9,15 @@
 
 namespace live {
 
-/// Lets clients in to an RTSP server: so many at a time, each behind an RtspGuard, and for good
-/// only those that set up a session, for which they have to know the password.
+/// Accepts the clients of an RTSP server. It limits their number, passes their input through an
+/// RtspGuard, and disconnects clients that set up no session, which requires the password.
 ///
-/// gst-rtsp-server reads from a socket alone, and has no bound on what it reads. So a client's
-/// bytes are handed on to it over a connection of this process with itself. For the main loop's
-/// thread.
+/// gst-rtsp-server reads from sockets only, without a limit on input. A client's bytes are
+/// therefore forwarded over a loopback connection within the process. Main loop only.
 class RtspDoor {
  public:
-  /// Listens where the server is set to. Throws std::runtime_error where it cannot.
-  /// @param server  Borrowed for as long as this lives; not to be attached itself.
+  /// Listens on the server's address and port. Throws std::runtime_error if it cannot.
+  /// @param server  Borrowed; must outlive this object. Must not be attached to a main context.
   explicit RtspDoor(GstRTSPServer* server);
   ~RtspDoor();
   RtspDoor(const RtspDoor&) = delete;
@@ -30,11 +29,11 @@ class RtspDoor {
   struct Visit {
     Ref<GSocket> socket;
     Ref<GInetAddress> address;
-    Ref<GstRTSPClient> client;  // as the server sees it
-    guint glances = 0;          // without a session
+    Ref<GstRTSPClient> client;  // the server's client object
+    guint glances = 0;          // seconds without a session
   };
   using Visits = std::list<Visit>;
-  // A visit that will be over one day, later than this where the program ends.
+  // Unregisters a visit when its relay ends, which can be after the RtspDoor.
   struct Ending {
     std::shared_ptr<Visits> visits;
     Visits::iterator visit;
@@ -52,7 +51,7 @@ class RtspDoor {
   int port_ = 0;
   Ref<GSource> incoming_;
   guint glance_ = 0;
-  Ref<GstRTSPClient> entering_;  // that the server has made last
+  Ref<GstRTSPClient> entering_;  // set by on_connected()
 };
 
 }  // namespace live

@@ -7,8 +7,8 @@ namespace live {
 namespace {
 
 constexpr double kMessagesAtOnce = 2.0 * RtspGuard::kMessagesPerSecond;
-constexpr std::size_t kDataHeaderBytes = 4;  // "$", the channel, and the length as two bytes
-constexpr std::size_t kMethodBytes = 5;      // as many as tell HTTP's methods from RTSP's
+constexpr std::size_t kDataHeaderBytes = 4;  // "$", channel, length (2 bytes)
+constexpr std::size_t kMethodBytes = 5;      // enough to distinguish HTTP from RTSP
 
 }  // namespace
 
@@ -41,7 +41,7 @@ bool RtspGuard::take(std::span<const std::uint8_t> bytes) {
 }
 
 bool RtspGuard::begin(std::uint8_t byte) {
-  if (byte == '\r' || byte == '\n') return true;  // may stand between messages
+  if (byte == '\r' || byte == '\n') return true;  // allowed between messages
   if (!messages_.take()) return false;
   header_bytes_ = line_bytes_ = 0;
   has_return_ = false;

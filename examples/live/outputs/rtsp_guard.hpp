@@ -9,25 +9,25 @@
 
 namespace live {
 
-/// What a client may send over RTSP, checked on the bytes themselves: gst-rtsp-server keeps the
-/// headers of a request without a bound, before it asks for a password.
+/// Limits what a client may send over RTSP by parsing its bytes. gst-rtsp-server itself collects a
+/// request's headers without a limit before it asks for the password.
 ///
-/// Follows the parser of GStreamer's GstRTSPConnection: requests without a body, and interleaved
-/// binary data [RFC 2326, section 10.12]. What the two could read differently is refused: a
-/// parser that has lost its place limits nothing.
+/// Follows the parser of GstRTSPConnection: requests without a body, and interleaved binary data
+/// [RFC 2326, section 10.12]. Input that the two parsers could interpret differently is rejected,
+/// because a guard that loses synchronisation limits nothing.
 class RtspGuard {
  public:
-  /// @param clock  As that of Allowance.
+  /// @param clock  See Allowance.
   explicit RtspGuard(Allowance::Clock clock = nullptr);
 
-  /// The next bytes of the client, in any pieces.
-  /// @return false where there is too much, or what no client of RTSP sends: headers of more than
-  /// kMaxHeaders bytes, a control character in them, a line that does not end in CR LF, RTSP
-  /// through HTTP, or more requests and interleaved packets than kMessagesPerSecond.
+  /// Checks the client's next bytes, in pieces of any size.
+  /// @return false if a limit is exceeded or the input is not valid RTSP: headers above kMaxHeaders
+  /// bytes, a control character in them, a line that does not end in CR LF, RTSP over HTTP, or more
+  /// than kMessagesPerSecond requests and interleaved packets.
   [[nodiscard]] bool take(std::span<const std::uint8_t> bytes);
 
-  static constexpr std::size_t kMaxHeaders = 8192;    ///< All lines of a request.
-  static constexpr double kMessagesPerSecond = 50.0;  ///< RTCP reports come every few seconds.
+  static constexpr std::size_t kMaxHeaders = 8192;    ///< All lines of a request together.
+  static constexpr double kMessagesPerSecond = 50.0;  ///< RTCP reports arrive every few seconds.
 
  private:
   enum class Part { kStart, kLines, kDataHeader, kData };
@@ -38,11 +38,11 @@ class RtspGuard {
 
   Allowance messages_;
   Part part_ = Part::kStart;
-  std::string method_;            // the first letters of a request, and no more
-  std::size_t header_bytes_ = 0;  // of this request or packet, so far
+  std::string method_;            // first kMethodBytes of the request
+  std::size_t header_bytes_ = 0;  // of this request or packet so far
   std::size_t line_bytes_ = 0;    // of this line, without its end
-  std::size_t data_bytes_ = 0;    // of this packet, yet to come
-  bool has_return_ = false;       // the last byte was a carriage return
+  std::size_t data_bytes_ = 0;    // of this packet, remaining
+  bool has_return_ = false;       // the previous byte was a carriage return
 };
 
 }  // namespace live

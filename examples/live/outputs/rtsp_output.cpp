@@ -25,13 +25,13 @@ Ref<GstElement> inlet_of(GstRTSPMedia* media) {
 
 }  // namespace
 
-// Where frames go: the media that are prepared now. Any thread.
+// The appsrc elements of all prepared media. Thread-safe.
 struct RtspOutput::Inlets {
   std::mutex mutex;
   std::vector<Ref<GstElement>> inlets;
   FramePtr newest;
 
-  // Calls back with its own reference to this, until the object is gone.
+  // Connects a signal whose handler shares ownership of the Inlets.
   static void connect(gpointer object,
                       const char* signal,
                       GCallback callback,
@@ -50,7 +50,7 @@ struct RtspOutput::Inlets {
     connect(media, "unprepared", G_CALLBACK(on_unprepared), self);
     Ref<GstElement> inlet = inlet_of(media);
     const std::lock_guard lock(self->mutex);
-    // So that a client that joins while a file is paused learns what the video is.
+    // Gives a client that joins while a file is paused a frame to preroll on.
     if (self->newest) push_frame(GST_APP_SRC(inlet.get()), *self->newest);
     self->inlets.push_back(std::move(inlet));
   }
@@ -78,7 +78,7 @@ RtspOutput::RtspOutput(const Settings& settings)
   Inlets::connect(factory, "media-configure", G_CALLBACK(Inlets::on_configure), inlets_);
   if (!settings.token.empty()) ask_for(settings.token, factory);
   const Ref<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server_.get()));
-  gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // takes the factory
+  gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // transfers ownership
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server_.get()));
   gst_rtsp_session_pool_set_max_sessions(pool.get(), kMaxSessions);
   try {
@@ -119,7 +119,7 @@ void RtspOutput::put(const FramePtr& frame) {
   for (const auto& inlet : inlets_->inlets) push_frame(GST_APP_SRC(inlet.get()), *frame);
 }
 
-// Clients that went without a word.
+// Removes the sessions of clients that left without teardown.
 gboolean RtspOutput::on_glance(gpointer data) {
   auto* self = static_cast<RtspOutput*>(data);
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(self->server_.get()));

@@ -11,23 +11,23 @@
 
 namespace live {
 
-/// rtsp://ADDRESS:PORT/live: H.264 with the ellipses drawn in. Encodes once for all clients, and
-/// only while there is one.
+/// Serves rtsp://ADDRESS:PORT/live: H.264 with the ellipses drawn in. Encodes once for all clients,
+/// and only while there are clients.
 class RtspOutput {
  public:
   struct Settings {
     std::string address = "127.0.0.1";
-    int port = 8554;    ///< 0 = one that is free.
-    std::string token;  ///< Password of the user "ellipse"; empty = none is asked for.
+    int port = 8554;    ///< 0 = any free port.
+    std::string token;  ///< Password of the user "ellipse"; empty = none required.
   };
 
-  /// Throws std::runtime_error where it cannot listen there, or no encoder is installed.
+  /// Throws std::runtime_error if it cannot listen or no H.264 encoder is installed.
   explicit RtspOutput(const Settings& settings);
   ~RtspOutput();
   RtspOutput(const RtspOutput&) = delete;
   RtspOutput& operator=(const RtspOutput&) = delete;
 
-  /// Any thread; never waits for a client.
+  /// Thread-safe; never blocks on a client.
   void put(const FramePtr& frame);
 
   [[nodiscard]] int port() const { return door_->port(); }
@@ -39,10 +39,10 @@ class RtspOutput {
 
   void ask_for(const std::string& token, GstRTSPMediaFactory* factory);
 
-  std::shared_ptr<Inlets> inlets_;  // also of media that outlive this in the server's threads
+  std::shared_ptr<Inlets> inlets_;  // shared with media that the server's threads destroy later
   Ref<GstRTSPServer> server_;
   guint glance_ = 0;
-  std::optional<RtspDoor> door_;  // last: its clients go before what their media write to
+  std::optional<RtspDoor> door_;  // last: destroyed before the inlets and the server
 };
 
 }  // namespace live

@@ -17,10 +17,10 @@ constexpr gint64 kFollowedUs = 500 * 1000;
 constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
 constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxDelays = 256;
-constexpr std::size_t kMaxInFlight = 2;  // one on its way, one being painted
+constexpr std::size_t kMaxInFlight = 2;  // one in transit, one being painted
 constexpr char kBoundary[] = "ellipse-frame";
 
-// {"ack":123}
+// Parses {"ack":123}.
 bool parse_ack(std::string_view text, guint64& pts) {
   constexpr std::string_view kStart = "{\"ack\":";
   if (!text.starts_with(kStart) || !text.ends_with('}')) return false;
@@ -77,9 +77,9 @@ class SocketViewer : public Viewer {
   gint64 waiting_since_us_ = 0;
 };
 
-// A browser shows a picture when the next one begins, so that one which nothing follows is sent
-// once more. That a client has gone shows where something is written: now and then it is sent
-// again.
+// A browser shows a picture only when the next part begins, so a picture without a successor is
+// sent twice. A disconnected client is detected only by a write, so the last picture is repeated
+// when there are no frames.
 class StreamViewer : public Viewer {
  public:
   StreamViewer(SoupServerMessage* request,
@@ -103,7 +103,7 @@ class StreamViewer : public Viewer {
     if (!is_ready() && quiet_us > kPatienceUs) stream_.end();
     if (!is_ready() || quiet_us < (has_second_ ? kQuietUs : kFollowedUs)) return;
     if (is_first_) {
-      write("\r\n");  // before the first part anything may stand
+      write("\r\n");  // a preamble may precede the first part
     } else if (last == picture.number) {
       write(part_of(picture));
     }
@@ -129,7 +129,7 @@ class StreamViewer : public Viewer {
   HttpStream stream_;
   gint64 written_us_ = g_get_monotonic_time();
   bool is_first_ = true;
-  bool has_second_ = false;  // the last one was sent twice
+  bool has_second_ = false;  // the last part was sent twice
 };
 
 }  // namespace
@@ -201,7 +201,7 @@ void VideoFeed::update() {
   if (is_wanted && !is_current && !encoder_.is_busy()) encoder_.encode(newest);
 }
 
-// Who is ready now gets it even where a newer frame has come meanwhile: it is the newest picture.
+// Sends the picture even if a newer frame exists: it is the newest encoded one.
 void VideoFeed::deliver(Picture picture) {
   picture_ = std::move(picture);
   for (const auto& viewer : viewers_) {

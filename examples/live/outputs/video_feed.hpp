@@ -11,23 +11,23 @@
 
 namespace live {
 
-/// Somebody who watches the video.
+/// A client that watches the video.
 class Viewer {
  public:
   virtual ~Viewer() = default;
   /// Whether another picture may be sent now.
   [[nodiscard]] virtual bool is_ready() const = 0;
   virtual void send(const Picture& picture) = 0;
-  /// Once a second: ends what has taken nothing for long, sends again what is not shown yet.
+  /// Called once a second. Ends a client that has read nothing for too long; repeats a picture that
+  /// a browser does not show yet.
   virtual void take_glance(const Picture& newest) = 0;
 
   static constexpr guint64 kNothing = G_MAXUINT64;
-  guint64 last = kNothing;  ///< The number of the frame that it was sent last.
+  guint64 last = kNothing;  ///< Number of the frame sent last.
 };
 
-/// Sends each viewer the newest frame whenever it can take one. A frame is encoded once for all of
-/// them, and only where one of them is ready for it: no viewer, no encoding. For the main loop's
-/// thread.
+/// Sends each viewer the newest frame whenever it is ready. A frame is encoded once for all
+/// viewers, and only if a viewer is ready. Main loop only.
 class VideoFeed {
  public:
   VideoFeed(FrameStore& store, int quality);
@@ -35,18 +35,18 @@ class VideoFeed {
   VideoFeed(const VideoFeed&) = delete;
   VideoFeed& operator=(const VideoFeed&) = delete;
 
-  /// Binary messages of PTS and JPEG; the client answers {"ack":pts} when it has painted one.
+  /// Sends binary messages of PTS and JPEG; the client answers {"ack":pts} after painting one.
   void add(std::unique_ptr<WebSocket> socket);
-  /// multipart/x-mixed-replace, for what knows no WebSocket.
+  /// Sends multipart/x-mixed-replace, for clients without WebSocket.
   void add_stream(SoupServerMessage* request);
 
-  /// Looks at what is new in the store.
+  /// Sends or encodes the store's newest frame where needed.
   void update();
 
   [[nodiscard]] std::size_t viewers() const { return viewers_.size(); }
   [[nodiscard]] guint64 encoded() const { return encoder_.encoded(); }
-  /// From a frame's arrival at the tracker until a viewer had painted it and said so, of the last
-  /// 256 [ns]: `share` 0.5 = the median. NONE where there were none.
+  /// Quantile of the last 256 delays [ns] from a frame's arrival at the tracker to its
+  /// acknowledgement; `share` 0.5 is the median. GST_CLOCK_TIME_NONE if there are none.
   [[nodiscard]] GstClockTime paint_delay(double share) const;
   [[nodiscard]] guint64 sent() const { return sent_; }
   [[nodiscard]] guint64 sent_bytes() const { return sent_bytes_; }
