@@ -9,12 +9,12 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMost = 160;
-constexpr std::ptrdiff_t kMaxOfAddress = 40;
-constexpr guint kGlanceMs = 1000;
+constexpr std::size_t kMaxConnections = 160;
+constexpr std::ptrdiff_t kMaxPerAddress = 40;
+constexpr guint kTickMs = 1000;
 constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // for a complete request
-constexpr guint kSilenceSeconds = 20;               // without reading or writing
-constexpr gint kUnheardMs = 30'000;                 // without TCP acknowledgement
+constexpr guint kIdleTimeoutSeconds = 20;           // without reading or writing
+constexpr gint kAckTimeoutMs = 30'000;              // without TCP acknowledgement
 
 std::string text_of(GSocketAddress* address) {
   const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));
@@ -23,10 +23,10 @@ std::string text_of(GSocketAddress* address) {
 
 }  // namespace
 
-Connections::Connections() : glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
+Connections::Connections() : tick_(g_timeout_add(kTickMs, on_tick, this)) {}
 
 Connections::~Connections() {
-  g_source_remove(glance_);
+  g_source_remove(tick_);
 }
 
 bool Connections::admit(GSocketConnection* connection) {
@@ -36,9 +36,9 @@ bool Connections::admit(GSocketConnection* connection) {
   GInetAddress* address = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(remote.get()));
   const Ref<gchar> name(g_inet_address_to_string(address));
   if (!has_room(address, name.get())) return false;
-  g_socket_set_timeout(socket, kSilenceSeconds);
+  g_socket_set_timeout(socket, kIdleTimeoutSeconds);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
-  g_socket_set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kUnheardMs, nullptr);
+  g_socket_set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kAckTimeoutMs, nullptr);
   const std::string client = text_of(remote.get());
   (*open_)[client] = {share(socket), name.get(), g_get_monotonic_time() + kRequestUs};
   g_object_weak_ref(G_OBJECT(connection), on_gone, new Gone{open_, client});
@@ -47,22 +47,22 @@ bool Connections::admit(GSocketConnection* connection) {
 
 // Local programs share one address, and so do the clients of a tunnel.
 bool Connections::has_room(GInetAddress* address, const std::string& name) const {
-  if (open_->size() >= kMost) return false;
+  if (open_->size() >= kMaxConnections) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
   return std::count_if(open_->begin(), open_->end(), [&name](const auto& each) {
            return each.second.address == name;
-         }) < kMaxOfAddress;
+         }) < kMaxPerAddress;
 }
 
 GSocket* Connections::keep(GSocketAddress* client) {
   const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
   if (found == open_->end()) return nullptr;
   found->second.deadline_us = 0;
-  g_socket_set_timeout(found->second.socket.get(), kSilenceSeconds);
+  g_socket_set_timeout(found->second.socket.get(), kIdleTimeoutSeconds);
   return found->second.socket.get();
 }
 
-void Connections::allow_silence(GSocketAddress* client) {
+void Connections::disable_idle_timeout(GSocketAddress* client) {
   const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
   if (found != open_->end()) g_socket_set_timeout(found->second.socket.get(), 0);
 }
@@ -74,7 +74,7 @@ void Connections::on_gone(gpointer data, GObject* /*connection*/) {
 
 // A client that sends a byte now and then never times out, so requests have a deadline. The
 // shutdown ends libsoup's read, which closes the connection.
-gboolean Connections::on_glance(gpointer data) {
+gboolean Connections::on_tick(gpointer data) {
   const gint64 now_us = g_get_monotonic_time();
   for (auto& [client, each] : *static_cast<Connections*>(data)->open_) {
     if (each.deadline_us == 0 || now_us < each.deadline_us) continue;

@@ -29,7 +29,7 @@ class Connections {
 
   /// Disables a client's silence timeout. Must be called before a WebSocket starts to read: a
   /// pending read keeps the timeout that it started with.
-  void allow_silence(GSocketAddress* client);
+  void disable_idle_timeout(GSocketAddress* client);
 
   [[nodiscard]] std::size_t size() const { return open_->size(); }
 
@@ -47,11 +47,11 @@ class Connections {
   };
 
   static void on_gone(gpointer data, GObject* connection);
-  static gboolean on_glance(gpointer data);
+  static gboolean on_tick(gpointer data);
   [[nodiscard]] bool has_room(GInetAddress* address, const std::string& name) const;
 
   std::shared_ptr<ByClient> open_ = std::make_shared<ByClient>();
-  guint glance_;
+  guint tick_;
 };
 
 }  // namespace live

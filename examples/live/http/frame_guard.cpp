@@ -12,7 +12,7 @@ constexpr std::size_t kMaskBytes = 4;
 
 }  // namespace
 
-FrameGuard::FrameGuard(Allowance::Clock clock)
+FrameGuard::FrameGuard(RateLimiter::Clock clock)
     : frames_(kFramesPerSecond, kFramesAtOnce, clock),
       controls_(kControlsPerSecond, kControlsAtOnce, clock) {}
 

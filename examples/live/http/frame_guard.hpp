@@ -12,8 +12,8 @@ namespace live {
 /// libsoup itself collects the fragments of a message without a limit and answers every ping.
 class FrameGuard {
  public:
-  /// @param clock  See Allowance.
-  explicit FrameGuard(Allowance::Clock clock = nullptr);
+  /// @param clock  See RateLimiter.
+  explicit FrameGuard(RateLimiter::Clock clock = nullptr);
 
   /// Checks the client's next bytes, in pieces of any size.
   /// @return false if a limit is exceeded: kMaxMessage bytes for all fragments of a message,
@@ -28,8 +28,8 @@ class FrameGuard {
   [[nodiscard]] bool take_header_byte(std::uint8_t byte);
   [[nodiscard]] bool begin_payload();
 
-  Allowance frames_;
-  Allowance controls_;
+  RateLimiter frames_;
+  RateLimiter controls_;
   std::uint8_t opcode_ = 0;
   bool is_last_ = false;              // fragment of its message
   std::size_t header_bytes_ = 0;      // of this frame's header so far

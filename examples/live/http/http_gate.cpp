@@ -9,7 +9,7 @@ namespace live {
 namespace {
 
 constexpr goffset kMaxBody = 64 * 1024;
-constexpr std::size_t kLongestPath = 1024;
+constexpr std::size_t kMaxPathLength = 1024;
 constexpr gsize kMaxHeaders = 16 * 1024;
 constexpr double kRequestsPerSecond = 100.0;
 constexpr double kRequestsAtOnce = 300.0;
@@ -49,12 +49,12 @@ std::string cookie_of(SoupServerMessage* message) {
 }
 
 // libsoup reads a body to its end even after an error reply, and would store all of it.
-void forget_body(SoupServerMessage* message) {
+void discard_body(SoupServerMessage* message) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(message), FALSE);
 }
 
 bool refuse(SoupServerMessage* message, int status, const std::string& why) {
-  forget_body(message);
+  discard_body(message);
   answer(message, error_reply(status, why));
   return true;
 }
@@ -62,7 +62,7 @@ bool refuse(SoupServerMessage* message, int status, const std::string& why) {
 }  // namespace
 
 bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
-  if (!may_ask_now(message)) return refuse(message, 429, "too many requests");
+  if (!is_within_rate(message)) return refuse(message, 429, "too many requests");
   const std::string host = header(message, "Host");
   if (token_.empty() && !is_loopback_host(host)) {
     return refuse(message, 403, "the Host header does not name this machine");
@@ -70,7 +70,7 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
   if (is_foreign({host, header(message, "Origin"), header(message, "Sec-Fetch-Site")})) {
     return refuse(message, 403, "cross-site requests are rejected");
   }
-  if (path.size() > kLongestPath) return refuse(message, 414, "path too long");
+  if (path.size() > kMaxPathLength) return refuse(message, 414, "path too long");
   if (size_of_headers(message) > kMaxHeaders) {
     return refuse(message, 431, "headers too large");
   }
@@ -90,11 +90,11 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
   return false;
 }
 
-bool HttpGate::may_ask_now(SoupServerMessage* message) {
+bool HttpGate::is_within_rate(SoupServerMessage* message) {
   const char* host = soup_server_message_get_remote_host(message);
   const std::string address = host != nullptr ? host : "";
-  if (allowances_.size() >= kMaxAddresses) allowances_.clear();
-  return allowances_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
+  if (limiters_.size() >= kMaxAddresses) limiters_.clear();
+  return limiters_.try_emplace(address, kRequestsPerSecond, kRequestsAtOnce).first->second.take();
 }
 
 bool HttpGate::has_token(SoupServerMessage* message) const {
@@ -118,7 +118,7 @@ bool HttpGate::take_token_from_link(SoupServerMessage* message, const std::strin
   if (!given.starts_with(kStart) || !is_same_secret(given.substr(kStart.size()), token_)) {
     return false;
   }
-  forget_body(message);
+  discard_body(message);
   soup_message_headers_replace(
       soup_server_message_get_response_headers(message),
       "Set-Cookie",

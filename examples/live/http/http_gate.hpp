@@ -23,10 +23,10 @@ class HttpGate {
  private:
   [[nodiscard]] bool has_token(SoupServerMessage* message) const;
   bool take_token_from_link(SoupServerMessage* message, const std::string& path) const;
-  bool may_ask_now(SoupServerMessage* message);
+  bool is_within_rate(SoupServerMessage* message);
 
   std::string token_;
-  std::map<std::string, Allowance> allowances_;  // by client address
+  std::map<std::string, RateLimiter> limiters_;  // by client address
 };
 
 }  // namespace live

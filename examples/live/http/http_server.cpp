@@ -7,7 +7,7 @@
 namespace live {
 namespace {
 
-constexpr int kWaiting = 160;  // backlog of connections to accept
+constexpr int kBacklog = 160;  // connections waiting for accept()
 
 std::string body_of(SoupServerMessage* message) {
   const Ref<GBytes> bytes(soup_message_body_flatten(soup_server_message_get_request_body(message)));
@@ -46,7 +46,7 @@ void HttpServer::listen() {
       g_inet_socket_address_new_from_string(settings_.address.c_str(), settings_.port));
   if (!wanted)
     throw std::runtime_error("\"" + settings_.address + "\" is not an address to listen on");
-  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kWaiting);
+  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kBacklog);
   GSocketAddress* effective = nullptr;
   GError* problem = nullptr;
   g_socket_listener_add_address(G_SOCKET_LISTENER(service_.get()),
@@ -128,7 +128,7 @@ void HttpServer::on_early(SoupServer* /*server*/,
   if (is_refused) {
     ++self->counters_.refused;
   } else if (self->websockets_.contains(path)) {
-    self->connections_.allow_silence(soup_server_message_get_remote_address(message));
+    self->connections_.disable_idle_timeout(soup_server_message_get_remote_address(message));
   }
 }
 

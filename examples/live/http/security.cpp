@@ -13,16 +13,16 @@
 
 namespace live {
 
-Allowance::Allowance(double per_second, double most, Clock clock)
+RateLimiter::RateLimiter(double per_second, double burst, Clock clock)
     : per_second_(per_second),
-      most_(most),
-      left_(most),
+      burst_(burst),
+      left_(burst),
       clock_(clock != nullptr ? clock : g_get_monotonic_time),
       last_us_(clock_()) {}
 
-bool Allowance::take() {
+bool RateLimiter::take() {
   const std::int64_t now_us = clock_();
-  left_ = std::min(most_, left_ + 1e-6 * static_cast<double>(now_us - last_us_) * per_second_);
+  left_ = std::min(burst_, left_ + 1e-6 * static_cast<double>(now_us - last_us_) * per_second_);
   last_us_ = now_us;
   if (left_ < 1.0) return false;
   left_ -= 1.0;
@@ -30,9 +30,9 @@ bool Allowance::take() {
 }
 
 bool is_foreign(const Origin& origin) {
-  const bool is_told =
+  const bool is_cross_site =
       origin.sec_fetch_site == "cross-site" || origin.sec_fetch_site == "same-site";
-  if (is_told) return true;
+  if (is_cross_site) return true;
   return !origin.origin.empty() && origin.origin != "http://" + origin.host;
 }
 

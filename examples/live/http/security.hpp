@@ -7,17 +7,17 @@
 namespace live {
 
 /// Rate limit with a burst size (token bucket). Not thread-safe.
-class Allowance {
+class RateLimiter {
  public:
   using Clock = std::int64_t (*)();  ///< Monotonic time [us].
 
-  Allowance(double per_second, double most, Clock clock = nullptr);
+  RateLimiter(double per_second, double burst, Clock clock = nullptr);
   /// @return false if the limit is exceeded.
   bool take();
 
  private:
   double per_second_;
-  double most_;
+  double burst_;
   double left_;
   Clock clock_;
   std::int64_t last_us_;

@@ -3,11 +3,11 @@
 
 namespace live {
 
-std::string frame_inlet(const std::string& name, int most_frames) {
+std::string frame_inlet(const std::string& name, int max_frames) {
   return "appsrc name=" + name +
          " is-live=true format=time do-timestamp=true leaky-type=downstream max-bytes=0 "
          "max-buffers=" +
-         std::to_string(most_frames);
+         std::to_string(max_frames);
 }
 
 void push_frame(GstAppSrc* inlet, const Frame& frame) {

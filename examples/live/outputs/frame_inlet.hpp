@@ -8,7 +8,7 @@ namespace live {
 
 /// Start of a gst-launch line for push_frame(): an appsrc with this name. It never blocks; when
 /// full, it drops its oldest frames.
-[[nodiscard]] std::string frame_inlet(const std::string& name, int most_frames);
+[[nodiscard]] std::string frame_inlet(const std::string& name, int max_frames);
 
 /// Pushes a frame into such an appsrc, timestamped by that pipeline's clock. Thread-safe; never
 /// blocks; copies no pixel.

@@ -6,11 +6,11 @@
 namespace live {
 namespace {
 
-constexpr guint kGlanceMs = 1000;
-constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
-constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
-constexpr std::size_t kLongestQueue = 30;  // 1 s of video at 30 Hz
-constexpr int kBufferBytes = 32 * 1024;    // about a hundred lines
+constexpr guint kTickMs = 1000;
+constexpr gint64 kStallTimeoutUs = 30 * G_USEC_PER_SEC;
+constexpr gint64 kKeepaliveUs = 5 * G_USEC_PER_SEC;
+constexpr std::size_t kMaxQueueLength = 30;  // 1 s of video at 30 Hz
+constexpr int kBufferBytes = 32 * 1024;      // about a hundred lines
 
 class SocketListener : public LineFeed::Listener {
  public:
@@ -46,8 +46,8 @@ class EventListener : public LineFeed::Listener {
     write("data: " + line + "\n");
     return true;
   }
-  void take_glance() override {
-    if (stream_.is_ready() && g_get_monotonic_time() - written_us_ >= kQuietUs) write(": \n\n");
+  void tick() override {
+    if (stream_.is_ready() && g_get_monotonic_time() - written_us_ >= kKeepaliveUs) write(": \n\n");
   }
   void end() override { stream_.end(); }
 
@@ -63,27 +63,26 @@ class EventListener : public LineFeed::Listener {
 
 }  // namespace
 
-LineFeed::LineFeed() : glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
+LineFeed::LineFeed() : tick_(g_timeout_add(kTickMs, on_tick, this)) {}
 
 LineFeed::~LineFeed() {
-  g_source_remove(glance_);
+  g_source_remove(tick_);
 }
 
 void LineFeed::add(std::unique_ptr<WebSocket> socket) {
-  auto& place = listeners_.emplace_back();
-  place =
-      std::make_unique<SocketListener>(std::move(socket), [this, &place] { remove(place.get()); });
-  greet(*place);
+  auto& slot = listeners_.emplace_back();
+  slot = std::make_unique<SocketListener>(std::move(socket), [this, &slot] { remove(slot.get()); });
+  send_latest(*slot);
 }
 
 void LineFeed::add_events(SoupServerMessage* request) {
-  auto& place = listeners_.emplace_back();
-  place = std::make_unique<EventListener>(
-      request, [this, &place] { flush(*place); }, [this, &place] { remove(place.get()); });
-  greet(*place);
+  auto& slot = listeners_.emplace_back();
+  slot = std::make_unique<EventListener>(
+      request, [this, &slot] { flush(*slot); }, [this, &slot] { remove(slot.get()); });
+  send_latest(*slot);
 }
 
-void LineFeed::greet(Listener& listener) {
+void LineFeed::send_latest(Listener& listener) {
   if (last_.empty()) return;
   listener.queue.push_back(last_);
   flush(listener);
@@ -97,7 +96,7 @@ void LineFeed::send(const std::vector<std::string>& lines) {
   if (!lines.empty()) last_ = lines.back();
   for (const auto& listener : listeners_) {
     for (const std::string& line : lines) listener->queue.push_back(line);
-    for (; listener->queue.size() > kLongestQueue; ++lost_) listener->queue.pop_front();
+    for (; listener->queue.size() > kMaxQueueLength; ++lost_) listener->queue.pop_front();
     flush(*listener);
   }
 }
@@ -110,12 +109,12 @@ void LineFeed::flush(Listener& listener) {
   if (listener.queue.empty()) listener.moved_us = g_get_monotonic_time();
 }
 
-gboolean LineFeed::on_glance(gpointer data) {
+gboolean LineFeed::on_tick(gpointer data) {
   auto* self = static_cast<LineFeed*>(data);
   for (const auto& listener : self->listeners_) {
     self->flush(*listener);
-    if (listener->queue.empty()) listener->take_glance();
-    if (g_get_monotonic_time() - listener->moved_us > kPatienceUs) listener->end();
+    if (listener->queue.empty()) listener->tick();
+    if (g_get_monotonic_time() - listener->moved_us > kStallTimeoutUs) listener->end();
   }
   return G_SOURCE_CONTINUE;
 }

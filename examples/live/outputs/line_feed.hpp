@@ -40,7 +40,7 @@ class LineFeed {
     /// Closes a listener that has read nothing for too long.
     virtual void end() = 0;
     /// Called once a second when the queue is empty.
-    virtual void take_glance() {}
+    virtual void tick() {}
 
     std::deque<std::string> queue;
     gint64 moved_us =
@@ -48,14 +48,14 @@ class LineFeed {
   };
 
  private:
-  static gboolean on_glance(gpointer data);
-  void greet(Listener& listener);
+  static gboolean on_tick(gpointer data);
+  void send_latest(Listener& listener);
   void flush(Listener& listener);
   void remove(const Listener* listener);
 
   std::list<std::unique_ptr<Listener>> listeners_;
   std::string last_;  // newest line; empty before the first one
-  guint glance_;
+  guint tick_;
   guint64 lost_ = 0;
 };
 

@@ -12,7 +12,7 @@ constexpr std::size_t kMethodBytes = 5;      // enough to distinguish HTTP from 
 
 }  // namespace
 
-RtspGuard::RtspGuard(Allowance::Clock clock)
+RtspGuard::RtspGuard(RateLimiter::Clock clock)
     : messages_(kMessagesPerSecond, kMessagesAtOnce, clock) {}
 
 bool RtspGuard::take(std::span<const std::uint8_t> bytes) {

@@ -17,8 +17,8 @@ namespace live {
 /// because a guard that loses synchronisation limits nothing.
 class RtspGuard {
  public:
-  /// @param clock  See Allowance.
-  explicit RtspGuard(Allowance::Clock clock = nullptr);
+  /// @param clock  See RateLimiter.
+  explicit RtspGuard(RateLimiter::Clock clock = nullptr);
 
   /// Checks the client's next bytes, in pieces of any size.
   /// @return false if a limit is exceeded or the input is not valid RTSP: headers above kMaxHeaders
@@ -36,7 +36,7 @@ class RtspGuard {
   [[nodiscard]] bool take_text(std::uint8_t byte);
   void take_data_header(std::uint8_t byte);
 
-  Allowance messages_;
+  RateLimiter messages_;
   Part part_ = Part::kStart;
   std::string method_;            // first kMethodBytes of the request
   std::size_t header_bytes_ = 0;  // of this request or packet so far

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxWaiting = 2;  // frames
 constexpr guint kMaxSessions = 16;
-constexpr guint kGlanceSeconds = 2;
+constexpr guint kTickSeconds = 2;
 constexpr char kInlet[] = "frames";
 constexpr char kUser[] = "ellipse";
 constexpr char kRole[] = "viewer";
@@ -76,25 +76,25 @@ RtspOutput::RtspOutput(const Settings& settings)
           .c_str());
   gst_rtsp_media_factory_set_shared(factory, TRUE);
   Inlets::connect(factory, "media-configure", G_CALLBACK(Inlets::on_configure), inlets_);
-  if (!settings.token.empty()) ask_for(settings.token, factory);
+  if (!settings.token.empty()) require_token(settings.token, factory);
   const Ref<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server_.get()));
   gst_rtsp_mount_points_add_factory(mounts.get(), "/live", factory);  // transfers ownership
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server_.get()));
   gst_rtsp_session_pool_set_max_sessions(pool.get(), kMaxSessions);
   try {
-    door_.emplace(server_.get());
+    proxy_.emplace(server_.get());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("cannot serve RTSP on " + settings.address + ":" +
                              std::to_string(settings.port) + ": " + error.what());
   }
-  glance_ = g_timeout_add_seconds(kGlanceSeconds, on_glance, this);
+  tick_ = g_timeout_add_seconds(kTickSeconds, on_tick, this);
 }
 
 RtspOutput::~RtspOutput() {
-  g_source_remove(glance_);
+  g_source_remove(tick_);
 }
 
-void RtspOutput::ask_for(const std::string& token, GstRTSPMediaFactory* factory) {
+void RtspOutput::require_token(const std::string& token, GstRTSPMediaFactory* factory) {
   gst_rtsp_media_factory_add_role(factory,
                                   kRole,
                                   GST_RTSP_PERM_MEDIA_FACTORY_ACCESS,
@@ -120,7 +120,7 @@ void RtspOutput::put(const FramePtr& frame) {
 }
 
 // Removes the sessions of clients that left without teardown.
-gboolean RtspOutput::on_glance(gpointer data) {
+gboolean RtspOutput::on_tick(gpointer data) {
   auto* self = static_cast<RtspOutput*>(data);
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(self->server_.get()));
   gst_rtsp_session_pool_cleanup(pool.get());

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "examples/live/outputs/rtsp_door.hpp"
+#include "examples/live/outputs/rtsp_proxy.hpp"
 #include "examples/live/pipeline/frame.hpp"
 
 namespace live {
@@ -30,19 +30,19 @@ class RtspOutput {
   /// Thread-safe; never blocks on a client.
   void put(const FramePtr& frame);
 
-  [[nodiscard]] int port() const { return door_->port(); }
+  [[nodiscard]] int port() const { return proxy_->port(); }
 
  private:
   struct Inlets;
 
-  static gboolean on_glance(gpointer data);
+  static gboolean on_tick(gpointer data);
 
-  void ask_for(const std::string& token, GstRTSPMediaFactory* factory);
+  void require_token(const std::string& token, GstRTSPMediaFactory* factory);
 
   std::shared_ptr<Inlets> inlets_;  // shared with media that the server's threads destroy later
   Ref<GstRTSPServer> server_;
-  guint glance_ = 0;
-  std::optional<RtspDoor> door_;  // last: destroyed before the inlets and the server
+  guint tick_ = 0;
+  std::optional<RtspProxy> proxy_;  // last: destroyed before the inlets and the server
 };
 
 }  // namespace live

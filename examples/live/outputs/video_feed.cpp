@@ -12,10 +12,10 @@
 namespace live {
 namespace {
 
-constexpr guint kGlanceMs = 1000;
-constexpr gint64 kFollowedUs = 500 * 1000;
-constexpr gint64 kQuietUs = 5 * G_USEC_PER_SEC;
-constexpr gint64 kPatienceUs = 30 * G_USEC_PER_SEC;
+constexpr guint kTickMs = 1000;
+constexpr gint64 kRepeatUs = 500 * 1000;
+constexpr gint64 kKeepaliveUs = 5 * G_USEC_PER_SEC;
+constexpr gint64 kStallTimeoutUs = 30 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxDelays = 256;
 constexpr std::size_t kMaxInFlight = 2;  // one in transit, one being painted
 constexpr char kBoundary[] = "ellipse-frame";
@@ -48,8 +48,8 @@ class SocketViewer : public Viewer {
     socket_->send_binary(picture.stamped.get());
   }
 
-  void take_glance(const Picture& /*newest*/) override {
-    if (in_flight_.empty() || g_get_monotonic_time() - waiting_since_us_ < kPatienceUs) return;
+  void tick(const Picture& /*newest*/) override {
+    if (in_flight_.empty() || g_get_monotonic_time() - waiting_since_us_ < kStallTimeoutUs) return;
     socket_->close("no acknowledgement");
   }
 
@@ -98,10 +98,10 @@ class StreamViewer : public Viewer {
     is_first_ = false;
   }
 
-  void take_glance(const Picture& picture) override {
+  void tick(const Picture& picture) override {
     const gint64 quiet_us = g_get_monotonic_time() - written_us_;
-    if (!is_ready() && quiet_us > kPatienceUs) stream_.end();
-    if (!is_ready() || quiet_us < (has_second_ ? kQuietUs : kFollowedUs)) return;
+    if (!is_ready() && quiet_us > kStallTimeoutUs) stream_.end();
+    if (!is_ready() || quiet_us < (has_second_ ? kKeepaliveUs : kRepeatUs)) return;
     if (is_first_) {
       write("\r\n");  // a preamble may precede the first part
     } else if (last == picture.number) {
@@ -137,34 +137,34 @@ class StreamViewer : public Viewer {
 VideoFeed::VideoFeed(FrameStore& store, int quality)
     : store_(store),
       encoder_(quality, [this](Picture picture) { deliver(std::move(picture)); }),
-      glance_(g_timeout_add(kGlanceMs, on_glance, this)) {}
+      tick_(g_timeout_add(kTickMs, on_tick, this)) {}
 
 VideoFeed::~VideoFeed() {
-  g_source_remove(glance_);
+  g_source_remove(tick_);
 }
 
 void VideoFeed::add(std::unique_ptr<WebSocket> socket) {
-  auto& place = viewers_.emplace_back();
-  const auto remove_it = [this, &place] { remove(place.get()); };
-  place = std::make_unique<SocketViewer>(
+  auto& slot = viewers_.emplace_back();
+  const auto on_closed = [this, &slot] { remove(slot.get()); };
+  slot = std::make_unique<SocketViewer>(
       std::move(socket),
       [this](gint64 delay_us) {
-        note_painted(delay_us);
+        add_paint_delay(delay_us);
         update();
       },
-      remove_it);
+      on_closed);
   update();
 }
 
 void VideoFeed::add_stream(SoupServerMessage* request) {
-  auto& place = viewers_.emplace_back();
-  const auto remove_it = [this, &place] { remove(place.get()); };
-  place = std::make_unique<StreamViewer>(
-      request, [this] { update(); }, remove_it);
+  auto& slot = viewers_.emplace_back();
+  const auto on_closed = [this, &slot] { remove(slot.get()); };
+  slot = std::make_unique<StreamViewer>(
+      request, [this] { update(); }, on_closed);
   update();
 }
 
-void VideoFeed::note_painted(gint64 delay_us) {
+void VideoFeed::add_paint_delay(gint64 delay_us) {
   if (paint_delays_.size() == kMaxDelays) paint_delays_.pop_front();
   paint_delays_.push_back(static_cast<GstClockTime>(delay_us) * GST_USECOND);
 }
@@ -210,9 +210,9 @@ void VideoFeed::deliver(Picture picture) {
   update();
 }
 
-gboolean VideoFeed::on_glance(gpointer data) {
+gboolean VideoFeed::on_tick(gpointer data) {
   auto* self = static_cast<VideoFeed*>(data);
-  for (const auto& viewer : self->viewers_) viewer->take_glance(self->picture_);
+  for (const auto& viewer : self->viewers_) viewer->tick(self->picture_);
   self->update();
   return G_SOURCE_CONTINUE;
 }

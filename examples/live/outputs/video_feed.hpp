@@ -20,7 +20,7 @@ class Viewer {
   virtual void send(const Picture& picture) = 0;
   /// Called once a second. Ends a client that has read nothing for too long; repeats a picture that
   /// a browser does not show yet.
-  virtual void take_glance(const Picture& newest) = 0;
+  virtual void tick(const Picture& newest) = 0;
 
   static constexpr guint64 kNothing = G_MAXUINT64;
   guint64 last = kNothing;  ///< Number of the frame sent last.
@@ -52,18 +52,18 @@ class VideoFeed {
   [[nodiscard]] guint64 sent_bytes() const { return sent_bytes_; }
 
  private:
-  static gboolean on_glance(gpointer data);
+  static gboolean on_tick(gpointer data);
   void deliver(Picture picture);
   void send(Viewer& viewer);
   void remove(const Viewer* viewer);
-  void note_painted(gint64 delay_us);
+  void add_paint_delay(gint64 delay_us);
 
   FrameStore& store_;
   JpegEncoder encoder_;
   Picture picture_;
   std::list<std::unique_ptr<Viewer>> viewers_;
   std::deque<GstClockTime> paint_delays_;
-  guint glance_;
+  guint tick_;
   guint64 sent_ = 0;
   guint64 sent_bytes_ = 0;
 };

@@ -15,12 +15,12 @@ std::atomic<guint64> next_number{0};
 
 }  // namespace
 
-FramePtr make_frame(GstSample* theirs, Ref<GstBuffer> input, guint64 index, gint64 arrived_us) {
+FramePtr make_frame(GstSample* sample, Ref<GstBuffer> input, guint64 index, gint64 arrived_us) {
   auto frame = std::make_shared<Frame>();
-  frame->sample.reset(gst_sample_copy(theirs));
-  GstBuffer* buffer = gst_sample_get_buffer(theirs);
+  frame->sample.reset(gst_sample_copy(sample));
+  GstBuffer* buffer = gst_sample_get_buffer(sample);
   GstVideoInfo info;
-  if (buffer == nullptr || !gst_video_info_from_caps(&info, gst_sample_get_caps(theirs))) {
+  if (buffer == nullptr || !gst_video_info_from_caps(&info, gst_sample_get_caps(sample))) {
     return nullptr;
   }
   frame->input = std::move(input);

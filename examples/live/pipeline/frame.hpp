@@ -26,7 +26,7 @@ using FramePtr = std::shared_ptr<const Frame>;
 /// Makes a frame from the tracker's output. Thread-safe.
 /// @param sample  Copied, because appsink 1.22 overwrites its own sample after a flush.
 /// @return nullptr if the sample is not video.
-[[nodiscard]] FramePtr make_frame(GstSample* theirs,
+[[nodiscard]] FramePtr make_frame(GstSample* sample,
                                   Ref<GstBuffer> input,
                                   guint64 index,
                                   gint64 arrived_us);

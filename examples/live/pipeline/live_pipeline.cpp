@@ -9,14 +9,14 @@
 namespace live {
 namespace {
 
-constexpr guint kGlanceMs = 1000;
+constexpr guint kTickMs = 1000;
 // Ticks without a frame until a live source counts as dropped. The first frame takes longer: the
 // source has to connect and wait for a key frame.
-constexpr guint kFirstPatience = 15;
-constexpr guint kPatience = 5;
-constexpr guint kLookMs = 2;
+constexpr guint kMaxTicksToFirstFrame = 15;
+constexpr guint kMaxTicksWithoutFrame = 5;
+constexpr guint kPollMs = 2;
 constexpr guint kFirstRetryMs = 500;
-constexpr guint kSlowestRetryMs = 5000;
+constexpr guint kMaxRetryMs = 5000;
 
 GstElement* add(GstElement* pipeline, const char* factory) {
   GstElement* element = gst_element_factory_make(factory, nullptr);
@@ -88,13 +88,13 @@ LivePipeline::LivePipeline(Handlers handlers)
   gst_element_link(tracker_, sink_);
   const Ref<GstBus> bus(gst_element_get_bus(pipeline_));
   bus_watch_ = gst_bus_add_watch(bus.get(), on_message, this);
-  glance_ = g_timeout_add(kGlanceMs, on_glance, this);
+  tick_ = g_timeout_add(kTickMs, on_tick, this);
 }
 
 LivePipeline::~LivePipeline() {
   cancel_retry();
-  if (look_ != 0) g_source_remove(look_);
-  g_source_remove(glance_);
+  if (poll_ != 0) g_source_remove(poll_);
+  g_source_remove(tick_);
   g_source_remove(bus_watch_);
   gst_element_set_state(pipeline_, GST_STATE_NULL);
   gst_object_unref(pipeline_);
@@ -119,7 +119,7 @@ void LivePipeline::open(SourceSpec spec, bool loops) {
 
 void LivePipeline::start(GstState wanted) {
   state_ = PlayState::kStarting;
-  glances_without_frames_ = 0;
+  ticks_without_frames_ = 0;
   has_begun_ = false;
   try {
     source_ = source_bin(spec_.description);
@@ -137,7 +137,7 @@ void LivePipeline::start(GstState wanted) {
   state_ = wanted == GST_STATE_PLAYING ? PlayState::kPlaying : PlayState::kPausing;
   // A live source delivers its first frame only in PLAYING.
   if (spec_.is_live) gst_element_set_state(pipeline_, GST_STATE_PLAYING);
-  settle();
+  advance();
 }
 
 void LivePipeline::stop() {
@@ -156,24 +156,24 @@ void LivePipeline::play() {
   if (state_ != PlayState::kPaused && state_ != PlayState::kPausing) return;
   steps_ = 0;
   state_ = PlayState::kPlaying;
-  settle();
+  advance();
 }
 
 void LivePipeline::pause() {
   if (state_ != PlayState::kPlaying) return;
-  hold_still();
+  begin_pause();
 }
 
-void LivePipeline::hold_still() {
+void LivePipeline::begin_pause() {
   steps_ = 0;
   state_ = PlayState::kPausing;
-  settle();
+  advance();
 }
 
 // Advances towards the requested state, one transition at a time, each after the previous one is
 // complete. GStreamer 1.22 can hang between two states if it is reversed during a transition to
 // PLAYING, and a sink paused before it has resumed from its last pause continues to play.
-void LivePipeline::settle() {
+void LivePipeline::advance() {
   GstState now = GST_STATE_VOID_PENDING;
   if (state_ != PlayState::kPlaying && state_ != PlayState::kPausing) return;
   if (gst_element_get_state(pipeline_, &now, nullptr, 0) == GST_STATE_CHANGE_ASYNC) return;
@@ -181,30 +181,30 @@ void LivePipeline::settle() {
     rendered_before_ = tap_.rendered();
     gst_element_set_state(pipeline_, GST_STATE_PLAYING);
   } else if (state_ == PlayState::kPausing && now == GST_STATE_PLAYING) {
-    halt();
+    pause_after_frame();
   } else if (state_ == PlayState::kPausing && now == GST_STATE_PAUSED) {
-    stand_still();
+    finish_pause();
   }
 }
 
 // A paused sink waits for one more frame and renders it.
-void LivePipeline::halt() {
+void LivePipeline::pause_after_frame() {
   if (tap_.rendered() == rendered_before_ && !is_at_end()) {
-    if (look_ == 0) look_ = g_timeout_add(kLookMs, on_look, this);
+    if (poll_ == 0) poll_ = g_timeout_add(kPollMs, on_poll, this);
     return;
   }
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
-  settle();
+  advance();
 }
 
-gboolean LivePipeline::on_look(gpointer data) {
+gboolean LivePipeline::on_poll(gpointer data) {
   auto* self = static_cast<LivePipeline*>(data);
-  self->look_ = 0;
-  self->settle();
+  self->poll_ = 0;
+  self->advance();
   return G_SOURCE_REMOVE;
 }
 
-void LivePipeline::stand_still() {
+void LivePipeline::finish_pause() {
   state_ = PlayState::kPaused;
   // A paused sink does not post EOS when a step or seek reaches the end.
   if (std::exchange(is_moving_, false) && is_at_end() && tap_.frames() == frames_before_) {
@@ -226,7 +226,7 @@ void LivePipeline::step() {
   is_moving_ = true;
   frames_before_ = tap_.frames();
   gst_element_send_event(sink_, gst_event_new_step(GST_FORMAT_BUFFERS, 1, 1.0, TRUE, FALSE));
-  settle();
+  advance();
 }
 
 bool LivePipeline::is_at_end() const {
@@ -255,7 +255,7 @@ bool LivePipeline::seek(GstClockTime position) {
           static_cast<gint64>(position))) {
     return false;
   }
-  if (state_ != PlayState::kPlaying) hold_still();
+  if (state_ != PlayState::kPlaying) begin_pause();
   return true;
 }
 
@@ -296,7 +296,7 @@ gboolean LivePipeline::on_message(GstBus* /*bus*/, GstMessage* message, gpointer
       break;
     case GST_MESSAGE_ASYNC_DONE:
     case GST_MESSAGE_STATE_CHANGED:
-      self->settle();
+      self->advance();
       break;
     case GST_MESSAGE_LATENCY:
       gst_bin_recalculate_latency(GST_BIN(self->pipeline_));
@@ -326,7 +326,7 @@ void LivePipeline::source_dropped(const std::string& why) {
   const bool is_news = why != trouble_;
   trouble_ = why;
   stop();
-  glanced_frames_ = tap_.frames();  // earlier frames do not count as recovery
+  frames_at_tick_ = tap_.frames();  // earlier frames do not count as recovery
   if (!spec_.is_live) {
     state_ = PlayState::kFailed;
     handlers_.on_trouble(trouble_);
@@ -336,7 +336,7 @@ void LivePipeline::source_dropped(const std::string& why) {
   if (is_news) handlers_.on_trouble(trouble_);
   state_ = PlayState::kReconnecting;
   cancel_retry();
-  const guint delay = std::min(kFirstRetryMs << std::min(retries_, 8U), kSlowestRetryMs);
+  const guint delay = std::min(kFirstRetryMs << std::min(retries_, 8U), kMaxRetryMs);
   ++retries_;
   retry_ = g_timeout_add(delay, on_retry, this);
 }
@@ -354,7 +354,7 @@ void LivePipeline::cancel_retry() {
   retry_ = 0;
 }
 
-gboolean LivePipeline::on_glance(gpointer data) {
+gboolean LivePipeline::on_tick(gpointer data) {
   static_cast<LivePipeline*>(data)->watch_arrivals();
   return G_SOURCE_CONTINUE;
 }
@@ -362,16 +362,17 @@ gboolean LivePipeline::on_glance(gpointer data) {
 // A network camera can stop sending without an error.
 void LivePipeline::watch_arrivals() {
   const guint64 frames = tap_.frames();
-  const bool has_arrived = frames != std::exchange(glanced_frames_, frames);
+  const bool has_arrived = frames != std::exchange(frames_at_tick_, frames);
   if (has_arrived) {
     if (!trouble_.empty()) handlers_.on_trouble("");
     trouble_.clear();
     retries_ = 0;
-    glances_without_frames_ = 0;
+    ticks_without_frames_ = 0;
     has_begun_ = true;
   } else if (spec_.is_live && state_ == PlayState::kPlaying &&
-             ++glances_without_frames_ >= (has_begun_ ? kPatience : kFirstPatience)) {
-    const guint seconds = glances_without_frames_ * kGlanceMs / 1000;
+             ++ticks_without_frames_ >=
+                 (has_begun_ ? kMaxTicksWithoutFrame : kMaxTicksToFirstFrame)) {
+    const guint seconds = ticks_without_frames_ * kTickMs / 1000;
     source_dropped("no frame for " + std::to_string(seconds) + " s");
   }
 }

@@ -63,19 +63,19 @@ class LivePipeline {
 
  private:
   static gboolean on_message(GstBus* bus, GstMessage* message, gpointer data);
-  static gboolean on_glance(gpointer data);
+  static gboolean on_tick(gpointer data);
   static gboolean on_retry(gpointer data);
-  static gboolean on_look(gpointer data);
+  static gboolean on_poll(gpointer data);
 
   void start(GstState wanted = GST_STATE_PLAYING);
   void stop();
   void end_of_stream();
   void source_dropped(const std::string& why);
   void watch_arrivals();
-  void hold_still();
-  void settle();
-  void halt();
-  void stand_still();
+  void begin_pause();
+  void advance();
+  void pause_after_frame();
+  void finish_pause();
   [[nodiscard]] bool is_at_end() const;
   void rewind();
   void cancel_retry();
@@ -89,9 +89,9 @@ class LivePipeline {
   FrameTap tap_;
   GstElement* source_ = nullptr;
   guint bus_watch_ = 0;
-  guint glance_ = 0;
+  guint tick_ = 0;
   guint retry_ = 0;
-  guint look_ = 0;
+  guint poll_ = 0;
   guint retries_ = 0;  // since the last frame
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
@@ -101,8 +101,8 @@ class LivePipeline {
   guint64 frames_at_rewind_ = 0;
   guint64 rendered_before_ = 0;  // count when playback was last requested
   guint64 reconnections_ = 0;
-  guint64 glanced_frames_ = 0;
-  guint glances_without_frames_ = 0;
+  guint64 frames_at_tick_ = 0;
+  guint ticks_without_frames_ = 0;
   bool has_begun_ = false;  // a frame has arrived since the source was started
 };
 

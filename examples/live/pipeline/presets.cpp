@@ -12,7 +12,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMaxNameLength = 64;
 constexpr char kOrigin[] = "origin";
 constexpr char kOwn[] = "ellipse-live";
 
@@ -26,12 +26,13 @@ std::vector<std::string> names_of(GstElement* tracker) {
 
 // The name becomes a group name in a key file.
 void check_name(const std::string& name) {
-  const bool is_odd = name.empty() || name.size() > kLongestName || name.starts_with('_') ||
-                      !g_utf8_validate(name.data(), static_cast<gssize>(name.size()), nullptr) ||
-                      std::any_of(name.begin(), name.end(), [](unsigned char c) {
-                        return c < 0x20 || c == 0x7f || c == '[' || c == ']' || c == '/';
-                      });
-  if (is_odd) throw std::invalid_argument("invalid preset name \"" + name + "\"");
+  const bool is_invalid =
+      name.empty() || name.size() > kMaxNameLength || name.starts_with('_') ||
+      !g_utf8_validate(name.data(), static_cast<gssize>(name.size()), nullptr) ||
+      std::any_of(name.begin(), name.end(), [](unsigned char c) {
+        return c < 0x20 || c == 0x7f || c == '[' || c == ']' || c == '/';
+      });
+  if (is_invalid) throw std::invalid_argument("invalid preset name \"" + name + "\"");
 }
 
 void check_exists(GstElement* tracker, const std::string& name) {

@@ -96,7 +96,7 @@ std::vector<Change> parse_changes(GstElement* tracker,
 
 /* Conversion to TrackerSettings */
 
-void take_in(ellipse::TrackerSettings& settings, const char* name, const GValue* value) {
+void apply(ellipse::TrackerSettings& settings, const char* name, const GValue* value) {
   const std::string property = name;
   if (property == "detector") {
     settings.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
@@ -116,14 +116,14 @@ ellipse::TrackerSettings settings_of(GstElement* tracker) {
   for (GParamSpec* spec : tunable(tracker)) {
     Value value(spec);
     g_object_get_property(G_OBJECT(tracker), spec->name, value.get());
-    take_in(settings, spec->name, value.get());
+    apply(settings, spec->name, value.get());
   }
   return settings;
 }
 
 ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<Change>& changes) {
   ellipse::TrackerSettings settings = settings_of(tracker);
-  for (const Change& change : changes) take_in(settings, change.spec->name, change.value->get());
+  for (const Change& change : changes) apply(settings, change.spec->name, change.value->get());
   settings.validate();
   return settings;
 }
@@ -156,7 +156,7 @@ bool is_unset(const GParamSpec* spec, const GValue* value) {
 }
 
 // Requires changes that are valid together.
-void make_changes(GstElement* tracker, std::vector<Change>& changes) {
+void apply_changes(GstElement* tracker, std::vector<Change>& changes) {
   std::stable_partition(changes.begin(), changes.end(), [tracker](const Change& change) {
     Value now(change.spec);
     g_object_get_property(G_OBJECT(tracker), change.spec->name, now.get());
@@ -189,7 +189,7 @@ bool Properties::set(const std::string& json) {
     g_object_get_property(G_OBJECT(tracker_), change.spec->name, now.get());
     return gst_value_compare(now.get(), change.value->get()) == GST_VALUE_EQUAL;
   });
-  make_changes(tracker_, changes);
+  apply_changes(tracker_, changes);
   return !changes.empty();
 }
 
@@ -204,7 +204,7 @@ void Properties::copy_to(GstElement* other) const {
     g_object_get_property(G_OBJECT(tracker_), spec->name, change.value->get());
     if (!is_unset(spec, change.value->get())) changes.push_back(std::move(change));
   }
-  make_changes(other, changes);
+  apply_changes(other, changes);
 }
 
 std::string Properties::launch_settings() const {

@@ -43,7 +43,7 @@ std::int64_t now_us = 0;
 
 TEST(LiveSecurity, AnAllowanceRunsOutAndComesBack) {
   now_us = 5'000'000;
-  live::Allowance allowance(100.0, 300.0, [] { return now_us; });
+  live::RateLimiter allowance(100.0, 300.0, [] { return now_us; });
   const auto taken = [&] {
     int count = 0;
     while (allowance.take()) ++count;

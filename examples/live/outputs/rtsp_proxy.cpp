@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "examples/live/outputs/rtsp_door.hpp"
+#include "examples/live/outputs/rtsp_proxy.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -15,12 +15,11 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxVisits =
-    40;  // kMaxSessions of RtspOutput, and clients that have none yet
-constexpr std::ptrdiff_t kMaxVisitsOfAddress = 10;
-constexpr guint kGlanceMs = 1000;
-constexpr guint kMaxGlances = 10;       // without a session
-constexpr gint kMaxUnheardMs = 30'000;  // without a TCP acknowledgement
+constexpr std::size_t kMaxClients = 40;  // more than the sessions of RtspOutput
+constexpr std::ptrdiff_t kMaxClientsPerAddress = 10;
+constexpr guint kTickMs = 1000;
+constexpr guint kMaxTicksWithoutSession = 10;
+constexpr gint kAckTimeoutMs = 30'000;  // without a TCP acknowledgement
 constexpr guint kMaxBody = 0;           // the supported requests have no body
 
 Ref<GInetSocketAddress> inet(GSocketAddress* address) {
@@ -72,9 +71,9 @@ std::optional<Pair> make_pair(GSocketFamily family) {
   if (!listener || !pair.ours) return std::nullopt;
   const bool is_bound = g_socket_bind(listener.get(), any_port.get(), FALSE, nullptr) != FALSE &&
                         g_socket_listen(listener.get(), nullptr) != FALSE;
-  const Ref<GSocketAddress> there(g_socket_get_local_address(listener.get(), nullptr));
-  if (!is_bound || !there) return std::nullopt;
-  if (!g_socket_connect(pair.ours.get(), there.get(), nullptr, nullptr)) return std::nullopt;
+  const Ref<GSocketAddress> address(g_socket_get_local_address(listener.get(), nullptr));
+  if (!is_bound || !address) return std::nullopt;
+  if (!g_socket_connect(pair.ours.get(), address.get(), nullptr, nullptr)) return std::nullopt;
   pair.servers = accept_from(listener.get(), pair.ours.get());
   if (!pair.servers) return std::nullopt;
   for (GSocket* each : {pair.ours.get(), pair.servers.get()}) {
@@ -90,7 +89,7 @@ Ref<GSocketConnection> connection_of(GSocket* socket) {
 // Forwards bytes in both directions, a few KiB at a time, until one side ends.
 void relay(GSocket* client, GSocket* server, GAsyncReadyCallback on_end, gpointer data) {
   g_socket_set_option(client, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
-  g_socket_set_option(client, IPPROTO_TCP, TCP_USER_TIMEOUT, kMaxUnheardMs, nullptr);
+  g_socket_set_option(client, IPPROTO_TCP, TCP_USER_TIMEOUT, kAckTimeoutMs, nullptr);
   const Ref<GSocketConnection> outside = connection_of(client);
   const Ref<GSocketConnection> inside = connection_of(server);
   const Ref<GIOStream> guarded = guard_stream(
@@ -115,7 +114,7 @@ bool has_session(GstRTSPClient* client) {
 
 }  // namespace
 
-RtspDoor::RtspDoor(GstRTSPServer* server) : server_(server) {
+RtspProxy::RtspProxy(GstRTSPServer* server) : server_(server) {
   gst_rtsp_server_set_content_length_limit(server_, kMaxBody);
   GError* problem = nullptr;
   const Ref<GSocket> listener(gst_rtsp_server_create_socket(server_, nullptr, &problem));
@@ -128,11 +127,11 @@ RtspDoor::RtspDoor(GstRTSPServer* server) : server_(server) {
   incoming_.reset(g_socket_create_source(listener.get(), G_IO_IN, nullptr));
   g_source_set_callback(incoming_.get(), G_SOURCE_FUNC(on_incoming), this, nullptr);
   g_source_attach(incoming_.get(), nullptr);
-  glance_ = g_timeout_add(kGlanceMs, on_glance, this);
+  tick_ = g_timeout_add(kTickMs, on_tick, this);
 }
 
-RtspDoor::~RtspDoor() {
-  g_source_remove(glance_);
+RtspProxy::~RtspProxy() {
+  g_source_remove(tick_);
   g_source_destroy(incoming_.get());
   g_signal_handlers_disconnect_by_data(server_, this);
   const auto remove = [](GstRTSPServer*, GstRTSPClient*, gpointer) {
@@ -141,14 +140,14 @@ RtspDoor::~RtspDoor() {
   gst_rtsp_server_client_filter(server_, remove, nullptr);
 }
 
-gboolean RtspDoor::on_incoming(GSocket* listener, GIOCondition /*condition*/, gpointer data) {
+gboolean RtspProxy::on_incoming(GSocket* listener, GIOCondition /*condition*/, gpointer data) {
   Ref<GSocket> socket(g_socket_accept(listener, nullptr, nullptr));
-  if (socket) static_cast<RtspDoor*>(data)->let_in(std::move(socket));
+  if (socket) static_cast<RtspProxy*>(data)->admit(std::move(socket));
   return G_SOURCE_CONTINUE;
 }
 
 // Returning without registering the socket closes it.
-void RtspDoor::let_in(Ref<GSocket> socket) {
+void RtspProxy::admit(Ref<GSocket> socket) {
   const Ref<GInetSocketAddress> remote = remote_of(socket.get());
   GInetAddress* address = remote ? g_inet_socket_address_get_address(remote.get()) : nullptr;
   if (address == nullptr || !has_room(address)) return;
@@ -160,37 +159,38 @@ void RtspDoor::let_in(Ref<GSocket> socket) {
                                       name.get(),
                                       g_inet_socket_address_get_port(remote.get()),
                                       nullptr);
-  if (!entering_) return;
-  visits_->push_back({share(socket.get()), share(address), std::move(entering_)});
-  relay(socket.get(), pair->ours.get(), on_end, new Ending{visits_, std::prev(visits_->end())});
+  if (!connected_) return;
+  clients_->push_back({share(socket.get()), share(address), std::move(connected_)});
+  relay(socket.get(), pair->ours.get(), on_end, new Ending{clients_, std::prev(clients_->end())});
 }
 
 // Local programs share one address, and so do the clients of a tunnel.
-bool RtspDoor::has_room(GInetAddress* address) const {
-  if (visits_->size() >= kMaxVisits) return false;
+bool RtspProxy::has_room(GInetAddress* address) const {
+  if (clients_->size() >= kMaxClients) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
-  return std::count_if(visits_->begin(), visits_->end(), [address](const Visit& visit) {
-           return g_inet_address_equal(visit.address.get(), address);
-         }) < kMaxVisitsOfAddress;
+  return std::count_if(clients_->begin(), clients_->end(), [address](const Client& each) {
+           return g_inet_address_equal(each.address.get(), address);
+         }) < kMaxClientsPerAddress;
 }
 
-void RtspDoor::on_connected(GstRTSPServer* /*server*/, GstRTSPClient* client, gpointer data) {
-  static_cast<RtspDoor*>(data)->entering_ = share(client);
+void RtspProxy::on_connected(GstRTSPServer* /*server*/, GstRTSPClient* client, gpointer data) {
+  static_cast<RtspProxy*>(data)->connected_ = share(client);
 }
 
 // Called when either side has closed the connection or the guard has rejected the input.
-void RtspDoor::on_end(GObject* /*stream*/, GAsyncResult* result, gpointer data) {
+void RtspProxy::on_end(GObject* /*stream*/, GAsyncResult* result, gpointer data) {
   const std::unique_ptr<Ending> ending(static_cast<Ending*>(data));
   g_io_stream_splice_finish(result, nullptr);
-  ending->visits->erase(ending->visit);
+  ending->clients->erase(ending->client);
 }
 
 // A client that sends a byte now and then never times out, so clients without a session have a
 // deadline.
-gboolean RtspDoor::on_glance(gpointer data) {
-  for (Visit& visit : *static_cast<RtspDoor*>(data)->visits_) {
-    visit.glances = has_session(visit.client.get()) ? 0 : visit.glances + 1;
-    if (visit.glances > kMaxGlances) g_socket_shutdown(visit.socket.get(), TRUE, TRUE, nullptr);
+gboolean RtspProxy::on_tick(gpointer data) {
+  for (Client& each : *static_cast<RtspProxy*>(data)->clients_) {
+    each.ticks = has_session(each.rtsp.get()) ? 0 : each.ticks + 1;
+    if (each.ticks > kMaxTicksWithoutSession)
+      g_socket_shutdown(each.socket.get(), TRUE, TRUE, nullptr);
   }
   return G_SOURCE_CONTINUE;
 }
