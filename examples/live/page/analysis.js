@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// What the detector makes of the frame on the screen, apart from the pipeline.
+// Analyses the shown frame outside the pipeline.
 import { ask } from "./connection.js";
 
-/** So many refused candidates are shown until a person asks for all. */
+/** Number of rejected candidates that are shown by default. */
 export const kBest = 8;
 
 /**
- * @param properties  {name: value} that differ from the settings of now.
- * @param stage       The stage whose picture is wanted, or undefined.
- * @returns what the program tells, with `image` (ImageBitmap or null) of the stage, and `groups`:
- *          one for each reason, the target's first, then by how many; `best`: a Set of
- *          the numbers of the kBest refused that missed their limits by the least.
+ * @param properties  {name: value} that replace current settings, or undefined.
+ * @param stage       The stage to draw, or undefined.
+ * @returns the program's reply with three additions. `image`: the stage's picture (ImageBitmap or
+ *          null). `groups`: the candidates by reason, found ones first, then by decreasing count.
+ *          `best`: a Set of the numbers of the kBest rejected candidates closest to their limits.
  */
 export async function analyze({ properties, stage } = {}) {
   const result = await ask("POST", "api/analyze", { properties, stage });
@@ -25,7 +25,7 @@ async function bitmapOf(dataUrl) {
   return createImageBitmap(new Blob([bytes], { type: "image/png" }));
 }
 
-/** How close a candidate came: 0 = at the limit. What has no figure comes last. */
+/** Relative distance to the limit: 0 = at the limit, Infinity = no measured value. */
 function missOf({ measured, limit }) {
   return limit ? Math.abs(measured - limit) / Math.abs(limit) : Infinity;
 }
@@ -49,17 +49,17 @@ function groupsOf({ candidates, reasons, counts }) {
 }
 
 function bestOf(groups) {
-  const refused = groups.flatMap(({ members }) => members).filter(({ ellipse, found }) => ellipse && !found);
-  const measured = refused.filter((candidate) => Number.isFinite(missOf(candidate)));
+  const rejected = groups.flatMap(({ members }) => members).filter(({ ellipse, found }) => ellipse && !found);
+  const measured = rejected.filter((candidate) => Number.isFinite(missOf(candidate)));
   return new Set(measured.sort((a, b) => missOf(a) - missOf(b)).slice(0, kBest).map(({ number }) => number));
 }
 
-/** The look of a candidate, for drawing. */
+/** Line style of a candidate: a key of kLooks. */
 export function lookOf({ is_target: isTarget, found }) {
-  return isTarget ? "tracked" : found ? "candidate" : "refused";
+  return isTarget ? "tracked" : found ? "candidate" : "rejected";
 }
 
 /** "72 × 51 px at (312, 180)" */
-export function placeText({ semi_major: a, semi_minor: b, cx, cy }) {
+export function ellipseText({ semi_major: a, semi_minor: b, cx, cy }) {
   return `${(2 * a).toFixed(0)} × ${(2 * b).toFixed(0)} px at (${cx.toFixed(0)}, ${cy.toFixed(0)})`;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page, put together. Read this first.
+// Entry point of the page: connects its parts. Start reading here.
 import { Compare } from "./compare.js";
 import { watchFrames } from "./frames.js";
 import { Labels } from "./labels.js";
@@ -17,19 +17,19 @@ const at = (id) => document.getElementById(id);
 
 const status = new Status();
 const screen = new Screen(at("screen"), at("layers"));
-const playback = new Playback(screen.canvas, status.say);
+const playback = new Playback(screen.canvas, status.notify);
 const settings = new Settings(at("settings"), at("filter"), at("reset-all"));
-const region = new Region(screen, settings, status.say);
+const region = new Region(screen, settings, status.notify);
 const plots = new Plots(at("plots"));
 const views = {
-  stages: new Stages(screen, playback, settings, status.say),
+  stages: new Stages(screen, playback, settings, status.notify),
   compare: new Compare(screen, playback, settings),
   label: new Labels(screen, playback),
 };
 let view = null;
 
 const openTab = setUpTabs((name) => {
-  // While settings are tuned, two of them can still be compared.
+  // The comparison stays visible in Tune, so that its settings can be changed.
   const stays = name === "tune" && view === views.compare && view.isKept;
   if (stays || views[name] === view) return;
   view?.stop();
@@ -39,10 +39,10 @@ const openTab = setUpTabs((name) => {
   view?.start();
 });
 
-let plotted = null;  // the time stamp of the last line in the plots
+let plotted = null;  // timestamp of the last plotted line
 watchFrames({
   onFrame: (frame) => {
-    // Another picture, or another analysis of the one that stands still.
+    // A new picture, or a new analysis of a paused one.
     const isAnother = frame.pts !== screen.frame?.pts || frame.line !== screen.frame.line;
     screen.show(frame);
     status.takeFrame();
@@ -54,9 +54,9 @@ watchFrames({
     if (line.pts_ns !== plotted) plots.add(line);
     plotted = line.pts_ns;
   },
-  onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live: trying again"),
+  onConnection: (isOpen) => status.setTrouble(isOpen ? "" : "No connection to ellipse-live; reconnecting"),
 });
-const showPresetState = setUpPresets(settings, status.say);
+const showPresetState = setUpPresets(settings, status.notify);
 settings.onChange = () => {
   screen.draw();
   showPresetState();
@@ -65,8 +65,7 @@ settings.onChange = () => {
 let wasPlaying = true;
 playback.onChange = (source) => {
   status.setTrouble(source.error);
-  // The last frame may have come before it was known that it stands still, or the first one after
-  // it was known that it plays.
+  // Frames and the playback state arrive independently, so the view is refreshed for both.
   if (source.playing !== wasPlaying) view?.refresh();
   wasPlaying = source.playing;
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// One frame, two settings, side by side.
+// The Compare tab: one frame with two sets of settings, side by side.
 import { analyze, lookOf } from "./analysis.js";
 import { newestOnly } from "./connection.js";
 import { make } from "./controls.js";
 import { contextOf, drawEllipse, drawPicture } from "./drawing.js";
 
-const kPauseMs = 500;
+const kIntervalMs = 500;
 const at = (id) => document.getElementById(id);
 
 export class Compare {
-  #kept = null;  // the settings that are A
+  #kept = null;  // settings A
   #results = null;
   #isOn = false;
   #timer = 0;
@@ -57,12 +57,12 @@ export class Compare {
     this.#split(true);
     this.screen.view = (context, frame) => this.#draw(context, frame);
     this.screen.draw();
-    this.#tell();
+    this.#showResult();
     clearTimeout(this.#timer);
-    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kPauseMs);
+    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kIntervalMs);
   });
 
-  // Of these settings, those that are not so now.
+  // Those of the given settings that differ from the current ones.
   #differences(wanted) {
     const now = this.settings.values();
     return Object.fromEntries(Object.entries(wanted).filter(([name, value]) => {
@@ -91,7 +91,7 @@ export class Compare {
     }
   }
 
-  #tell() {
+  #showResult() {
     const { a, b } = this.#results;
     const targetOf = (result) => result.candidates.find(({ is_target: isTarget }) => isTarget);
     const [ta, tb] = [targetOf(a), targetOf(b)];
@@ -114,7 +114,7 @@ export class Compare {
       return [name, String(value), String(this.settings.values()[name])];
     });
     at("compare-result").replaceChildren(
-      tableOf("Settings", changes.length > 0 ? changes : [["no difference yet", "", ""]]),
+      tableOf("Settings", changes.length > 0 ? changes : [["no differences", "", ""]]),
       tableOf("Result", rows));
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How the page talks with the program: requests, and sockets that come back by themselves.
+// Communication with the program: HTTP requests, and WebSockets that reconnect.
 
-/** Asks for something. Throws an Error with the program's own words where it refuses. */
+/** Sends a request. Throws an Error with the program's message if it fails. */
 export async function ask(method, path, body) {
   const wants = body === undefined ? {} : {
     body: JSON.stringify(body),
@@ -16,9 +16,9 @@ export async function ask(method, path, body) {
 }
 
 /**
- * A WebSocket that is opened again when it is lost: after half a second, at most after five.
- * @param onMessage  Gets the data and the socket it came by.
- * @param onChange   Gets whether it is open.
+ * Opens a WebSocket that reconnects after 0.5 s, then at doubling intervals up to 5 s.
+ * @param onMessage  Called with the data and the socket.
+ * @param onChange   Called with whether it is open.
  */
 export function openSocket(path, onMessage, onChange = () => {}) {
   let wait = 500;
@@ -40,8 +40,8 @@ export function openSocket(path, onMessage, onChange = () => {}) {
 }
 
 /**
- * Runs a task over and over, never twice at a time: while one runs, the newest request waits.
- * @returns a function that asks for a run with these arguments.
+ * Wraps an async task so that only one call runs at a time. While it runs, only the newest of the
+ * further calls is kept, and runs next.
  */
 export function newestOnly(task) {
   let isBusy = false;

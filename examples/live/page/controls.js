@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// One control for each kind of property. Each returns {head, body, set}: `set` shows a value, and
-// the one in force where 0 stands for it; `change` is called with the value that a person has chosen.
+// One control per property type. Each returns {head, body, set}: `set` shows a value, and the value
+// in force where 0 selects another one. `change` is called with the value that the user chose.
 
 const kSteps = 1000;
-const kFarMax = 1e6;   // a slider does not go as far as what nobody wants
+const kFarMax = 1e6;   // above this maximum, a slider ends at a practical value
 const kFarTime = 1e8;  // [ns]
 const kRectParts = ["x", "y", "width", "height"];
 const kVectorParts = ["x", "y", "z"];
@@ -20,7 +20,7 @@ function make(tag, attributes = {}, ...children) {
 
 export { make };
 
-// Nobody is interrupted while typing: a field shows the value in force when it is left.
+// Does not overwrite a field while the user types; it shows the new value when it loses focus.
 function showWhenLeft(fields, show) {
   let shown = null;
   for (const field of fields) field.onblur = () => shown !== null && show(shown);
@@ -30,7 +30,7 @@ function showWhenLeft(fields, show) {
   };
 }
 
-/** Slider positions of values: even, or by ratio where the range spans more than two decades. */
+/** Slider scale: linear, or logarithmic if the range spans more than two decades. */
 export function scaleOf({ type, min, max, unit, default: usual }) {
   const isWhole = type !== "double";
   const far = unit === "ns" ? kFarTime : Math.max(1000, 100 * usual);
@@ -69,10 +69,10 @@ function numberControl(property, change) {
     "aria-label": `${label}, number`,
   });
   const mark = make("i", { className: "default", title: `default ${property.default}` });
-  // The middle of the thumb, which is 16 px wide, does not reach the ends.
+  // The centre of the 16 px wide thumb stays 8 px away from the ends.
   const share = toShare(property.default);
   mark.style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
-  // A 0 that stands for another value shows it.
+  // Whether the value is 0 and selects another value, which the placeholder shows.
   let isOwn = false;
   const showInField = showWhenLeft([field], (value) => {
     field.value = isOwn ? "" : Number(value.toPrecision(12));
@@ -91,7 +91,7 @@ function numberControl(property, change) {
     set(value);
     change(value);
   };
-  // Arrow keys: the next value that differs, where a step of the slider is too short for one.
+  // Arrow keys move to the next different value; one slider step can be too small to change it.
   slider.onkeydown = (event) => {
     const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
     if (!way) return;
@@ -134,7 +134,7 @@ function enumControl(property, change) {
   return { head: [], body: [group], set };
 }
 
-// Written by their nicks, read by nicks or names.
+// Sends nicks; accepts nicks or names.
 function flagsControl(property, change) {
   const flags = property.values.filter(({ nick }) => nick !== "none");
   const group = make("div", { className: "choices", role: "group", "aria-label": property.name });
@@ -156,7 +156,7 @@ function flagsControl(property, change) {
   return { head: [], body: [group], set };
 }
 
-// A field for each number of an array. What is not set has none: all 0.
+// One field per array element. An empty array shows zeros.
 const arrayControl = (parts, step, read) => (property, change) => {
   const fields = parts.map((part) => make("input", {
     type: "number", step, title: part, placeholder: part, "aria-label": `${property.name}, ${part}`,
@@ -170,7 +170,7 @@ const arrayControl = (parts, step, read) => (property, change) => {
   return { head: [], body: [make("div", { className: "numbers" }, ...fields)], set };
 };
 
-// 0xAARRGGBB. The alpha stays as it is.
+// 0xAARRGGBB. The picker does not change alpha.
 function colorControl(property, change) {
   let alpha = 0xff;
   const picker = make("input", { type: "color", "aria-label": property.name });
@@ -188,7 +188,7 @@ function textControl(property, change) {
     "aria-label": property.name,
     autocomplete: "off",
     disabled: !property.writable,
-    placeholder: property.writable ? "" : "set where ellipse-live is started with --cameras FOLDER",
+    placeholder: property.writable ? "" : "requires ellipse-live --cameras FOLDER",
   });
   field.onchange = () => change(field.value);
   const set = showWhenLeft([field], (value) => {

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What is drawn over a picture: ellipses, axes, centres, regions. Pixels of the frame; the centre
-// of the top-left pixel is (0, 0).
+// Draws ellipses, axes, centres and regions over a picture, in frame pixels. The centre of the
+// top-left pixel is (0, 0).
 
 const style = getComputedStyle(document.documentElement);
 const color = (name) => style.getPropertyValue(`--${name}`).trim();
 
-/** Also told by the kind of line, for whoever does not tell the colours apart. */
+/** Line styles differ too, for users who cannot distinguish the colours. */
 const kLooks = {
   tracked: { color: color("tracked"), dash: [] },
   detected: { color: color("detected"), dash: [9, 5] },
   predicted: { color: color("predicted"), dash: [2, 5] },
   candidate: { color: color("candidate"), dash: [] },
-  refused: { color: color("lost"), dash: [] },
+  rejected: { color: color("lost"), dash: [] },
   chosen: { color: color("accent"), dash: [] },
   truth: { color: "#ffffff", dash: [1, 4] },
 };
 
-/** Makes the canvas as fine as the screen. @returns its context, in pixels of the frame. */
+/** Sets the canvas to the screen's resolution. @returns its context, scaled to frame pixels. */
 export function contextOf(canvas, width, height) {
   const fine = canvas.clientWidth * devicePixelRatio || width;
   const wide = Math.round(fine);
@@ -32,14 +32,14 @@ export function contextOf(canvas, width, height) {
   return context;
 }
 
-/** @param picture  Anything that can be drawn; spread over the whole frame. */
+/** @param picture  Any image source; stretched over the whole frame. */
 export function drawPicture(context, picture, width, height, showsPixels = false) {
   context.imageSmoothingEnabled = !showsPixels;
   context.imageSmoothingQuality = "high";
   context.drawImage(picture, -0.5, -0.5, width, height);
 }
 
-/** Ellipse, axes and centre as far as the layers are on. @param look  A key of the looks. */
+/** Draws the ellipse, axes and centre that are enabled in `layers`. @param look  A key of kLooks. */
 export function drawEllipse(context, e, look, layers) {
   const { color: stroke, dash } = kLooks[look];
   const unit = context.lineWidth / 2;
@@ -76,7 +76,7 @@ export function drawEllipse(context, e, look, layers) {
   context.restore();
 }
 
-/** @param roi  [x, y, width, height] in whole pixels. What a person has chosen is a firm line. */
+/** Draws a region [x, y, width, height] in whole pixels. The user's own region has a solid line. */
 export function drawRegion(context, [x, y, width, height], look) {
   const isChosen = look === "chosen";
   const unit = context.lineWidth / 2;
@@ -89,7 +89,7 @@ export function drawRegion(context, [x, y, width, height], look) {
   context.restore();
 }
 
-// A dark edge around a line keeps it visible on any ground.
+// Strokes the path with a dark outline that keeps it visible on any background.
 function outline(context, stroke, dash) {
   const width = context.lineWidth;
   context.setLineDash([]);
@@ -102,7 +102,7 @@ function outline(context, stroke, dash) {
   context.stroke();
 }
 
-/** Everything that a frame's line tells. */
+/** Draws the ellipses and the region of a frame's JSON line. */
 export function drawTargets(context, line, layers) {
   for (const target of line?.targets ?? []) {
     if (target.role === "candidate" && layers.candidates) {
@@ -114,7 +114,7 @@ export function drawTargets(context, line, layers) {
   }
   const target = targetOf(line);
   const region = line?.roi ?? target?.roi;
-  if (layers.region && region) drawRegion(context, region, target?.state ?? "refused");
+  if (layers.region && region) drawRegion(context, region, target?.state ?? "rejected");
   if (target) drawEllipse(context, target, target.state, layers);
 }
 
@@ -123,7 +123,7 @@ export function targetOf(line) {
   return line?.targets.find((each) => each.role === "target");
 }
 
-/** How far a point is from an ellipse's perimeter [px], about. */
+/** Approximate distance from a point to an ellipse's perimeter [px]. */
 export function distanceTo(e, x, y) {
   const cos = Math.cos(e.angle_rad);
   const sin = Math.sin(e.angle_rad);

@@ -1,29 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Pictures and the lines about them, brought together by their time stamps.
+// Matches pictures with their JSON lines by timestamp.
 import { openSocket } from "./connection.js";
 
-const kMostLines = 256;
-const kPatienceMs = 250;
+const kMaxLines = 256;
+const kLineTimeoutMs = 250;
 
 /**
- * Calls onFrame({pts, bitmap, line}) for each picture when the browser is about to paint: the line is
- * that of the very frame, or null where none came. The picture is acknowledged when onFrame returns,
- * so that the program sends the next one only when this one is painted; a page that nobody sees
- * paints nothing, and gets no more.
+ * Calls onFrame({pts, bitmap, line}) for each picture when the browser is about to paint. `line` is
+ * the line of the same frame, or null if none arrived. A picture is acknowledged when onFrame
+ * returns, and the program sends more only then. A hidden page paints nothing and receives no more.
  */
 export function watchFrames({ onFrame, onLine, onConnection }) {
-  const lines = new Map();  // by time stamp, in the order of their arrival
-  let waiting = null;       // a picture that came before its line
-  let next = null;          // the picture that is painted next
-  let arrived = 0;          // pictures
-  let decoded = 0;          // the last one that was
+  const lines = new Map();  // by timestamp, in order of arrival
+  let waiting = null;       // picture that arrived before its line
+  let next = null;          // picture to paint next
+  let arrived = 0;          // number of pictures
+  let decoded = 0;          // number of the last decoded picture
   const isOpen = { video: false, meta: false };
 
   const show = ({ pts, bitmap, socket }) => {
     clearTimeout(waiting?.timer);
     waiting = null;
     const line = lines.get(pts) ?? null;
-    // What is older belongs to pictures that were passed over.
+    // Older lines belong to skipped pictures.
     if (line) {
       for (const old of lines.keys()) {
         lines.delete(old);
@@ -35,7 +34,7 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
     next = { pts, bitmap, line, socket };
   };
 
-  // One acknowledgement is one for all before it.
+  // An acknowledgement covers all earlier pictures.
   const paint = () => {
     const { socket, ...frame } = next;
     next = null;
@@ -53,7 +52,7 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
       socket.send(`{"ack":${pts}}`);
       return;
     }
-    if (number < decoded) return bitmap.close();  // a newer one was faster
+    if (number < decoded) return bitmap.close();  // a newer one was decoded first
     decoded = number;
     if (waiting) show(waiting);
     const picture = { pts, bitmap, socket };
@@ -61,7 +60,7 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
       show(picture);
       return;
     }
-    waiting = { ...picture, timer: setTimeout(() => show(picture), kPatienceMs) };
+    waiting = { ...picture, timer: setTimeout(() => show(picture), kLineTimeoutMs) };
   };
 
   const takeLine = (text) => {
@@ -69,20 +68,20 @@ export function watchFrames({ onFrame, onLine, onConnection }) {
     const pts = exactPts(text);
     lines.delete(pts);
     lines.set(pts, line);
-    if (lines.size > kMostLines) lines.delete(lines.keys().next().value);
+    if (lines.size > kMaxLines) lines.delete(lines.keys().next().value);
     onLine(line);
     if (waiting?.pts === pts) show(waiting);
   };
 
-  const tell = (which) => (open) => {
+  const notifyOpen = (which) => (open) => {
     isOpen[which] = open;
     onConnection(isOpen.video && isOpen.meta);
   };
-  openSocket("ws/video", takePicture, tell("video"));
-  openSocket("ws/meta", takeLine, tell("meta"));
+  openSocket("ws/video", takePicture, notifyOpen("video"));
+  openSocket("ws/meta", takeLine, notifyOpen("meta"));
 }
 
-// A number in JSON is a double here; nanoseconds since 1970 need more digits than it has.
+// JSON.parse() reads numbers as doubles, which cannot represent nanoseconds since 1970 exactly.
 function exactPts(text) {
   return /"pts_ns":(\d+)/.exec(text)?.[1] ?? "";
 }

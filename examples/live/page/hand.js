@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// An ellipse drawn by hand: through points on its edge.
+// Fits an ellipse to points that the user clicked on its edge.
 
-/** The least that tell an ellipse. */
-export const kLeastPoints = 5;
+/** Minimum number of points that determine an ellipse. */
+export const kMinPoints = 5;
 
 /**
- * The conic a x² + b xy + c y² + d x + e y = 1 with the least squares, about the points' mean: of
- * points all around an ellipse the mean is inside, where no conic of this form passes.
+ * Least-squares fit of the conic a x² + b xy + c y² + d x + e y = 1, relative to the points' mean.
+ * A conic of this form cannot pass through the origin; the mean of points around an ellipse is inside.
  * @param points  [{x, y}] in px.
- * @returns the ellipse as in a frame's line, or null where the points make none.
+ * @returns the ellipse as in a frame's line, or null if the points do not determine one.
  */
 export function ellipseThrough(points) {
-  if (points.length < kLeastPoints) return null;
+  if (points.length < kMinPoints) return null;
   const mean = (key) => points.reduce((sum, point) => sum + point[key], 0) / points.length;
   const [mx, my] = [mean("x"), mean("y")];
   const size = Math.max(...points.map(({ x, y }) => Math.hypot(x - mx, y - my)));
@@ -31,7 +31,7 @@ export function ellipseThrough(points) {
   };
 }
 
-// All right-hand sides are 1. By the normal equations and Gauss's elimination.
+// Solves rows * x = 1 by the normal equations and Gaussian elimination.
 function leastSquares(rows) {
   const n = rows[0].length;
   const m = Array.from({ length: n }, (_, i) => [
@@ -56,7 +56,7 @@ function ellipseOf([a, b, c, d, e]) {
   if (determinant <= 0) return null;
   const cx = (b * e - 2 * c * d) / determinant;
   const cy = (b * d - 2 * a * e) / determinant;
-  // About the centre: a u² + b uv + c v² = level.
+  // Relative to the centre: a u² + b uv + c v² = level.
   const level = 1 - (d * cx + e * cy) / 2;
   const middle = (a + c) / 2;
   const spread = Math.hypot((a - c) / 2, b / 2);

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
-// A person says which ellipse is the target: the frame and the answer become rows of a data set.
-import { analyze, placeText } from "./analysis.js";
+// The Label tab: the user selects the target, and frame and ellipse are added to a data set.
+import { analyze, ellipseText } from "./analysis.js";
 import { ask, newestOnly } from "./connection.js";
 import { make } from "./controls.js";
 import { distanceTo, drawEllipse, drawPicture, targetOf } from "./drawing.js";
-import { ellipseThrough, kLeastPoints } from "./hand.js";
+import { ellipseThrough, kMinPoints } from "./hand.js";
 
-const kMostChoices = 12;
+const kMaxChoices = 12;
 const kSamePx = 2;
-const kPatienceMs = 2000;
+const kStepTimeoutMs = 2000;
 const kFields = ["cx", "cy", "semi_major", "semi_minor", "angle_rad"];
 const kOthers = { drawn: true, none: true };
 const at = (id) => document.getElementById(id);
 
 export class Labels {
   #choices = [];      // ellipses
-  #chosen = null;     // a number, "drawn" or "none"
-  #points = [];       // clicked on the edge of what no choice tells
-  #pts = null;        // of the frame that they are of
-  #line = null;       // what was found in it
+  #chosen = null;     // an index, "drawn" or "none"
+  #points = [];       // clicked on the edge of a target that was not found
+  #pts = null;        // timestamp of the frame that the choices belong to
+  #line = null;       // JSON line of that frame
   #saved = 0;
   #isOn = false;
-  #isWaiting = false; // for the choices of another frame
+  #isWaiting = false; // for the choices of a new frame
 
   constructor(screen, playback) {
     Object.assign(this, { screen, playback });
@@ -39,7 +39,7 @@ export class Labels {
     this.screen.canvas.parentElement.classList.add("picks");
     this.screen.view = (context, frame) => this.#draw(context, frame);
     if (!this.playback.source?.can_label) {
-      at("label-result").textContent = "There is no folder for labels: start ellipse-live with --labels FOLDER.";
+      at("label-result").textContent = "No folder for labels: start ellipse-live with --labels FOLDER.";
     }
     this.refresh();
   }
@@ -52,7 +52,7 @@ export class Labels {
     this.screen.draw();
   }
 
-  /** The choices of another frame, or of another analysis of this one, which keeps what was drawn. */
+  /** Updates the choices for a new frame, or for a new analysis of it, which keeps a drawn ellipse. */
   refresh = newestOnly(async () => {
     const { frame } = this.screen;
     const isSame = frame?.pts === this.#pts;
@@ -67,10 +67,10 @@ export class Labels {
       found = candidates.filter((each) => each.found && each.ellipse).sort((a, b) => b.score - a.score)
         .map(({ ellipse }) => ellipse);
     } catch {
-      // What the frame's line tells is there all the same.
+      // The target in the frame's line is still available.
     }
     if (!this.#isOn) return;
-    this.#choices = withoutDoubles([target, ...found].filter(Boolean)).slice(0, kMostChoices);
+    this.#choices = withoutDuplicates([target, ...found].filter(Boolean)).slice(0, kMaxChoices);
     const isDrawn = isSame && this.#chosen === "drawn";
     if (!isSame) this.#points = [];
     if (!isDrawn) this.#chosen = target ? 0 : null;
@@ -78,7 +78,7 @@ export class Labels {
     this.screen.draw();
   });
 
-  // What is chosen now would be of the frame before, or lost.
+  // Disables the controls: a choice made now would apply to the previous frame or be lost.
   #wait() {
     this.#isWaiting = true;
     at("label-choices").disabled = at("label-save").disabled = at("label-undo").disabled = true;
@@ -90,10 +90,10 @@ export class Labels {
     this.#isWaiting = false;
     at("label-choices").disabled = false;
     at("label-choices").dataset.pts = this.#pts;
-    const choices = this.#choices.map((e, i) => [String(i), `${i + 1}: ${placeText(e)}`]);
+    const choices = this.#choices.map((e, i) => [String(i), `${i + 1}: ${ellipseText(e)}`]);
     const legend = at("label-choices").querySelector("legend");
     const others = [
-      ["drawn", "Drawn: click points all along its edge"],
+      ["drawn", "Drawn: click points along its whole edge"],
       ["none", "None: no target in this frame"],
     ];
     at("label-choices").replaceChildren(legend, ...[...choices, ...others].map(([value, text]) => {
@@ -104,7 +104,7 @@ export class Labels {
     this.#choose(this.#chosen);
   }
 
-  /** The ellipse that is chosen; null = none of them, undefined = nothing is chosen yet. */
+  /** The chosen ellipse; null = no target in the frame, undefined = no choice yet. */
   #answer() {
     if (this.#chosen === "none") return null;
     if (this.#chosen === "drawn") return ellipseThrough(this.#points) ?? undefined;
@@ -119,14 +119,14 @@ export class Labels {
     at("label-save").disabled = !this.playback.source?.can_label || this.#answer() === undefined;
     at("label-undo").hidden = choice !== "drawn";
     at("label-undo").disabled = this.#points.length === 0;
-    const missing = kLeastPoints - this.#points.length;
+    const missing = kMinPoints - this.#points.length;
     at("label-undo").textContent = missing > 0 ? `Undo a point (${missing} more)` : "Undo a point";
     this.screen.draw();
   }
 
   #pick(event) {
     if (this.#isWaiting) return;
-    const { x, y } = this.screen.placeOf(event);
+    const { x, y } = this.screen.positionOf(event);
     if (this.#chosen === "drawn") {
       this.#points.push({ x, y });
       this.#choose("drawn");
@@ -162,7 +162,7 @@ export class Labels {
     }
   }
 
-  // At the right end of the ellipse.
+  // Draws the choice's number at the right end of its ellipse.
   #number(context, e, i, isChosen) {
     const unit = context.lineWidth * (isChosen ? 1 / 1.5 : 1 / 0.7) / 2;
     const x = e.cx + Math.hypot(e.semi_major * Math.cos(e.angle_rad), e.semi_minor * Math.sin(e.angle_rad));
@@ -181,7 +181,7 @@ export class Labels {
       : Object.fromEntries(kFields.map((field) => [field, e[field]]));
     try {
       const { image } = await ask("POST", "api/snapshot", { choice, pts_ns: this.#pts });
-      at("label-result").textContent = `${++this.#saved} saved, the last as ${image}`;
+      at("label-result").textContent = `${++this.#saved} saved, last: ${image}`;
     } catch (error) {
       at("label-result").textContent = error.message;
       return;
@@ -193,12 +193,12 @@ export class Labels {
     const { pts } = this.screen.frame;
     this.#wait();
     await this.playback.step();
-    // At the end of a file there is no other one.
-    setTimeout(() => this.#isWaiting && this.screen.frame.pts === pts && this.#list(), kPatienceMs);
+    // At the end of a file there is no next frame.
+    setTimeout(() => this.#isWaiting && this.screen.frame.pts === pts && this.#list(), kStepTimeoutMs);
   }
 }
 
-function withoutDoubles(ellipses) {
+function withoutDuplicates(ellipses) {
   return ellipses.filter((e, i) => !ellipses.slice(0, i).some((other) => {
     return ["cx", "cy", "semi_major", "semi_minor"].every((key) => Math.abs(e[key] - other[key]) < kSamePx);
   }));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Play, pause, step and scrub; and what the source says of itself.
+// Playback controls, and the state of the source.
 import { ask, newestOnly } from "./connection.js";
 
 const kPollMs = 1000;
@@ -15,11 +15,11 @@ function timeText(ns) {
 
 export class Playback {
   source = null;
-  /** Called with the source where anything of it may have changed. */
+  /** Called with the source when it may have changed. */
   onChange = () => {};
 
-  constructor(canvas, say) {
-    this.say = say;
+  constructor(canvas, notify) {
+    this.notify = notify;
     at("play").onclick = () => this.toggle();
     at("step").onclick = () => this.step();
     at("scrub").oninput = () => this.#seek(at("scrub").value / 1000 * this.source.duration_ns);
@@ -43,7 +43,7 @@ export class Playback {
     try {
       this.source = await ask("GET", "api/source");
     } catch {
-      return;  // The sockets tell that the program is gone.
+      return;  // the WebSockets report a lost connection
     }
     this.#show();
     this.onChange(this.source);
@@ -70,7 +70,7 @@ export class Playback {
     try {
       await ask("POST", path, body);
     } catch (error) {
-      this.say(error.message);
+      this.notify(error.message);
     }
     await this.refresh();
   }
@@ -114,7 +114,7 @@ export class Playback {
     scrub.setAttribute("aria-valuetext", timeText(source.position_ns));
   }
 
-  /** The position of the very frame that is shown. */
+  /** Shows the position of the shown frame. */
   showFrame(pts) {
     if (!this.source) return;
     const total = this.source.duration_ns ? ` / ${timeText(this.source.duration_ns)}` : "";

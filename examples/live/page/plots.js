@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The last twenty seconds: centre, axes, overlaps, processing time and state.
+// Plots of the last twenty seconds: centre, axes, overlaps, processing time and state.
 import { make } from "./controls.js";
 import { targetOf } from "./drawing.js";
 
 const kSpanMs = 20000;
-const kMostSamples = 2400;
+const kMaxSamples = 2400;
 const style = getComputedStyle(document.documentElement);
 const color = (name) => style.getPropertyValue(`--${name}`).trim();
 
@@ -21,7 +21,7 @@ const kPlots = [
 export class Plots {
   #samples = [];
   #plots;
-  #cursor = null;  // share of the width under the pointer
+  #cursor = null;  // pointer position as a fraction of the width
 
   constructor(container) {
     this.#plots = kPlots.map((plot) => this.#build(plot, container));
@@ -34,7 +34,7 @@ export class Plots {
       target: targetOf(line),
       time_ms: line.processing_ns === undefined ? undefined : line.processing_ns / 1e6,
     });
-    if (this.#samples.length > kMostSamples) this.#samples.shift();
+    if (this.#samples.length > kMaxSamples) this.#samples.shift();
   }
 
   #build(plot, container) {
@@ -55,7 +55,7 @@ export class Plots {
     return { ...plot, canvas, keys, spoken: -Infinity };
   }
 
-  // Ten times a second is as smooth as anybody reads, and costs little.
+  // 10 Hz is fast enough to read and costs little.
   #tick() {
     setTimeout(() => requestAnimationFrame(() => this.#tick()), 100);
     if (document.hidden) return;
@@ -87,11 +87,11 @@ export class Plots {
       drawCurve(context, this.#samples, stroke, toX, toY, valueOf);
     }
     drawStates(context, this.#samples, toX, ribbon);
-    this.#tell(plot, context, { now, toX, height });
+    this.#showValues(plot, context, { now, toX, height });
   }
 
-  // The values under the pointer, or the last ones.
-  #tell(plot, context, { now, toX, height }) {
+  // Shows the values at the pointer, or the latest ones.
+  #showValues(plot, context, { now, toX, height }) {
     let sample = this.#samples.at(-1);
     if (this.#cursor !== null && sample) {
       const time = now - (1 - this.#cursor) * kSpanMs;
@@ -154,7 +154,7 @@ function drawCurve(context, samples, stroke, toX, toY, valueOf) {
   context.stroke();
 }
 
-// Along the foot of each plot: which state the target was in.
+// The target's state over time, as a coloured strip at the bottom of the plot.
 function drawStates(context, samples, toX, y) {
   for (let i = 0; i < samples.length; ++i) {
     const x = toX(samples[i].at);

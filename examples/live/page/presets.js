@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Presets of the element, and the gst-launch-1.0 line of what runs.
+// Presets of the element, and the gst-launch-1.0 line of the current settings.
 import { ask } from "./connection.js";
 import { make } from "./controls.js";
 
 const at = (id) => document.getElementById(id);
 
 /** @returns a function to call whenever settings have changed. */
-export function setUpPresets(settings, say) {
+export function setUpPresets(settings, notify) {
   const list = at("preset");
   const dialog = at("save-dialog");
   let presets = [];
-  let loaded = null;  // {name, values}: the preset that was loaded or saved last, and all values then
+  let loaded = null;  // {name, values}: the preset loaded or saved last, and all values at that time
 
   const refresh = async (chosen = list.value) => {
     presets = await ask("GET", "api/presets");
@@ -29,7 +29,7 @@ export function setUpPresets(settings, say) {
   const showState = () => {
     at("preset-state").textContent = [
       ...(loaded ? [stateOf(loaded, settings.values())] : []),
-      ...(list.value && list.value !== loaded?.name ? [`${list.value} is chosen, not loaded`] : []),
+      ...(list.value && list.value !== loaded?.name ? [`${list.value} is selected, not loaded`] : []),
     ].join("; ");
   };
   const keep = (name) => {
@@ -40,7 +40,7 @@ export function setUpPresets(settings, say) {
     try {
       await task();
     } catch (error) {
-      say(error.message);
+      notify(error.message);
     }
   };
   const pathOf = (name) => `api/presets/${encodeURIComponent(name)}`;
@@ -50,7 +50,7 @@ export function setUpPresets(settings, say) {
     await ask("POST", `${pathOf(list.value)}/load`);
     await settings.refresh();
     keep(list.value);
-    say(`${list.value} is in force`);
+    notify(`Loaded ${list.value}`);
   });
   at("preset-delete").onclick = () => attempt(async () => {
     await ask("DELETE", pathOf(list.value));
@@ -71,7 +71,7 @@ export function setUpPresets(settings, say) {
       dialog.close();
       await refresh(name);
       keep(name);
-      say(`Saved as ${name}`);
+      notify(`Saved as ${name}`);
     } catch (error) {
       at("save-error").textContent = error.message;
     }
@@ -81,16 +81,16 @@ export function setUpPresets(settings, say) {
     const line = (await ask("GET", "api/launch-line")).trim();
     at("launch-line").textContent = line;
     at("launch-line").hidden = false;
-    // Browsers copy on the loopback and over TLS only: elsewhere the line is there to be selected.
+    // Browsers allow copying only on localhost and over TLS. Otherwise the user can select the line.
     if (!navigator.clipboard) return;
     await navigator.clipboard.writeText(line);
-    say("Copied");
+    notify("Copied");
   });
   attempt(refresh);
   return showState;
 }
 
-// What of a preset is still so.
+// Text that names the preset in force and counts the settings changed since.
 function stateOf({ name, values }, now) {
   const changed = Object.keys(values).filter((each) => JSON.stringify(values[each]) !== JSON.stringify(now[each]));
   if (changed.length === 0) return `In force: ${name}`;

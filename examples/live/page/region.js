@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The region that is searched, drawn on the picture by a mouse or a pen; a finger scrolls the page.
-// Without either, the fields of roi and roi-source do the same.
+// The search region, drawn on the picture with a mouse or pen; touch scrolls the page. The settings
+// roi and roi-source do the same by keyboard.
 import { drawRegion } from "./drawing.js";
 
-const kLeastPx = 8;  // of the screen: what is shorter is a click
+const kMinPx = 8;  // screen pixels; a shorter drag is a click
 const kNone = [0, 0, 0, 0];
 
 export class Region {
-  /** Whether the picture is free for it: no other view uses the pointer. */
+  /** Whether dragging draws a region; other views use the pointer themselves. */
   isOn = true;
-  #start = null;  // {x, y} of the frame, where a drag has begun
-  #dragged = null;  // [x, y, width, height], while it is drawn
+  #start = null;  // {x, y} in the frame where the drag began
+  #dragged = null;  // [x, y, width, height] during the drag
 
-  constructor(screen, settings, say) {
-    Object.assign(this, { screen, settings, say });
+  constructor(screen, settings, notify) {
+    Object.assign(this, { screen, settings, notify });
     const { canvas } = screen;
     canvas.addEventListener("pointerdown", (event) => this.#begin(event));
     canvas.addEventListener("pointermove", (event) => this.#drag(event));
@@ -31,16 +31,16 @@ export class Region {
   #begin(event) {
     const isPen = event.pointerType !== "touch" && event.button === 0;
     if (!this.isOn || !isPen || !this.screen.frame) return;
-    this.#start = this.screen.placeOf(event);
+    this.#start = this.screen.positionOf(event);
     this.screen.canvas.setPointerCapture(event.pointerId);
   }
 
   #drag(event) {
     if (!this.#start) return;
     const { bitmap } = this.screen.frame;
-    const end = this.screen.placeOf(event);
+    const end = this.screen.positionOf(event);
     const px = bitmap.width / this.screen.canvas.clientWidth;
-    const isLong = Math.max(Math.abs(end.x - this.#start.x), Math.abs(end.y - this.#start.y)) > kLeastPx * px;
+    const isLong = Math.max(Math.abs(end.x - this.#start.x), Math.abs(end.y - this.#start.y)) > kMinPx * px;
     if (isLong || this.#dragged) this.#dragged = rectOf(this.#start, end, bitmap);
     this.screen.draw();
   }
@@ -51,7 +51,7 @@ export class Region {
     if (!roi) return;
     this.settings.set({ roi, "roi-source": "property" });
     this.screen.draw();
-    this.say(`Searched in ${roi[2]} × ${roi[3]} px; Escape or a double click: everywhere`);
+    this.notify(`Search region: ${roi[2]} × ${roi[3]} px; Escape or a double click removes it`);
   }
 
   #giveUp() {
@@ -63,7 +63,7 @@ export class Region {
     if (!this.isOn || !this.#chosen()) return;
     this.settings.set({ roi: kNone, "roi-source": "none" });
     this.screen.draw();
-    this.say("Searched everywhere");
+    this.notify("Search region removed");
   }
 
   /** The region in force, or null. */
@@ -78,7 +78,7 @@ export class Region {
   }
 }
 
-// The whole pixels between two places, inside the frame.
+// The rectangle of whole pixels between two points, clipped to the frame.
 function rectOf(a, b, { width, height }) {
   const span = (one, other, size) => {
     const low = Math.max(0, Math.floor(Math.min(one, other) + 0.5));

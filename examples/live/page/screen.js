@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The screen: the frame of now with what is known of it, or another view of it.
+// Shows the current frame with its metadata, or the view of another tab.
 import { contextOf, drawPicture, drawTargets } from "./drawing.js";
 
 const kLayers = {
@@ -14,18 +14,18 @@ const kLayers = {
 export class Screen {
   /** Which layers are on. */
   layers = { ellipse: true, axes: true, centre: true, region: true, candidates: true, truth: false };
-  /** {pts, bitmap, line} of the frame that is shown; null before the first. */
+  /** The shown frame, {pts, bitmap, line}; null before the first one. */
   frame = null;
-  /** Draws instead of the frame's own drawing, where it is set: (context, frame) => void. */
+  /** Replaces the drawing of frame and metadata if set: (context, frame) => void. */
   view = null;
-  /** Draws over the frame's own drawing: (context) => void. */
+  /** Draws over the frame and its metadata: (context) => void. */
   overlay = () => {};
-  #aspect = 0;  // of the video: width over height
+  #aspect = 0;  // width / height of the video
 
   constructor(canvas, layerList) {
     this.canvas = canvas;
     this.shown = 0;
-    this.isClear = false;  // all layers off for a moment
+    this.isClear = false;  // all layers hidden
     for (const [name, title] of Object.entries(kLayers)) {
       layerList.append(this.#toggle(name, title));
     }
@@ -36,7 +36,7 @@ export class Screen {
     const { width, height } = frame.bitmap;
     if (width / height !== this.#aspect) {
       this.#aspect = width / height;
-      // The style sheet lays the pictures out by it.
+      // Used by the style sheet for the layout.
       this.canvas.closest("main").style.setProperty("--aspect", String(this.#aspect));
     }
     if (this.frame && this.frame.bitmap !== frame.bitmap) this.frame.bitmap.close?.();
@@ -62,14 +62,14 @@ export class Screen {
     this.canvas.dataset.shown = this.shown;
   }
 
-  /** All drawings off, or on again. */
+  /** Hides or shows all layers. */
   toggleAll() {
     this.isClear = !this.isClear;
     this.draw();
   }
 
-  /** The place of a pointer's event [px of the frame]. */
-  placeOf(event) {
+  /** The position of a pointer event [frame px]. */
+  positionOf(event) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const { bitmap } = this.frame;
     return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All properties of the element, grouped as the paper groups them. A change acts at once.
+// The controls of all properties, in the paper's groups. A change applies immediately.
 import { ask } from "./connection.js";
 import { make, makeControl } from "./controls.js";
 
@@ -8,11 +8,11 @@ const kGroups = {
   detection: ["Detection", "what counts as an ellipse"],
   edges: ["Edges", "what counts as an edge"],
   tracking: ["Tracking", "how the target is followed"],
-  scale: ["Scale", "how finely a frame is searched"],
+  scale: ["Scale", "at which resolution a frame is searched"],
   ROI: ["Region", "where a frame is searched"],
   camera: ["Camera", "where the target is in space"],
   load: ["Load", "which frames are analysed"],
-  output: ["Output", "what is told and drawn"],
+  output: ["Output", "what is reported and drawn"],
   other: ["Other", ""],
 };
 const kOpenAtFirst = ["detection", "edges", "tracking"];
@@ -20,9 +20,9 @@ const kOpenAtFirst = ["detection", "edges", "tracking"];
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 /**
- * Why a setting changes nothing now; empty where it acts.
- * @param effect  As the program tells it.
- * @param value   Of the setting; @param values  Of all.
+ * Why a setting currently has no effect; empty if it has one.
+ * @param effect  The setting's "effect" from the program.
+ * @param value   The setting's value; @param values  all values by name.
  */
 function idleReason(effect, value, values) {
   if (!effect || (effect.otherwise && values[effect.otherwise] !== 0)) return "";
@@ -40,7 +40,7 @@ export class Settings {
   #controls = new Map();  // by name: {property, control, node, error, idle, value}
   #pending = {};
   #isSending = false;
-  /** Called where any value has changed, by whomever. */
+  /** Called when any value has changed, also by another client. */
   onChange = () => {};
 
   constructor(container, filter, resetAll) {
@@ -51,7 +51,7 @@ export class Settings {
     setInterval(() => document.hidden || this.refresh(), kPollMs);
   }
 
-  /** All values by name, as the program has them. */
+  /** All values by name. */
   values() {
     return Object.fromEntries(this.#properties.map(({ name }) => [name, this.#controls.get(name).value]));
   }
@@ -85,7 +85,7 @@ export class Settings {
     if (hasChanged) this.onChange();
   }
 
-  /** Sets some, {name: value}; what is asked for while a request is under way goes with the next. */
+  /** Sets {name: value, ...}. Values set during a request are sent together in the next one. */
   async set(values) {
     Object.assign(this.#pending, values);
     for (const [name, value] of Object.entries(values)) this.#show(this.#controls.get(name), value);
@@ -103,7 +103,7 @@ export class Settings {
     this.onChange();
   }
 
-  /** Brings a setting into view and to the focus. */
+  /** Scrolls to a setting and focuses it. */
   reveal(name) {
     const entry = this.#controls.get(name);
     if (!entry) return;
@@ -169,7 +169,7 @@ export class Settings {
     entry.node.classList.toggle("changed", !this.#isDefault(entry.property, value));
   }
 
-  // Flags, regions and directions have more than one spelling of their default.
+  // Flags, regions and vectors have more than one representation of their default.
   #isDefault({ type, default: usual }, value) {
     if (type === "rect") return usual.length === 0 ? !value[2] : isSame(value, usual);
     if (type === "vector") return value.every((number, i) => number === (usual[i] ?? 0));
@@ -177,8 +177,8 @@ export class Settings {
     return isSame(value, usual);
   }
 
-  // What changes nothing with the detector and the tracking of now is greyed, and says so. It can be
-  // set all the same, for another detector or tracking.
+  // Greys settings without effect for the current detector and tracking, and shows the reason. They
+  // can still be set.
   #showEffects() {
     const values = this.values();
     for (const { property, node, idle, value } of this.#controls.values()) {

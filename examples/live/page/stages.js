@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The stage view: edges, chains, arcs and candidates of the frame on the screen, and why each
-// candidate is refused.
-import { analyze, kBest, lookOf, placeText } from "./analysis.js";
+// The Stages tab: edges, chains, arcs and candidates of the shown frame, and the reason of each
+// rejection.
+import { analyze, kBest, lookOf, ellipseText } from "./analysis.js";
 import { newestOnly } from "./connection.js";
 import { make } from "./controls.js";
 import { distanceTo, drawEllipse, drawPicture } from "./drawing.js";
@@ -13,27 +13,27 @@ const kStages = {
   arcs: "Arcs",
   candidates: "Candidates",
 };
-// What the detector of the paper has in the place of chains and arcs.
+// The names of these stages for the detector "contours".
 const kStagesOfContours = { chains: "Contours", arcs: "Parts" };
-const kMostRows = 200;
-const kPauseMs = 400;
+const kMaxRows = 200;
+const kIntervalMs = 400;
 const kNearPx = 12;
 const at = (id) => document.getElementById(id);
 
 export class Stages {
   #stage = "candidates";
   #result = null;
-  #marked = null;  // the number of a candidate
-  #only = null;    // a reason
+  #marked = null;  // number of the highlighted candidate
+  #only = null;    // reason whose candidates are drawn alone
   #open = new Set(["accepted"]);
-  #whole = new Set();  // reasons of which all are listed
-  #showsAll = false;   // all that were refused are on the screen
+  #whole = new Set();  // reasons with a complete list
+  #showsAll = false;   // all rejected candidates are drawn
   #isOn = false;
   #timer = 0;
-  #names = {};     // of the stages, as they are shown
+  #names = {};     // elements with the stages' names
 
-  constructor(screen, playback, settings, say) {
-    Object.assign(this, { screen, playback, settings, say });
+  constructor(screen, playback, settings, notify) {
+    Object.assign(this, { screen, playback, settings, notify });
     for (const [stage, title] of Object.entries(kStages)) {
       const radio = make("input", { type: "radio", name: "stage", value: stage, checked: stage === this.#stage });
       radio.onchange = () => {
@@ -45,7 +45,7 @@ export class Stages {
     }
     at("stage-all").onclick = () => {
       this.#showsAll = !this.#showsAll;
-      this.#tellShown();
+      this.#showCount();
       this.screen.draw();
     };
     screen.canvas.addEventListener("click", (event) => this.#isOn && this.#pick(event));
@@ -66,11 +66,11 @@ export class Stages {
     this.screen.draw();
   }
 
-  /** Looks again: at another frame, or with other settings. While it plays, again and again. */
+  /** Analyses the current frame with the current settings. Repeats while the source plays. */
   refresh = newestOnly(async () => {
     if (!this.#isOn || !this.screen.frame) return;
     try {
-      // The candidates are drawn here, over the luma.
+      // Candidates are drawn here, over the frame.
       const choice = this.#stage;
       const stage = choice === "candidates" ? "luma" : choice;
       this.#result = { choice, stage, ...await analyze({ stage }) };
@@ -83,7 +83,7 @@ export class Stages {
     this.screen.draw();
     this.#list();
     clearTimeout(this.#timer);
-    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kPauseMs);
+    if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kIntervalMs);
   });
 
   #draw(context, { bitmap, pts }) {
@@ -95,7 +95,7 @@ export class Stages {
       context.fillStyle = "rgb(8 10 14 / .55)";
       context.fillRect(-0.5, -0.5, bitmap.width, bitmap.height);
     }
-    // What is found lies over what is refused, and what is pointed at over all.
+    // Drawing order: rejected, found, target, highlighted.
     const rank = ({ is_target, found, number }) => (number === this.#marked ? 3 : is_target ? 2 : found ? 1 : 0);
     const shown = candidates
       .map((candidate, number) => ({ ...candidate, number }))
@@ -112,8 +112,7 @@ export class Stages {
     context.lineWidth = width;
   }
 
-  // What was found, and of the refused those that came closest; of a reason that is opened those
-  // that are listed.
+  // Draws found candidates and the best rejected ones; if a reason is open, those in its list.
   #isShown(candidate, number) {
     if (!candidate.ellipse) return false;
     if (number === this.#marked) return true;
@@ -126,32 +125,32 @@ export class Stages {
   }
 
   #listed({ reason, members }) {
-    const most = this.#whole.has(reason) ? kMostRows : kBest;
+    const most = this.#whole.has(reason) ? kMaxRows : kBest;
     return members.filter(({ ellipse }) => ellipse).slice(0, most);
   }
 
-  #tellShown() {
+  #showCount() {
     const { candidates, best, choice } = this.#result;
-    const refused = candidates.filter(({ ellipse, found }) => ellipse && !found).length;
-    at("stage-shown").hidden = choice !== "candidates" || this.#only !== null || refused <= best.size;
+    const rejected = candidates.filter(({ ellipse, found }) => ellipse && !found).length;
+    at("stage-shown").hidden = choice !== "candidates" || this.#only !== null || rejected <= best.size;
     at("stage-shown").firstChild.textContent = this.#showsAll
-      ? `All ${refused} refused are shown`
-      : `Of ${refused} refused the ${best.size} that came closest are shown`;
-    at("stage-all").textContent = this.#showsAll ? "Show the best" : "Show all";
+      ? `Showing all ${rejected} rejected candidates`
+      : `Showing the closest ${best.size} of ${rejected} rejected candidates`;
+    at("stage-all").textContent = this.#showsAll ? "Show closest" : "Show all";
     at("stage-all").setAttribute("aria-pressed", this.#showsAll);
   }
 
   #list() {
-    this.#tellShown();
+    this.#showCount();
     const { groups, passes, processing_ns: time, detector } = this.#result;
     for (const stage of Object.keys(kStagesOfContours)) {
       this.#names[stage].textContent = (detector === "contours" ? kStagesOfContours : kStages)[stage];
     }
     const total = groups.reduce((sum, { count }) => sum + count, 0);
     const pass = passes.at(-1);
-    const parts = [`<b>${total}</b> tried`];
+    const parts = [`<b>${total}</b> candidates`];
     if (pass) {
-      parts.push(`1 : ${pass.scale}`, `edges above ${pass.edge_high.toFixed(1)} grey levels per px`);
+      parts.push(`scale 1:${pass.scale}`, `edges above ${pass.edge_high.toFixed(1)} grey levels per px`);
     }
     at("stage-summary").innerHTML = `${detector}: ${parts.join(", ")}, ${(time / 1e6).toFixed(2)} ms`;
     const hadFocus = document.activeElement?.dataset?.focus;
@@ -175,7 +174,7 @@ export class Stages {
       else this.#open.delete(group.reason);
       this.#only = node.open && group.reason !== "accepted" ? group.reason
         : this.#only === group.reason ? null : this.#only;
-      this.#tellShown();
+      this.#showCount();
       this.screen.draw();
     };
     const rows = this.#listed(group);
@@ -196,7 +195,7 @@ export class Stages {
     if (this.#whole.has(group.reason) || drawable <= kBest) {
       return make("p", { className: "more" }, `and ${count} more`);
     }
-    const title = drawable <= kMostRows ? `Show all ${drawable}` : `Show ${kMostRows} of ${drawable}`;
+    const title = drawable <= kMaxRows ? `Show all ${drawable}` : `Show ${kMaxRows} of ${drawable}`;
     const button = make("button", { className: "quiet rest" }, title);
     button.dataset.focus = `${group.reason} rest`;
     button.onclick = () => {
@@ -207,10 +206,10 @@ export class Stages {
     return button;
   }
 
-  /** Called with the name of a setting that a person wants to see. */
+  /** Called with the name of the setting to show. */
   onSetting = () => {};
 
-  // Of the overlaps there are two: this analysis knows no target before it.
+  // Overlap settings exist for detecting and for tracking; this analysis detects.
   #settingOf({ setting }) {
     if (!setting) return null;
     return setting in this.settings.values() ? setting : `detect-${setting}`;
@@ -222,8 +221,8 @@ export class Stages {
         `${member.measured < member.limit ? "at least" : "at most"} ${short(member.limit)}`
       : member.found ? foundText(member) : "";
     const button = make("button", {},
-      make("span", {}, (member.is_target ? "The target, " : "") + figure),
-      make("span", { className: "where" }, placeText(member.ellipse)));
+      make("span", {}, (member.is_target ? "Target, " : "") + figure),
+      make("span", { className: "where" }, ellipseText(member.ellipse)));
     button.dataset.focus = `${group.reason} ${member.number}`;
     button.dataset.candidate = member.number;
     const mark = (number) => () => {
@@ -235,16 +234,16 @@ export class Stages {
     return make("li", {}, button, ...(member.evidence ? [evidenceOf(member.evidence)] : []));
   }
 
-  // The candidate whose perimeter is next to the pointer is shown in the list.
+  // Shows the candidate nearest to the pointer in the list.
   #pick(event) {
     if (!this.#result) return;
-    const { x, y } = this.screen.placeOf(event);
+    const { x, y } = this.screen.positionOf(event);
     const near = this.#result.candidates
       .map((candidate, number) => ({ candidate, number }))
       .filter(({ candidate }) => candidate.ellipse)
       .map((each) => ({ ...each, distance: distanceTo(each.candidate.ellipse, x, y) }))
       .filter(({ distance }) => distance < kNearPx);
-    // Where what is shown is near, nobody means what is not.
+    // Drawn candidates take precedence over hidden ones.
     const shown = near.filter(({ candidate, number }) => this.#isShown(candidate, number));
     const [best] = (shown.length > 0 ? shown : near).sort((a, b) => a.distance - b.distance);
     if (!best) return;
@@ -255,17 +254,17 @@ export class Stages {
     const row = at("reasons").querySelector(`[data-candidate="${best.number}"]`);
     row?.focus();
     row?.scrollIntoView({ block: "center" });
-    this.say(best.candidate.text);
+    this.notify(best.candidate.text);
   }
 }
 
-// Where a detector gives a probability its score is the log odds of it.
+// Detectors that report a probability use its log odds as the score.
 function foundText({ evidence, probability, score }) {
   if (!evidence) return `score ${score.toFixed(0)}`;
   return `probability ${probability < 0.9995 ? probability.toFixed(3) : "above 0.999"}`;
 }
 
-// What each feature adds to the log odds, as a bar from the middle: to the right for an ellipse.
+// Bars of each feature's contribution to the log odds: evidence for an ellipse points right.
 function evidenceOf(evidence) {
   const most = Math.max(...evidence.map(({ contribution }) => Math.abs(contribution)), 1);
   return make("dl", { className: "evidence" }, ...evidence.flatMap(({ description, contribution }) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The bar at the top, notices over the picture, and what a screen reader is told.
+// The status bar, the notice over the picture, and announcements for screen readers.
 import { targetOf } from "./drawing.js";
 
 const kNoticeMs = 3500;
@@ -15,19 +15,19 @@ const at = (id) => document.getElementById(id);
 export class Status {
   #state = null;
   #hadTarget = false;
-  #times = [];   // when lines came
-  #shown = [];   // when pictures were painted
+  #times = [];   // arrival times of lines
+  #shown = [];   // times of painted pictures
   #trouble = "";
   #timer = 0;
 
-  /** A word to the person, for a few seconds. */
-  say = (text) => {
+  /** Shows a notice for a few seconds. */
+  notify = (text) => {
     clearTimeout(this.#timer);
     this.#notice(text, false);
     this.#timer = setTimeout(() => this.#notice(this.#trouble, true), kNoticeMs);
   };
 
-  /** What is wrong, until it is no more: "". */
+  /** Shows an error until it is set to "". */
   setTrouble(text) {
     if (text === this.#trouble) return;
     this.#trouble = text;
@@ -47,7 +47,7 @@ export class Status {
     at("figure-tracker").textContent = line.tracker ?? "–";
   }
 
-  /** A picture was painted. */
+  /** Counts a painted picture. */
   takeFrame() {
     rate(this.#shown);
     at("figure-shown").textContent = rateText(this.#shown);
@@ -68,7 +68,7 @@ export class Status {
   }
 }
 
-// The last second of events.
+// Adds an event and drops those older than a second.
 function rate(times) {
   const now = performance.now();
   times.push(now);
@@ -77,6 +77,6 @@ function rate(times) {
 
 function rateText(times) {
   const span = times.at(-1) - times[0];
-  // Some browsers' clocks stand still for 100 ms.
+  // Some browsers limit the clock's resolution to 100 ms.
   return span > 0 ? (1000 * (times.length - 1) / span).toFixed(0) : "–";
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Tabs by mouse and keys, as the ARIA practices have them.
+// Tabs for mouse and keyboard, following the ARIA Authoring Practices.
 
-// Where the page has been scrolled on under the tabs, another panel begins below them.
+// The tab list is sticky: scrolls so that a new panel starts below it.
 function showStartOf(panel, tabList) {
   const hidden = tabList.getBoundingClientRect().bottom - panel.getBoundingClientRect().top;
   if (hidden > 1) scrollBy(0, -hidden);
 }
 
 /**
- * @param onChange  Gets the name of the tab that is open now, as in id="tab-NAME".
+ * @param onChange  Called with the name of the open tab, as in id="tab-NAME".
  * @returns a function that opens a tab by its name.
  */
 export function setUpTabs(onChange) {

@@ -461,7 +461,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       .some((row) => /Targetfoundnone/.test(row.textContent)));
     assert.deepEqual(await cells.allTextContents(), ["found", "none"]);
     await page.click("#compare-back");
-    await page.waitForFunction(() => /no difference yet/.test(document.querySelector("#compare-result").textContent));
+    await page.waitForFunction(() => /no differences/.test(document.querySelector("#compare-result").textContent));
     await live.program.ask("POST", "/api/play");
     await page.close();
   });
@@ -484,11 +484,11 @@ describe("a picture with much to refuse", () => withProgram(() => ["--source", "
     await standsStill(page, live.program);
     await page.click("#tab-stages");
     await page.waitForSelector("#stage-shown:not([hidden])");
-    const [, refused, few] = /Of (\d+) refused the (\d+) /.exec(await page.textContent("#stage-shown"));
+    const [, few, rejected] = /closest (\d+) of (\d+) rejected/.exec(await page.textContent("#stage-shown"));
     assert.equal(few, "8");
     const { candidates } = await live.program.ask("POST", "/api/analyze", {});
-    assert.equal(Number(refused), candidates.filter(({ ellipse, found }) => ellipse && !found).length);
-    assert.ok(refused > 20, `${refused} refused`);
+    assert.equal(Number(rejected), candidates.filter(({ ellipse, found }) => ellipse && !found).length);
+    assert.ok(rejected > 20, `${rejected} rejected`);
     const redOfFew = await countRed(page);
     await page.click("#stage-all");
     await page.waitForSelector("#stage-all[aria-pressed=true]");
@@ -539,7 +539,7 @@ describe("presets", () => {
     assert.ok(await page.isDisabled("#preset-load"));
     await once("");
     await page.selectOption("#preset", "Keipour 2021");
-    await once("Keipour 2021 is chosen, not loaded");
+    await once("Keipour 2021 is selected, not loaded");
     await page.click("#preset-load");
     await once("In force: Keipour 2021");
     await setting(page, "max-axis").locator("input[type=number]").fill("650");
@@ -673,7 +673,7 @@ describe("a file", () => withProgram(() => {
     await page.click("#tab-label");
     await standsStill(page, live.program);
     await choicesAreThere(page);
-    await page.getByLabel("Drawn: click points all along its edge").check();
+    await page.getByLabel("Drawn: click points along its whole edge").check();
     const { x, y, width } = await page.locator("#screen").boundingBox();
     const scale = width / 640;
     for (let i = 0; i < 6; ++i) {
