@@ -9,7 +9,7 @@
 namespace evaluate {
 namespace {
 
-// A distance of the centres above the larger semi-axis leaves less than kMinIou in common.
+// Ellipses whose centres are farther apart than the larger semi-axis have an IoU below kMinIou.
 bool can_match(const ellipse::Ellipse& a, const ellipse::Ellipse& b) {
   return (a.center() - b.center()).norm() < std::max(a.semi_major, b.semi_major);
 }

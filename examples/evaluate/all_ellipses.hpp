@@ -8,18 +8,18 @@
 
 namespace evaluate {
 
-/// How all ellipses that a method found in a frame compare with all that are true.
+/// Comparison of all ellipses found in a frame with all true ones.
 struct AllResult {
-  FrameCounts counts;  ///< Of ellipses.
+  FrameCounts counts;  ///< Counts ellipses, not frames.
   std::vector<double> centre_errors_px;
-  /// The larger of the two differences between semi-axes.
+  /// Per match, the larger error of the two semi-axes.
   std::vector<double> axis_errors_px;
 };
 
-/// Matches found and true ellipses one to one at an intersection over union of kMinIou and more,
-/// as many as possible. A true ellipse with less than kMinVisible of its perimeter in the frame
-/// may be missed; a found one that matches it is neither right nor mistaken. Nothing counts where
-/// the frame is not judged.
+/// Matches found and true ellipses one to one at an intersection over union of at least kMinIou,
+/// with as many matches as possible. A true ellipse with less than kMinVisible of its perimeter in
+/// the frame may be missed; an ellipse that matches it counts neither as right nor as mistaken.
+/// Frames that are not judged count nothing.
 [[nodiscard]] AllResult compare_all(std::span<const ellipse::Ellipse> found,
                                     const Truth& truth,
                                     const FrameSize& frame);

@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Smaller ones hold nothing to follow.
+// Smaller boxes contain too few pixels to track.
 constexpr int kMinBoxPx = 8;
 
 cv::Rect box_around(const ellipse::Ellipse& e, const cv::Size& frame) {
@@ -28,7 +28,7 @@ Eigen::Vector2d middle_of(const cv::Rect& box) {
   return {box.x + 0.5 * box.width, box.y + 0.5 * box.height};
 }
 
-// In grey KCF forgets its target at random (opencv_contrib issues 1991 and 3893).
+// KCF fails at random on grey pictures (opencv_contrib issues 1991 and 3893).
 void colour(const cv::Mat& grey, cv::Mat& colour) {
   cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
 }
@@ -75,7 +75,7 @@ bool BoxPeer::update(cv::Rect& box) {
   } catch (const cv::Exception&) {
     return false;
   }
-  // A box outside the frame says that the target has left it.
+  // A box outside the frame means that the target has left it.
   return !(box & cv::Rect({0, 0}, colour_.size())).empty();
 }
 

@@ -13,29 +13,28 @@ class Tracker;
 
 namespace evaluate {
 
-/// A packaged tracker of boxes with OpenCV's defaults, and an ellipse that is moved and scaled with
-/// its box. One object serves one thread at a time. No content of a picture throws: where OpenCV
-/// does, that is a loss.
+/// A packaged box tracker with OpenCV's default settings. The ellipse moves and scales with the
+/// box. Not thread-safe. No picture throws: an exception from OpenCV counts as a loss.
 class BoxPeer {
  public:
   using Make = cv::Ptr<cv::Tracker> (*)();
 
   explicit BoxPeer(Make make) : make_(make) {}
 
-  /// What it makes of one picture.
+  /// The result for one picture.
   struct Step {
-    std::optional<ellipse::Ellipse> target;  ///< [px]. nullopt where it reports a loss.
-    double ms = 0.0;                         ///< Of OpenCV's update alone.
+    std::optional<ellipse::Ellipse> target;  ///< [px]; nullopt on a loss.
+    double ms = 0.0;                         ///< Duration of OpenCV's update() alone.
   };
 
-  /// Starts from a target's box, cut at the picture's border.
-  /// @param grey  8 bits, borrowed for the call only.
-  /// @return Whether there is anything to follow: too small a box is refused.
+  /// Initializes the tracker with the target's bounding box, clipped to the picture.
+  /// @param grey  8-bit; borrowed for the call.
+  /// @return false if the box is too small to track.
   [[nodiscard]] bool begin(const cv::Mat& grey, const ellipse::Ellipse& target);
 
   [[nodiscard]] bool is_following() const { return !tracker_.empty(); }
 
-  /// The next picture. Only while it is following, which ends with a loss.
+  /// Tracks into the next picture. Requires an initialized tracker that has not lost its target.
   [[nodiscard]] Step follow(const cv::Mat& grey);
 
   void stop() { tracker_.reset(); }
@@ -46,16 +45,16 @@ class BoxPeer {
 
   Make make_;
   cv::Mat colour_;
-  cv::Ptr<cv::Tracker> tracker_;  // none while there is nothing to follow
+  cv::Ptr<cv::Tracker> tracker_;  // null = not tracking
   ellipse::Ellipse first_;
   cv::Rect first_box_;
   cv::Rect box_;
 };
 
-/// "kcf" and "csrt".
+/// Names: "kcf" and "csrt".
 [[nodiscard]] std::span<const char* const> box_peer_names();
 
-/// One of them. Throws std::invalid_argument that names it, where it is unknown.
+/// Creates a tracker. Throws std::invalid_argument that names an unknown one.
 [[nodiscard]] BoxPeer make_box_peer(std::string_view name);
 
 }  // namespace evaluate

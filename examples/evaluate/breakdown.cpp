@@ -14,7 +14,7 @@ namespace {
 
 using Quantity = std::function<std::optional<double>(const SeenFrame&)>;
 
-// Ranges from each limit to the next; the last one is open.
+// Names of the ranges between consecutive limits; the last range is open.
 std::vector<std::string> names_of(const std::vector<double>& limits, double unit) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
@@ -24,7 +24,7 @@ std::vector<std::string> names_of(const std::vector<double>& limits, double unit
   return names;
 }
 
-// nullopt below the first limit.
+// The range of a value; nullopt below the first limit.
 std::optional<std::size_t> range_of(double value, const std::vector<double>& limits) {
   const auto above = std::upper_bound(limits.begin(), limits.end(), value);
   if (above == limits.begin()) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<std::size_t> range_of(double value, const std::vector<double>& lim
 struct Axis {
   const char* title;
   const char* label;
-  double unit;  // what the numbers shown are in units of
+  double unit;  // divisor for the printed limits
   std::vector<double> limits;
   Quantity quantity;
 };
@@ -70,7 +70,7 @@ std::vector<Axis> axes() {
   };
 }
 
-// Empty where fewer than two ranges have frames.
+// nullopt if fewer than two ranges have frames.
 std::optional<Panel> recall_panel(const Evaluation& evaluation,
                                   const std::string& dataset,
                                   const Axis& axis) {

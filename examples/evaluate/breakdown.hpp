@@ -8,9 +8,9 @@
 
 namespace evaluate {
 
-/// Where each method is good and where not, on one data set: how its errors of the centre are
-/// spread, and its recall by the target's size, its visible part, the noise and the crumpling. What
-/// the data set does not tell, or does not vary, is left out.
+/// Plots of each method's performance on one data set: distribution of the centre error, and recall
+/// by target size, visible part, noise and edge deformation. Omits quantities that the data set
+/// does not specify or vary.
 [[nodiscard]] std::vector<Panel> breakdown(const Evaluation& evaluation,
                                            const std::string& dataset);
 

@@ -23,7 +23,7 @@ std::vector<std::string> split_at_colons(const std::string& text) {
   return parts;
 }
 
-// from:to:step is a range where at least one step fits; else three values.
+// Distinguishes from:to:step, a range with at least one step, from three values.
 bool is_range(const std::vector<std::string>& parts) {
   if (parts.size() != 3) return false;
   std::vector<double> numbers;

@@ -10,41 +10,41 @@
 
 namespace evaluate {
 
-/// What was fitted or chosen.
+/// Settings that were fitted or chosen.
 struct Choice {
-  std::string name;  ///< For people.
+  std::string name;  ///< Description for output.
   ellipse::TrackerSettings settings;
 };
 
-/// Fits or chooses something on some sources. Whatever has parameters that come from data
-/// implements this, so that leave_one_out() can judge it on sources that it has not seen.
+/// Fits or chooses settings on some sources. Implemented by everything with parameters derived from
+/// data, so that leave_one_out() can evaluate it on unseen sources.
 class Chooser {
  public:
   virtual ~Chooser() = default;
 
-  /// @param sources  Names of data sets, at least one. No other may influence the choice.
+  /// @param sources  Names of data sets, at least one. The choice must depend on no others.
   [[nodiscard]] virtual Choice choose(const std::vector<std::string>& sources) = 0;
 };
 
-/// A property and the values that it may have.
+/// A property and its candidate values.
 struct Property {
   std::string name;
   std::vector<std::string> values;
 };
 
-/// From "property=a,b,c", "property=a:b:c" or, as a sweep, "property=from:to:step". Numbers that
-/// ascend are values: as a range they would hold one value only.
-/// Throws std::invalid_argument that names the text.
+/// Parses "property=a,b,c", "property=a:b:c" or the range "property=from:to:step". Three numbers
+/// are a range only if at least one step fits.
+/// Throws std::invalid_argument that quotes the text.
 [[nodiscard]] Property parse_property(const std::string& text);
 
-/// Chooses the point of a grid of properties with the largest mean grade, each source weighted
-/// alike; of equal ones the first.
+/// Chooses the point of a property grid with the largest mean grade, with equal weights for all
+/// sources. On a tie, the first point wins.
 class GridChooser : public Chooser {
  public:
-  /// Runs all points on all sequences.
-  /// @param settings  Of the method whose properties are varied.
-  /// @param advance   Called after each frame; false ends it early.
-  /// Throws std::invalid_argument where a property is unknown or refuses a value.
+  /// Evaluates all points on all sequences.
+  /// @param settings  Base settings of the method.
+  /// @param advance   Called after each frame; returning false stops early.
+  /// Throws std::invalid_argument if a property is unknown or rejects a value.
   GridChooser(const std::vector<Property>& grid,
               const ellipse::TrackerSettings& settings,
               const std::vector<Sequence>& sequences,
@@ -53,13 +53,13 @@ class GridChooser : public Chooser {
 
   [[nodiscard]] Choice choose(const std::vector<std::string>& sources) override;
 
-  /// Each names a frame that was left out, and why.
+  /// One message per skipped frame, with the reason.
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   struct Point {
     Choice choice;
-    std::vector<double> grades;  // by source
+    std::vector<double> grades;  // one per source
   };
 
   void add_points(const std::vector<Property>& grid, std::size_t depth, const Choice& choice);

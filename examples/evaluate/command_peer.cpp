@@ -42,7 +42,7 @@ using WordsPtr = std::unique_ptr<gchar*, Free<g_strfreev>>;
   fail(command, what);
 }
 
-// A program that ends before it has read everything must not end this one.
+// Ignores SIGPIPE: a program that exits before it has read its input must not kill this one.
 class IgnoredPipeSignal {
  public:
   IgnoredPipeSignal() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
@@ -78,7 +78,7 @@ void check_status(const std::string& command, GSubprocess* program) {
   if (status != 0) fail(command, "exited with status " + std::to_string(status));
 }
 
-// Ends a program that is not wanted any more.
+// Kills the program when its answer is no longer wanted.
 class Watch {
  public:
   Watch(GSubprocess* program, const std::function<bool()>& is_wanted)
@@ -92,7 +92,7 @@ class Watch {
   std::jthread thread_;
 };
 
-// Writes and reads at the same time, so that neither program ever waits for the other.
+// Writes and reads concurrently, so that neither program blocks the other.
 std::string output_of(const std::string& command,
                       const std::string& input,
                       const std::function<bool()>& is_wanted) {
@@ -144,7 +144,7 @@ struct NamedAnswer {
   PeerAnswer answer;
 };
 
-// Throws std::invalid_argument that says what is wrong with the line.
+// Throws std::invalid_argument that describes the error in the line.
 NamedAnswer answer_in(std::string_view line) {
   const ObjectPtr<JsonParser> parser(json_parser_new());
   JsonNode* root = nullptr;

@@ -11,30 +11,31 @@
 
 namespace evaluate {
 
-/// What another program said of one picture.
+/// Another program's answer for one image.
 struct PeerAnswer {
-  double ms = 0.0;                             ///< Its own account of the time that it took.
-  std::vector<ellipse::Detection> detections;  ///< Scored by their perimeters.
+  double ms = 0.0;                             ///< Processing time as reported by the program.
+  std::vector<ellipse::Detection> detections;  ///< Scored by perimeter.
 };
 
-/// Runs any other program as a peer. The command is split into words by the rules of the shell, but
-/// no shell sees it. The program gets one image's path a line on its standard input and answers
-/// with one line an image, in any order and at any time until it ends:
+/// Runs another program as a peer. The command is split into words by shell rules, but without a
+/// shell. The program reads one image path per line from its standard input. It writes one line per
+/// image, in any order and at any time until it exits:
 ///
 ///     {"image":"the path as given","ms":12.5,"ellipses":[[cx,cy,a,b,angle],...]}
 ///
-/// in pixels, semi-axes in either order, the angle [rad] being that of the axis a. Empty lines do
-/// not count. Its standard error is passed on.
+/// Lengths are in pixels. The semi-axes may be in either order; the angle [rad] is that of the axis
+/// a. Empty lines are ignored. Standard error is inherited.
 ///
-/// @return The answers by the paths as given. An image without an answer is not among them.
+/// Blocks until the program exits. Not thread-safe: SIGPIPE is ignored during the call. The program
+/// runs in its own process group, so Ctrl-C reaches only this one.
 ///
-/// Throws std::runtime_error that names the command, where it cannot be started, ends with another
-/// status than 0 or by a signal, or a line is no such answer, names an image that was not asked for
-/// or names one twice. Waits until the program ends. Not thread-safe: SIGPIPE is ignored meanwhile.
-/// The program is in a process group of its own: a Ctrl-C is for this one.
+/// @param is_wanted  Called from another thread ten times a second. If it returns false, the
+/// program is killed and the call throws.
+/// @return The answers by path. Images without an answer are missing.
 ///
-/// @param is_wanted  Asked from another thread ten times a second; false ends the program, and
-/// throws.
+/// Throws std::runtime_error that names the command if it cannot be started, exits with a status
+/// other than 0 or by a signal, or writes an invalid line, an image that was not requested, or an
+/// image twice.
 [[nodiscard]] std::map<std::string, PeerAnswer> run_command_peer(
     const std::string& command,
     std::span<const std::filesystem::path> images,

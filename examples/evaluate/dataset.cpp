@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// frame9 before frame10: a run of digits counts by its value.
+// Natural order: digits compare by value, so frame9 precedes frame10.
 bool natural_less(const std::string& a, const std::string& b) {
   const auto parts = [](const std::string& s) {
     std::vector<std::pair<unsigned long long, std::string>> result(1);
@@ -38,7 +38,7 @@ bool natural_less(const std::string& a, const std::string& b) {
   return parts(a) < parts(b);
 }
 
-// By the names of data set and sequence.
+// Names of data set and sequence.
 using SequenceKey = std::pair<std::string, std::string>;
 using FramesBySequence = std::map<SequenceKey, std::vector<Frame>>;
 
@@ -82,7 +82,7 @@ class Reader {
   }
 
  private:
-  // Where a frame is among frames_.
+  // Indices of a frame.
   struct Place {
     SequenceKey sequence;
     std::size_t index = 0;
@@ -128,7 +128,7 @@ class Reader {
     return place == places_.end() ? nullptr : &frames_[place->second.sequence][place->second.index];
   }
 
-  // A further row of an image.
+  // Adds another ellipse from a further row of the same image.
   static void add_ellipse(const Row& row, Frame& frame, const Truth& truth) {
     if (!truth.target || !frame.truth.target) {
       row.fail("image " + frame.name + " has several lines, one of them without an ellipse");
@@ -164,7 +164,7 @@ class Reader {
     frames_[key].push_back(std::move(frame));
   }
 
-  // A sequence is a folder of pictures, named by its path inside the data set.
+  // The sequence is the image's folder, relative to the data set.
   [[nodiscard]] std::string sequence_of(const fs::path& image) const {
     const fs::path folder = image.parent_path().lexically_normal();
     const std::string inside = folder.lexically_relative(folder_).generic_string();
@@ -172,7 +172,7 @@ class Reader {
     return inside.starts_with("images/") ? inside.substr(7) : inside;
   }
 
-  // Images that stay in their sequence and are not judged; they need no row in the table.
+  // Reads the images that stay in their sequence but are not judged. They need no row in the table.
   void read_ignored(const fs::path& file) {
     if (!fs::exists(file)) return;
     std::ifstream in(file);

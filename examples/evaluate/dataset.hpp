@@ -14,93 +14,92 @@
 
 namespace evaluate {
 
-/// An ellipse that a frame shows.
+/// An ellipse visible in a frame.
 struct TrueEllipse {
-  ellipse::Ellipse ellipse;  ///< [px]; in the ideal plane where a lens distorts the picture.
-  /// Share of the perimeter inside the frame, 0 where the ellipse is larger than the frame. nullopt
-  /// where the data set does not say.
+  ellipse::Ellipse
+      ellipse;  ///< [px]; in the ideal (undistorted) plane if a lens distorts the frame.
+  /// Fraction of the perimeter inside the frame; 0 if the ellipse encloses the frame. nullopt if
+  /// the data set does not specify it.
   std::optional<double> visible_fraction;
 };
 
-/// What a frame shows, according to its data set.
+/// Ground truth of a frame.
 struct Truth {
-  /// The target's outer edge, as TrueEllipse::ellipse. nullopt where the frame shows no ellipse.
+  /// The target's outer edge, see TrueEllipse::ellipse. nullopt if the frame shows no ellipse.
   std::optional<ellipse::Ellipse> target;
-  std::optional<double> visible_fraction;  ///< Of the target, as in TrueEllipse.
-  /// False where the frame cannot be judged: the place of its target is unknown, or the data set
-  /// says to ignore it. Trackers see it all the same.
+  std::optional<double> visible_fraction;  ///< Of the target, see TrueEllipse.
+  /// False if the frame is not judged: the target's position is unknown, or the data set ignores
+  /// the frame. Trackers still process it.
   bool is_labelled = true;
-  /// Further ellipses in the frame. An answer that matches one of them is as right as one that
-  /// matches the target.
+  /// Further ellipses in the frame. An answer that matches one of them is also right.
   std::vector<TrueEllipse> others{};
 };
 
-/// The target and the others; empty where the frame shows no ellipse.
+/// The target and the others; empty if the frame shows no ellipse.
 [[nodiscard]] std::vector<TrueEllipse> ellipses_of(const Truth& truth);
 
-/// What is varied among frames that are otherwise the same, where the data set says so.
+/// Parameters that a data set varies between otherwise identical frames.
 struct Conditions {
   std::optional<double> noise;    ///< Standard deviation [grey levels].
-  std::optional<double> crumple;  ///< Departure of the edge from its ellipse, of the radius.
+  std::optional<double> crumple;  ///< Edge deviation from the ellipse, relative to its radius.
 };
 
 struct Frame {
-  std::string name;             ///< As "sequence/file", for people and for other programs.
-  std::filesystem::path image;  ///< Its file; empty where it is rendered or from a video.
-  std::size_t number = 0;       ///< In its sequence.
-  std::int64_t pts_ns = 0;      ///< Its time.
+  std::string name;             ///< "sequence/file", for messages and other programs.
+  std::filesystem::path image;  ///< Image file; empty for rendered and video frames.
+  std::size_t number = 0;       ///< Index in the sequence.
+  std::int64_t pts_ns = 0;      ///< Timestamp.
   Truth truth;
   Conditions conditions;
 };
 
-/// Where the pictures of a sequence come from.
+/// Provides the pictures of a sequence.
 class PictureSource {
  public:
   virtual ~PictureSource() = default;
 
-  /// 8-bit grey levels. Throws std::runtime_error that names the frame, where there is no picture.
+  /// The 8-bit grey picture of a frame. Throws std::runtime_error that names the frame if it cannot
+  /// be read.
   [[nodiscard]] virtual cv::Mat picture(const Frame& frame) = 0;
 };
 
-/// Frames that follow each other in time.
+/// Consecutive frames.
 struct Sequence {
-  std::string dataset;  ///< Figures are given for each data set.
+  std::string dataset;  ///< Results are reported per data set.
   std::string name;
-  std::vector<Frame> frames;  ///< In the natural order of their file names.
+  std::vector<Frame> frames;  ///< In natural order of file names.
   std::shared_ptr<PictureSource> pictures;
-  /// What a lens makes of the frames; else nullptr.
+  /// The frames' lens distortion; nullptr for a pinhole camera.
   std::shared_ptr<const DistortedFrame> distortion{};
 };
 
 struct Dataset {
   std::vector<Sequence> sequences;
-  /// What could not be used, each naming file and line.
+  /// Errors in the data set, with file and line.
   std::vector<std::string> problems;
-  /// Rows of the truth that are lost to these problems.
+  /// Rows of the truth skipped because of them.
   std::size_t missing_frames = 0;
 };
 
-/// Reads a data set from a folder with `gt.csv` (columns image, cx, cy, semi_major, semi_minor,
-/// angle_rad and, if there, visible_fraction (or visible), inner_semi_major, pts_ns, noise,
-/// crumple, dataset; images named relative to the folder), or with the `ground_truth.txt` of the
-/// published AirLab data set, in the folder itself or in folders below.
+/// Reads a data set from a folder with `gt.csv`, or from a folder tree with the `ground_truth.txt`
+/// of the published AirLab data set. Columns of `gt.csv`: image, cx, cy, semi_major, semi_minor,
+/// angle_rad; optional: visible_fraction (or visible), inner_semi_major, pts_ns, noise, crumple,
+/// dataset. Image names are relative to the folder.
 ///
 /// `gt.csv` has one row per ellipse; an image without an ellipse has one row with empty fields.
-/// With inner_semi_major the row also stands for the inner edge of a ring, concentric and alike.
-/// Where the folder has a video `eye.mp4` (any container), `images/eye/frame_0012.png` is its frame
-/// 12, counted from 0 in the order of decoding, with the time that the video gives it. Images may
-/// differ in size. An optional `ignore.txt` names one image a line that is shown to trackers and
-/// not judged.
+/// inner_semi_major adds the inner edge of a ring, concentric and of the same shape. If the folder
+/// has a video `eye.mp4` (any container), `images/eye/frame_0012.png` denotes its frame 12, counted
+/// from 0 in decoding order, with the video's timestamp. Images may differ in size. An optional
+/// `ignore.txt` lists images, one per line, that trackers see but that are not judged.
 ///
-/// Images without a time are 1 / frames_per_second apart. A broken line, a line whose image is not
-/// there, and an image without a line are problems; the other frames are there. Throws
-/// std::runtime_error that names the file, where there is no table, or none that can be read.
-/// gst_init() must have been called.
+/// Images without a timestamp are 1 / frames_per_second apart. An invalid row, a row without its
+/// image, and an image without a row are reported as problems; the other frames are read. Throws
+/// std::runtime_error that names the file if there is no readable table. Requires gst_init().
 [[nodiscard]] Dataset read_dataset(const std::filesystem::path& folder,
                                    double frames_per_second = 30.0);
 
-/// The data sets in a folder: itself where it has `gt.csv`; else the folders in it that have one,
-/// by name; else itself.
+/// The data sets in a folder: the folder itself if it has `gt.csv`; otherwise its subfolders that
+/// have one, by name; if there are none, the folder itself.
 [[nodiscard]] std::vector<std::filesystem::path> dataset_folders(
     const std::filesystem::path& folder);
 

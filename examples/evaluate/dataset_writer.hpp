@@ -8,9 +8,9 @@
 
 namespace evaluate {
 
-/// Writes the pictures and `gt.csv`, from which read_dataset() gives the same frames.
-/// @param advance  Called after each frame; false ends it early.
-/// Throws std::runtime_error that names the file, where it cannot be written.
+/// Writes the pictures and a `gt.csv`, which read_dataset() reads back as the same frames.
+/// @param advance  Called after each frame; returning false stops early.
+/// Throws std::runtime_error that names a file that cannot be written.
 void write_dataset(const std::vector<Sequence>& sequences,
                    const std::filesystem::path& folder,
                    const std::function<bool(const Frame&)>& advance);

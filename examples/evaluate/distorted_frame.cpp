@@ -8,7 +8,7 @@
 namespace evaluate {
 namespace {
 
-// Of a point in an ellipse, as few steps as can be.
+// Fast test whether a point is inside an ellipse.
 class Inside {
  public:
   explicit Inside(const ellipse::Ellipse& e)

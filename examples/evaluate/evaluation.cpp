@@ -17,8 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// cv::Canny and cv::findContours alone, on a picture that was smoothed before: what any method on
-// contours pays before it looks for an ellipse.
+// Times cv::Canny and cv::findContours on a smoothed picture: the minimum cost of any contour-based
+// method.
 class Reference {
  public:
   void smooth(const cv::Mat& picture) { cv::GaussianBlur(picture, smooth_, {5, 5}, 1.0); }
@@ -58,7 +58,7 @@ class Run {
       : methods_(methods), rule_(rule), wants_all_(wants_all) {
     for (const auto& method : methods) evaluation_.methods.push_back({method->name(), {}, {}});
     answers_.resize(methods.size());
-    order_.resize(methods.size() + 1);  // the last one is the reference
+    order_.resize(methods.size() + 1);  // the last index is the reference
     std::iota(order_.begin(), order_.end(), std::size_t{0});
   }
 
@@ -73,11 +73,11 @@ class Run {
     }
     const SeenFrame seen{
         &sequence, &frame, {picture.cols, picture.rows, sequence.distortion.get()}};
-    // In another order each time, because each leaves the caches to the next.
+    // The order changes per frame because each method leaves its data in the caches.
     shuffle();
     double reference_ms = 0.0;
     for (const std::size_t i : order_) {
-      reference_.smooth(picture);  // leaves the picture in the caches, to the methods too
+      reference_.smooth(picture);  // also loads the picture into the caches for the methods
       if (i == methods_.size()) {
         reference_ms = reference_.run_ms();
       } else {

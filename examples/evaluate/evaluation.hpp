@@ -14,55 +14,55 @@
 
 namespace evaluate {
 
-/// A frame that all methods have seen.
+/// A frame processed by all methods.
 struct SeenFrame {
   const Sequence* sequence = nullptr;
   const Frame* frame = nullptr;
   FrameSize size;
 };
 
-/// What one method made of them, in their order.
+/// Results of one method, one per frame in the same order.
 struct MethodResults {
   std::string name;
   std::vector<Result> results;
-  std::vector<AllResult> all;  ///< Where all ellipses are asked for, of methods that find them.
+  std::vector<AllResult> all;  ///< If all ellipses are evaluated: results of methods that find all.
 };
 
 struct Evaluation {
   std::vector<SeenFrame> frames;
   std::vector<MethodResults> methods;
-  std::vector<std::string> problems;  ///< Each names a frame that was left out, and why.
-  std::size_t missing_frames = 0;     ///< Left out, of the planned ones.
+  std::vector<std::string> problems;  ///< One message per skipped frame, with the reason.
+  std::size_t missing_frames = 0;     ///< Number of planned frames that were skipped.
   std::size_t planned_frames = 0;
   bool is_interrupted = false;
 };
 
-/// Runs all methods on each frame, in random order, so that all meet the same machine in the same
-/// mood, and cv::Canny + cv::findContours among them.
+/// Runs all methods and cv::Canny + cv::findContours on each frame, in random order, so that
+/// changes of the machine's speed affect all alike.
 ///
 /// @param sequences  Borrowed by the result.
-/// @param advance    Called after each frame; false ends it early.
-/// @param wants_all  Whether all ellipses of a frame are compared, too.
+/// @param advance    Called after each frame; returning false stops early.
+/// @param wants_all  Also compare all ellipses of a frame.
 [[nodiscard]] Evaluation evaluate(const std::vector<Sequence>& sequences,
                                   const std::vector<std::unique_ptr<Method>>& methods,
                                   Rule rule,
                                   const std::function<bool(const Frame&)>& advance,
                                   bool wants_all = false);
 
-/// The measures of one method over the frames for which the claim holds.
+/// The measures of one method over the frames that satisfy a predicate.
 [[nodiscard]] Measures measures_of(const Evaluation& evaluation,
                                    std::size_t method,
                                    const std::function<bool(const SeenFrame&)>& claim);
 
-/// The names of the data sets, and of one's sequences, in the order in which they were seen.
+/// The names of the data sets, and of a data set's sequences, in order of evaluation.
 [[nodiscard]] std::vector<std::string> datasets_of(const Evaluation& evaluation);
 [[nodiscard]] std::vector<std::string> sequences_of(const Evaluation& evaluation,
                                                     const std::string& dataset);
 
-/// One JSON line for each frame that can be judged, of one method:
+/// Writes one JSON line per judged frame for one method:
 /// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,"visible":0.8,
-/// "ms":[..],"outcome":"TP"}, visible being the share of the true perimeter inside the frame,
-/// target of the ideal plane where a lens distorts the picture.
+/// "ms":[..],"outcome":"TP"}. `visible` is the fraction of the true perimeter inside the frame.
+/// `target` is in the ideal plane if a lens distorts the frame.
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method);
 
 }  // namespace evaluate

@@ -23,9 +23,9 @@ using ellipse::kFeatures;
 
 constexpr double kRightIou = 0.85;
 constexpr double kWrongIou = 0.6;
-constexpr int kRounds = 2;                // after the first fit
-constexpr int kHardest = 5;               // wrong candidates of a frame
-constexpr double kFewCandidates = 100.0;  // of a source, which weighs less then
+constexpr int kRounds = 2;                // fits after the first one
+constexpr int kHardest = 5;               // number of wrong candidates per frame
+constexpr double kFewCandidates = 100.0;  // a source with fewer is weighted less
 constexpr ellipse::Tolerance kSameEllipse{1.0, 0.05};
 constexpr double kRidge = 1e-5;
 constexpr int kMaxNewtonSteps = 40;
@@ -48,7 +48,7 @@ struct Sample {
   double weight;
 };
 
-// Each source alike, its right and wrong candidates too.
+// Gives all sources equal weight, and within a source right and wrong candidates.
 void weigh(std::vector<Sample>& samples) {
   std::map<std::pair<std::size_t, bool>, double> counts;
   for (const Sample& s : samples) ++counts[{s.candidate->source, s.candidate->is_right}];
@@ -94,7 +94,8 @@ Scaling scaling_of(const std::vector<Sample>& samples) {
   return scaling;
 }
 
-// Newton's method on the weighted log likelihood with a ridge [HastieTibshiraniFriedman2009] 4.4.1.
+// Newton's method on the weighted log likelihood with ridge penalty [HastieTibshiraniFriedman2009]
+// 4.4.1.
 EvidenceTable regress(const std::vector<Sample>& samples) {
   const Scaling scaling = scaling_of(samples);
   Vector b = Vector::Zero();
@@ -121,7 +122,7 @@ EvidenceTable regress(const std::vector<Sample>& samples) {
   return table;
 }
 
-// All right candidates, and of each frame the wrong ones with the largest probability.
+// All right candidates, and each frame's wrong ones with the largest probabilities.
 std::vector<Sample> hardest(const std::vector<Sample>& all, const EvidenceTable& table) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -162,8 +163,7 @@ void EvidenceFitter::add(const Frame& frame, const Sequence& sequence, std::size
   const cv::Mat picture = sequence.pictures->picture(frame);
   if (!frame.truth.is_labelled) return;
   const FrameSize size{picture.cols, picture.rows, sequence.distortion.get()};
-  // A probability of 1 is never reached: everything is measured, and nothing found that would
-  // keep others from being tried.
+  // No candidate reaches a probability of 1, so all are measured and none suppresses others.
   ellipse::Thresholds thresholds = settings_.limits;
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   thresholds.min_probability = 1.0;

@@ -14,7 +14,7 @@
 
 namespace evaluate {
 
-/// A candidate of the detector `arcs`, and whether it is an ellipse of the truth.
+/// A candidate of the detector `arcs`, labelled whether it is a true ellipse.
 struct LabelledCandidate {
   std::size_t source = 0;
   std::size_t frame = 0;
@@ -23,47 +23,47 @@ struct LabelledCandidate {
   bool is_right = false;
 };
 
-/// Candidates that were told about the same probability.
+/// Candidates with similar predicted probability.
 struct CalibrationBin {
   int candidates = 0;
-  double weight = 0.0;       ///< Each source weighs 1 in all.
-  double probability = 0.0;  ///< Mean of what they were told, weighted.
-  double right = 0.0;        ///< Share of them that are right, weighted.
+  double weight = 0.0;       ///< All candidates of a source together weigh 1.
+  double probability = 0.0;  ///< Weighted mean of the predicted probability.
+  double right = 0.0;        ///< Weighted fraction of right candidates.
 };
 
-/// Whether probabilities are what they say.
+/// Agreement of predicted probabilities with observed frequencies.
 struct Calibration {
-  std::array<CalibrationBin, 10> bins;  ///< By tenths.
-  double log_loss = 0.0;                ///< Mean of -ln of what the truth was told, weighted.
+  std::array<CalibrationBin, 10> bins;  ///< Tenths of the probability.
+  double log_loss = 0.0;  ///< Weighted mean of -ln of the probability predicted for the true label.
 };
 
-/// Fits the table by which the detector `arcs` decides, by logistic regression on labelled frames.
+/// Fits the evidence table of the detector `arcs` by logistic regression on labelled frames.
 ///
-/// A candidate is right where its intersection over union with a true ellipse is .85 and more, and
-/// wrong below .6; what is between the two, or concentric with a true ellipse, does not count. Each
-/// source weighs alike, its right and its wrong candidates too. Most wrong candidates are far from
-/// any doubt: the table is fitted to all, then twice to the wrong ones of each frame that it
-/// finds most probable.
+/// A candidate is right if its intersection over union with a true ellipse is at least .85, and
+/// wrong below .6. Candidates in between, or concentric with a true ellipse, are not used. All
+/// sources have equal weight, and within a source right and wrong candidates. Most wrong candidates
+/// are easy to reject, so after the first fit the table is fitted twice more to the most probable
+/// wrong candidates of each frame.
 class EvidenceFitter : public Chooser {
  public:
-  /// Runs the detector on all frames that are labelled.
-  /// @param settings  What the choice is made of, but for the table.
-  /// @param advance   Called after each frame; false ends it early.
+  /// Runs the detector on all labelled frames.
+  /// @param settings  Base settings of the choice; only the table is replaced.
+  /// @param advance   Called after each frame; returning false stops early.
   EvidenceFitter(const ellipse::TrackerSettings& settings,
                  const std::vector<Sequence>& sequences,
                  const std::function<bool(const Frame&)>& advance);
 
-  /// Throws std::invalid_argument where the sources have no right or no wrong candidate.
+  /// Throws std::invalid_argument if the sources have no right or no wrong candidate.
   [[nodiscard]] Choice choose(const std::vector<std::string>& sources) override;
 
-  /// From all sources.
+  /// Fits to all sources.
   [[nodiscard]] ellipse::EvidenceTable fit_all() const;
 
-  /// Judges the candidates of each group by the table of the others. Of candidates of a frame that
-  /// are the same ellipse the most probable one counts.
+  /// Evaluates each group's candidates with a table fitted to the other groups. Of a frame's
+  /// candidates that are the same ellipse, only the most probable one counts.
   [[nodiscard]] Calibration left_out_calibration(const SourceGroups& groups) const;
 
-  /// Each names a frame that was left out, and why.
+  /// One message per skipped frame, with the reason.
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 
  private:

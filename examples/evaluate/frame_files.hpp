@@ -11,21 +11,21 @@ namespace evaluate {
 
 [[nodiscard]] std::size_t frames_of(const std::vector<Sequence>& sequences);
 
-/// Frames of sequences that are rendered or read from a video.
+/// Number of frames that are rendered or decoded from a video.
 [[nodiscard]] std::size_t frames_without_files(const std::vector<Sequence>& sequences);
 
-/// Writes such sequences as a data set with gt.csv, and sets Frame::image. A sequence whose name is
-/// taken goes into a further data set, in the folder "2" and so on.
-/// @param advance  Called after each frame; false ends it early.
-/// Throws std::runtime_error that names the file, where it cannot be written.
+/// Writes such sequences as a data set with gt.csv and sets Frame::image. Sequences with a name
+/// already used are written to further data sets in the folders "2", "3" ...
+/// @param advance  Called after each frame; returning false stops early.
+/// Throws std::runtime_error that names a file that cannot be written.
 void write_files(std::vector<Sequence>& sequences,
                  const std::filesystem::path& folder,
                  const std::function<bool(const Frame&)>& advance);
 
-/// A folder of its own that is gone in the end.
+/// A temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
-  /// Throws std::runtime_error where it cannot be made.
+  /// Throws std::runtime_error if it cannot be created.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

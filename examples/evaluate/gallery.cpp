@@ -19,7 +19,8 @@ const cv::Scalar kAnswerColor(30, 130, 255);
 constexpr int kSubPixelBits = 4;
 
 void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) {
-  if (!(e.semi_major < 16.0 * picture.cols)) return;  // beyond what OpenCV's integers hold
+  if (!(e.semi_major < 16.0 * picture.cols))
+    return;  // OpenCV's fixed-point coordinates would overflow
   const auto fixed = [](double value) {
     return static_cast<int>(std::lround(value * (1 << kSubPixelBits)));
   };
@@ -35,7 +36,7 @@ void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) 
               kSubPixelBits);
 }
 
-// Of the ideal plane, as the lens distorts it.
+// Draws an ellipse of the ideal plane as the lens distorts it.
 void draw_distorted(cv::Mat& picture,
                     const ellipse::Ellipse& e,
                     const ellipse::Lens& lens,
@@ -58,7 +59,7 @@ bool is_bad(Outcome outcome) {
          outcome == Outcome::kFalseNegative;
 }
 
-// The larger the worse. The n-th bad frame of a sequence counts less than the first of another.
+// Larger is worse. Repeated bad frames of a sequence count less than the first ones of others.
 std::vector<double> badness(const Evaluation& evaluation,
                             std::size_t method,
                             const std::string& dataset) {

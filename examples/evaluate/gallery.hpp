@@ -9,14 +9,14 @@
 
 namespace evaluate {
 
-/// A frame to be looked at.
+/// A frame for visual inspection.
 struct Exhibit {
   std::string caption;
-  cv::Mat picture;  ///< Colour; the truth in green, the answer in orange.
+  cv::Mat picture;  ///< Colour; truth in green, answer in orange.
 };
 
-/// The worst frames of one method on one data set: wrong, false and missed ones, spread over the
-/// sequences, then right ones with the largest error of the centre.
+/// The worst frames of one method on one data set: wrong, false and missed answers, spread over the
+/// sequences, followed by right ones with the largest centre error.
 [[nodiscard]] std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
                                                 std::size_t method,
                                                 const std::string& dataset,

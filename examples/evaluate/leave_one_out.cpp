@@ -35,7 +35,7 @@ std::vector<std::string> outside_of(const std::string& group,
   return others;
 }
 
-// nullopt where it was ended early.
+// nullopt if it was stopped early.
 std::optional<LeftOut> judge_on(const std::vector<Sequence>& sequences,
                                 const ellipse::TrackerSettings& unchosen,
                                 const Choice& left_out,

@@ -11,27 +11,29 @@
 
 namespace evaluate {
 
-/// What a choice is worth on one source.
+/// Performance of a choice on one source.
 struct JudgedChoice {
   std::string name;
-  SourceGrade grade;  ///< Its difference is from the settings without a choice.
+  SourceGrade grade;  ///< The difference is relative to the base settings.
 };
 
-/// One source, judged three ways in one run.
+/// Three evaluations of one source in the same run.
 struct LeftOut {
   std::string source;
   std::string group;
   int frames = 0;
-  double unchosen = 0.0;   ///< Grade of the settings without a choice.
+  double unchosen = 0.0;   ///< Grade of the base settings.
   JudgedChoice left_out;   ///< Chosen on the sources of all other groups.
-  JudgedChoice in_sample;  ///< Chosen on all sources, this one among them.
+  JudgedChoice in_sample;  ///< Chosen on all sources including this one.
 };
 
-/// For each source: chooses on the sources of other groups, and judges on that source.
-/// @param settings  Without a choice.
-/// @param advance   Called after each frame; false ends it early.
-/// @return One entry a source; fewer where it was ended early.
-/// Throws std::invalid_argument where all sources are of one group.
+/// For each source: chooses settings on the sources of other groups and evaluates them on this
+/// source.
+/// @param settings  Base settings.
+/// @param advance   Called after each frame; returning false stops early.
+/// @return One entry per source; fewer if stopped early.
+///
+/// Throws std::invalid_argument if all sources belong to one group.
 [[nodiscard]] std::vector<LeftOut> leave_one_out(const std::vector<Sequence>& sequences,
                                                  const SourceGroups& groups,
                                                  Chooser& chooser,
@@ -39,10 +41,10 @@ struct LeftOut {
                                                  Rule rule,
                                                  const std::function<bool(const Frame&)>& advance);
 
-/// The figures of sources that the choice has not seen.
+/// Results on sources that the choice has not seen.
 [[nodiscard]] Table left_out_table(const std::string& method, const std::vector<LeftOut>& results);
 
-/// The figures of sources that the choice was made on.
+/// Results on sources that the choice was made on.
 [[nodiscard]] Table in_sample_table(const std::string& method, const std::vector<LeftOut>& results);
 
 }  // namespace evaluate

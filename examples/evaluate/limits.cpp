@@ -10,7 +10,7 @@
 namespace evaluate {
 namespace {
 
-// Collects what one method does not keep on one data set.
+// Collects the limits that one method violates on one data set.
 class Check {
  public:
   Check(std::string place, std::vector<std::string>& unkept)

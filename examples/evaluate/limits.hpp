@@ -8,15 +8,15 @@
 
 namespace evaluate {
 
-/// What each method has to reach on each data set, where a program checks it.
+/// Required results of each method on each data set.
 struct Limits {
   std::optional<double> min_f1;
   std::optional<double> min_recall;
-  std::optional<int> max_false;  ///< Frames with an answer that is wrong: FP and WD.
+  std::optional<int> max_false;  ///< Frames with a wrong answer: FP and WD.
 };
 
-/// One text for each limit that a method does not keep on a data set; each names both. A measure
-/// that is not defined, because no frame shows a target, does not keep its limit.
+/// One message per violated limit, with method and data set. A measure that is undefined because no
+/// frame shows a target violates its limit.
 [[nodiscard]] std::vector<std::string> unkept_limits(const Evaluation& evaluation,
                                                      const Limits& limits);
 

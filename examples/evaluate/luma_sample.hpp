@@ -6,7 +6,7 @@
 
 namespace evaluate {
 
-/// A copy of the first plane of a sample of GRAY8 or planar YUV; empty where it cannot be mapped.
+/// Copies the first plane of a GRAY8 or planar YUV sample; empty if it cannot be mapped.
 [[nodiscard]] cv::Mat luma_of(GstSample* sample);
 
 }  // namespace evaluate

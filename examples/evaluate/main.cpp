@@ -18,7 +18,7 @@ namespace {
 
 void on_interrupt(int /*signal*/) {
   interrupt();
-  std::signal(SIGINT, SIG_DFL);  // the second time in earnest
+  std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C terminates at once
 }
 
 CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* datasets) {

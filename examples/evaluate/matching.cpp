@@ -9,7 +9,7 @@ namespace {
 constexpr double kUnreached = -std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = 1e-12;
 
-// A matching that grows by one pair at a time along the alternating path with the largest gain.
+// A matching that grows by one pair at a time, along the augmenting path with the largest gain.
 class Matching {
  public:
   Matching(std::size_t lefts, std::size_t rights, const std::vector<Edge>& edges)
@@ -32,9 +32,9 @@ class Matching {
   }
 
  private:
-  // The largest gain of a path from a free left to each right: edges count, and those that are
-  // given up on the way count against it. No cycle gains, because every matching so far is the
-  // heaviest of its size.
+  // The largest gain of an alternating path from a free left vertex to each right vertex. Added
+  // edges count positively, removed ones negatively. No cycle has a positive gain, because each
+  // matching so far is the heaviest of its size.
   void reach() {
     gain_.assign(edge_of_right_.size(), kUnreached);
     last_edge_.assign(edge_of_right_.size(), 0);

@@ -43,7 +43,7 @@ double visible_part(const Truth& truth, const FrameSize& frame) {
 
 bool is_in_view(const TrueEllipse& truth, const FrameSize& frame) {
   if (visible_part(truth, frame) > 0.0) return true;
-  // Without any of its perimeter the frame is inside or outside as a whole.
+  // Without perimeter inside, the frame is entirely inside or entirely outside the ellipse.
   const ellipse::Interval inside = chord(truth.ellipse, 0.5 * (frame.height - 1));
   const double middle = 0.5 * (frame.width - 1);
   return inside.begin < middle && middle < inside.end;
@@ -144,7 +144,7 @@ double Measures::recall() const {
   return ratio(right, right + count(Outcome::kFalseNegative) + count(Outcome::kWrong));
 }
 
-// Twice the product of precision and recall over their sum, without their divisions by nothing.
+// The harmonic mean of precision and recall, without their divisions by zero.
 double Measures::f1() const {
   const int right = count(Outcome::kTruePositive);
   return ratio(2 * right,

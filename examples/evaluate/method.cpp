@@ -66,7 +66,7 @@ class TrackerMethod : public Method {
     return answer;
   }
 
-  // Our detector searches the frame again: while it looks for one target it may stop early.
+  // Detects again in the whole frame, because a search for one target may stop early.
   [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() override {
     if (settings_.tracking != ellipse::TrackingMode::kNone) return std::nullopt;
     if (!all_finder_) return outlines_of(tracker_.candidates());
@@ -80,14 +80,14 @@ class TrackerMethod : public Method {
   }
 
   ellipse::TrackerSettings settings_;
-  bool knows_lens_ = false;  // peers are for pinholes
+  bool knows_lens_ = false;  // peers assume a pinhole camera
   ellipse::Tracker tracker_;
   std::optional<ellipse::Tracker> all_finder_;
-  cv::Mat picture_;  // the last one; shares its pixels
+  cv::Mat picture_;  // picture of the last frame; shares its pixels
 };
 
-// Cannot find a target, so that it is told one: in the first frame that shows enough of it, and
-// again after each loss.
+// Box trackers cannot detect. They are initialized with the truth in the first frame that shows
+// enough of the target, and again after each loss.
 class BoxMethod : public Method {
  public:
   explicit BoxMethod(const char* peer) : Method(peer), peer_(make_box_peer(peer)) {}
@@ -123,7 +123,7 @@ class BoxMethod : public Method {
   BoxPeer peer_;
 };
 
-// Answers that were all given before.
+// Returns answers that were computed in advance.
 class CommandMethod : public Method {
  public:
   CommandMethod(const std::string& name, std::map<std::string, PeerAnswer> answers)
@@ -164,7 +164,7 @@ struct OwnMethod {
   const char* tracking;
 };
 
-// Each pair of a detector and a tracking mode; the default pair first.
+// All pairs of detector and tracking mode; the default pair first.
 std::vector<OwnMethod> own_methods() {
   const ellipse::TrackerSettings defaults;
   std::vector<OwnMethod> methods;

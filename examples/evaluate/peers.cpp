@@ -20,14 +20,14 @@ namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
-// What all peers have in common: a picture of OpenCV's in, detections within the limits out.
+// Common part of all peers: converts the picture to cv::Mat and keeps detections within the limits.
 class Peer : public ellipse::Detector {
  public:
   std::span<const ellipse::Detection> detect(const ellipse::Picture& picture,
                                              const ellipse::Thresholds& limits) final {
     const ellipse::ImageView& luma = picture.luma;
     detections_.clear();
-    // Smaller ones hold no ellipse, and some of OpenCV's functions do not take them.
+    // Too small for an ellipse; some OpenCV functions reject such pictures.
     if (std::min(luma.width, luma.height) < kMinSizePx) return detections_;
     copy(luma);
     search(picture_, limits);
@@ -49,7 +49,7 @@ class Peer : public ellipse::Detector {
  private:
   static constexpr int kMinSizePx = 16;
 
-  // Rows in one piece, whatever the stride: cv::Mat knows no negative one.
+  // Copies to contiguous rows, because cv::Mat does not support negative strides.
   void copy(const ellipse::ImageView& luma) {
     picture_.create(luma.height, luma.width, CV_8UC1);
     for (int y = 0; y < luma.height; ++y) {
@@ -61,11 +61,11 @@ class Peer : public ellipse::Detector {
   std::vector<ellipse::Detection> detections_;
 };
 
-// EDCircles, as OpenCV packages it, which answers with circles (x, y, r, 0, 0, 0) and with ellipses
-// (x, y, 0, a, b, degrees). Its defaults, but for Sigma: on the AirLab frames 1.5 px in place of 1
-// finds 599 of 603 targets in place of 593, sooner. Others find as many or fewer: PFmode, a
-// gradient threshold of 10 or 36, Sobel, LineFitErrorThreshold 0.5, MaxErrorThreshold 2.
-// NFAValidation drops what has a perimeter above some 1000 px; without it false ellipses win, 540
+// EDCircles as packaged by OpenCV, which returns circles (x, y, r, 0, 0, 0) and ellipses (x, y, 0,
+// a, b, degrees). Default parameters except Sigma: 1.5 px instead of 1 finds 599 of the 603 AirLab
+// targets instead of 593, in less time. Other parameters find as many or fewer: PFmode, gradient
+// threshold 10 or 36, Sobel, LineFitErrorThreshold 0.5, MaxErrorThreshold 2. NFAValidation rejects
+// perimeters above about 1000 px; without it false ellipses win (540 of 603).
 // of 603.
 class EdgeDrawingPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
@@ -81,17 +81,17 @@ class EdgeDrawingPeer final : public Peer {
     }
   }
 
-  // The table for its validation is made for the size of its first picture, and kept.
+  // The validation table is made for the size of the first picture and kept.
   void start_over(const cv::Size& size) {
     size_ = size;
     edge_drawing_ = cv::ximgproc::createEdgeDrawing();
     edge_drawing_->params.Sigma = kSigmaPx;
   }
 
-  // OpenCV 4.6 writes past its arrays where an edge has more pixels than this, and where all but
-  // few straight pieces of edges are arcs (compare opencv_contrib issue 3704). The pieces are only
-  // counted where few edges make that possible and cheap. The price is a lone ellipse of less than
-  // some 18 px in a picture without other edges.
+  // OpenCV 4.6 writes out of bounds if an edge has more pixels than this, and if almost no straight
+  // segments remain besides arcs (compare opencv_contrib issue 3704). Segments are counted only if
+  // there are few edges, where this is possible and cheap. As a consequence, a single ellipse below
+  // about 18 px in an otherwise empty picture is missed.
   [[nodiscard]] bool is_safe() {
     const std::size_t most_pixels = 8 * static_cast<std::size_t>(size_.width + size_.height);
     const auto edges = edge_drawing_->getSegments();
@@ -109,7 +109,7 @@ class EdgeDrawingPeer final : public Peer {
 
   static constexpr std::size_t kManyEdges = 64;
   static constexpr std::size_t kMinPieces = 8;
-  static constexpr int kPiecePx = 6;  // as detectEllipses() takes them
+  static constexpr int kPiecePx = 6;  // value used by detectEllipses()
   static constexpr float kSigmaPx = 1.5F;
 
   cv::Size size_;
@@ -118,16 +118,16 @@ class EdgeDrawingPeer final : public Peer {
   std::vector<cv::Vec6d> found_;
 };
 
-// Circles only. Smoothing and parameters are those that OpenCV's documentation recommends. It
-// leaves the least distance between centres open: with 1 px every circle comes many times, which
-// takes ten times as long and finds fewer targets. On the AirLab frames 20 px finds 25 of 603
-// targets, of which 74 have a ratio of the axes below 1.25; edge thresholds of 150 and 500 find 28
-// and 27, on rendered approaches 96 and 97 of 150 in place of 98; 40 px or a perfectness of 0.8, no
+// Finds circles only. Smoothing and parameters follow OpenCV's documentation, which does not
+// specify minDist. At 1 px each circle is reported many times; that takes ten times as long and
+// finds fewer targets. On AirLab, 20 px finds 25 of 603 targets, of which 74 have an axis ratio
+// below 1.25. Edge thresholds of 150 and 500 find 28 and 27, and on rendered approaches 96 and 97
+// of 150 instead of 98. 40 px or a perfectness of 0.8 find no more.
 // more.
 class HoughCirclesPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     cv::GaussianBlur(picture, smooth_, {7, 7}, 1.5);
-    found_.clear();  // OpenCV 4.6 leaves it as it is where it finds nothing
+    found_.clear();  // OpenCV 4.6 does not clear the output if it finds nothing
     cv::HoughCircles(smooth_,
                      found_,
                      cv::HOUGH_GRADIENT_ALT,
@@ -144,10 +144,9 @@ class HoughCirclesPeer final : public Peer {
   std::vector<cv::Vec3f> found_;
 };
 
-// What most people write first. An ellipse counts where its contour's pixels are 0.5 px from it on
-// average. The other common test, the contour's area against the ellipse's, cannot accept an
-// ellipse whose edge is open: on the AirLab frames it finds 572 of 603 targets, this 582, with
-// Canny's thresholds at 40 and 80 fewer.
+// The common approach: Canny, contours, fitEllipse(). An ellipse is accepted if its contour's mean
+// distance is at most 0.5 px: 582 of the 603 AirLab targets, and fewer with Canny thresholds of 40
+// and 80. The other common test compares areas and rejects every open contour: 572.
 class CannyFitPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     cv::GaussianBlur(picture, smooth_, {5, 5}, 0.0);
@@ -182,8 +181,7 @@ class CannyFitPeer final : public Peer {
   std::vector<std::vector<cv::Point>> contours_;
 };
 
-// With Canny's thresholds at 50 and 150 the ground's texture is in the way: 278 of the AirLab
-// frames' 603 targets in place of 437.
+// Canny thresholds of 50 and 150 add ground texture: 278 of the 603 AirLab targets instead of 437.
 class RandomizedHoughPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     cv::GaussianBlur(picture, smooth_, {5, 5}, 0.0);

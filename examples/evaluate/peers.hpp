@@ -8,15 +8,15 @@
 
 namespace evaluate {
 
-/// The packaged ways to find ellipses that the tracker's own detector is measured against:
-/// "edge-drawing", "hough-circles", "canny-fit" and "randomized-hough".
+/// Names of the packaged ellipse detectors used for comparison: "edge-drawing", "hough-circles",
+/// "canny-fit" and "randomized-hough".
 [[nodiscard]] std::span<const char* const> peer_names();
 
-/// One of them. Each looks for every ellipse of a picture, keeps those within min_axis_px,
-/// max_axis_px and max_axis_ratio, and reads no other threshold; both overlaps of its detections
-/// are 0. Throws std::invalid_argument that names the peer, where it is unknown.
+/// Creates a peer. It detects all ellipses of a picture and keeps those within min_axis_px,
+/// max_axis_px and max_axis_ratio; other thresholds have no effect, and both overlaps of its
+/// detections are 0. Throws std::invalid_argument that names an unknown peer.
 ///
-/// No content of a picture throws. One object serves one thread at a time.
+/// No picture throws. Not thread-safe.
 [[nodiscard]] std::unique_ptr<ellipse::Detector> make_peer(std::string_view name);
 
 }  // namespace evaluate

@@ -31,8 +31,8 @@ bool is_jpeg(const std::filesystem::path& file) {
   return extension == ".jpg" || extension == ".jpeg";
 }
 
-// With the markers SOI and EOI: without the first the decoder would wait for more, without the
-// second it would make up what is missing.
+// Checks the markers SOI and EOI. Without SOI the decoder would wait for more data; without EOI it
+// would fill in the missing part.
 bool is_whole_jpeg(GBytes* bytes) {
   constexpr std::string_view kEnd = "\xff\xd9";
   gsize size = 0;
@@ -67,7 +67,7 @@ class PictureReader::JpegPipeline {
   JpegPipeline(const JpegPipeline&) = delete;
   JpegPipeline& operator=(const JpegPipeline&) = delete;
 
-  /// An empty picture where the bytes are none.
+  /// Returns an empty picture if the bytes are not a JPEG.
   cv::Mat decode(GBytes* bytes) {
     if (!is_whole_jpeg(bytes)) return {};
     GstBuffer* buffer = gst_buffer_new_wrapped_bytes(bytes);
@@ -108,7 +108,7 @@ cv::Mat PictureReader::read(const std::filesystem::path& file) {
     if (!jpeg_) jpeg_ = std::make_unique<JpegPipeline>();
     picture = jpeg_->decode(bytes);
     g_bytes_unref(bytes);
-    if (picture.empty()) jpeg_.reset();  // it may be stuck in the middle of this one
+    if (picture.empty()) jpeg_.reset();  // the decoder can be stuck in this picture
   }
   if (picture.empty()) fail(file);
   return picture;

@@ -6,9 +6,9 @@
 
 namespace evaluate {
 
-/// Reads pictures as grey levels. JPEG goes through GStreamer's jpegdec and videoconvert, so that
-/// the tracker sees the very pixels that it sees in a pipeline: decoders differ by a level or two.
-/// gst_init() must have been called.
+/// Reads pictures as grey levels. JPEGs are decoded by GStreamer's jpegdec and videoconvert, so
+/// that the tracker receives the same pixels as in a pipeline; decoders differ by one or two
+/// levels. Requires gst_init().
 class PictureReader {
  public:
   PictureReader();
@@ -16,11 +16,11 @@ class PictureReader {
   PictureReader(const PictureReader&) = delete;
   PictureReader& operator=(const PictureReader&) = delete;
 
-  /// Whether a file's name is that of a JPEG or PNG picture.
+  /// Whether the file name has the extension of a JPEG or PNG.
   [[nodiscard]] static bool is_picture(const std::filesystem::path& file);
 
-  /// A JPEG that is cut off is none. Throws std::runtime_error that names the file, where it is no
-  /// picture that can be read.
+  /// Reads a picture. Throws std::runtime_error that names a file that cannot be read, including
+  /// truncated JPEGs.
   [[nodiscard]] cv::Mat read(const std::filesystem::path& file);
 
  private:

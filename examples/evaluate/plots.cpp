@@ -19,7 +19,7 @@ constexpr int kColumns = 2;
 template <class Type>
 using Object = std::unique_ptr<Type, decltype(&g_object_unref)>;
 
-// For gnuplot's double quotes, with its markup off.
+// Quotes text for gnuplot, with its markup disabled.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {

@@ -8,30 +8,31 @@ namespace evaluate {
 
 struct Curve {
   std::string title;
-  std::vector<double> y;  ///< As many as the panel's x; NaN = no point.
+  std::vector<double> y;  ///< One value per x; NaN = no point.
 };
 
-/// Curves over one axis.
+/// Curves with a common x axis.
 struct Panel {
   std::string title;
   std::string x_label;
   std::string y_label;
-  std::vector<double> x;            ///< Places, or
-  std::vector<std::string> ranges;  ///< names of ranges: bars side by side.
+  std::vector<double> x;            ///< Either positions,
+  std::vector<std::string> ranges;  ///< or names of ranges: grouped bars.
   std::vector<Curve> curves;
-  bool is_share = false;  ///< From 0 to 1.
+  bool is_share = false;  ///< Fractions from 0 to 1.
 };
 
 enum class PlotFormat { kSvg, kPng };
 
-/// What gnuplot draws to its standard output.
-/// Throws std::runtime_error where it is not installed or fails, with what it says.
+/// Runs gnuplot and returns its standard output. Throws std::runtime_error with gnuplot's message
+/// if it is not installed or fails.
 [[nodiscard]] std::string run_gnuplot(const std::string& script);
 
-/// Panels side by side, two in a row, drawn by run_gnuplot().
+/// Draws panels in rows of two by run_gnuplot().
 [[nodiscard]] std::string plot(const std::vector<Panel>& panels, PlotFormat format);
 
-/// Into a file. Throws std::runtime_error that names it, where it cannot be written.
+/// Writes the plot to a file. Throws std::runtime_error that names the file if it cannot be
+/// written.
 void plot_to(const std::filesystem::path& file,
              const std::vector<Panel>& panels,
              PlotFormat format);

@@ -38,7 +38,7 @@ constexpr int kExitInterrupted = 130;
 
 std::atomic<bool> interrupted = false;
 
-// False when the person at the keyboard has had enough.
+// Returns false if the user has interrupted the run.
 bool advance(ProgressBar& progress, const Frame& frame) {
   progress.advance(frame.name);
   return !interrupted;
@@ -69,7 +69,7 @@ ellipse::TrackerSettings settings_from(const Options& options) {
   return settings;
 }
 
-// One call of the program.
+// One run of the program.
 class Program {
  public:
   explicit Program(const Options& options)
@@ -139,7 +139,7 @@ class Program {
     return read_dataset(name, options_.pace.frames_per_second);
   }
 
-  // Figures are given by the data set's name: two of one name must not become one.
+  // Results are reported by data set name, so data sets of the same name need distinct ones.
   void make_names_unique(Dataset& dataset, const std::string& name) const {
     for (Sequence& sequence : dataset.sequences) {
       const bool is_taken =
@@ -162,7 +162,7 @@ class Program {
     return evaluation;
   }
 
-  // Each problem names a frame; the same one comes up in every run over the frames.
+  // Problems are counted once: every run over the frames reports the same ones.
   void note_missing(const std::vector<std::string>& problems) {
     for (const std::string& problem : problems) {
       if (std::ranges::find(problems_, problem) != problems_.end()) continue;
@@ -192,7 +192,7 @@ class Program {
     return methods;
   }
 
-  // Where another program, or a person, needs files.
+  // Writes files for other programs or for --frames.
   void write_frame_files(const fs::path& folder) {
     ProgressBar progress(frames_without_files(sequences_));
     write_files(sequences_, folder, [&](const Frame& frame) { return advance(progress, frame); });

@@ -8,7 +8,7 @@
 
 namespace evaluate {
 
-/// What was asked for on the command line.
+/// The options of the command line.
 struct Options {
   std::vector<std::string> datasets;
   std::vector<std::string> methods;
@@ -34,13 +34,15 @@ struct Options {
   std::string command;
 };
 
-/// Does it: writes a data set, sweeps a property, leaves sources out, or compares methods.
-/// @return The program's exit status: 1 where a method does not keep the limits, 2 where frames are
-/// missing, 130 where it was interrupted.
-/// Throws std::exception with a text for people, where it cannot.
+/// Runs the requested action: writes a data set, sweeps a property, leaves sources out, or compares
+/// methods.
+/// @return The exit status: 1 if a method violates a limit, 2 if frames are missing, 130 if
+/// interrupted.
+///
+/// Throws std::exception with a message for the user.
 int run(const Options& options);
 
-/// Ends a run early, with what it has so far. To be called from a signal's handler.
+/// Stops a run early, with the results so far. Async-signal-safe.
 void interrupt();
 
 }  // namespace evaluate

@@ -5,7 +5,7 @@
 
 namespace evaluate {
 
-/// A bar on the terminal, while there is one.
+/// Progress bar, shown if standard error is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total);
@@ -13,7 +13,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// One more is done. @param what  Its name.
+  /// Advances by one item. @param what  Its name.
   void advance(const std::string& what);
 
  private:

@@ -16,31 +16,31 @@ namespace evaluate {
 struct EdgePixel {
   float x = 0.0F;         ///< [px]
   float y = 0.0F;         ///< [px]
-  float normal_x = 0.0F;  ///< Both 0 where it is not known: then the pixel only votes.
+  float normal_x = 0.0F;  ///< Both 0 if unknown; the pixel then only votes.
   float normal_y = 0.0F;
 };
 
 /// Finds ellipses by the Hough transform of [XieJi2002] with random sub-sampling: Y. Xie and Q. Ji,
 /// "A new efficient ellipse detection method", International Conference on Pattern Recognition,
-/// 2002. Two edge pixels are taken for the ends of a major axis, and every other one then votes for
-/// the one unknown that is left, the semi-minor axis.
+/// 2002. Two edge pixels are taken as the ends of a major axis; all others vote for the only
+/// remaining unknown, the semi-minor axis.
 ///
-/// Not all pairs are tried but a fixed number, drawn at random, and only some pixels vote. A pair
-/// whose edges are not square to the line between them is no axis and is dropped before the vote,
-/// which the paper does not do: without it, trials by the million would find next to nothing.
+/// A fixed number of random pairs is tried instead of all, and only a sample of pixels votes.
+/// Deviation from the paper: a pair whose edges are not perpendicular to the connecting line is
+/// rejected before the vote; without this test, even millions of trials find almost nothing.
 ///
-/// One object serves one thread at a time; it allocates nothing once its vectors have grown.
+/// Not thread-safe; allocates nothing once its vectors have grown.
 class RandomizedHough {
  public:
-  /// @param edges   Any order, at any finite place. Borrowed for the call only.
-  /// @param limits  The limits of the axes and of their ratio are read.
-  /// @return Every ellipse found, its score the number of edge pixels that voted for it. Valid
-  ///         until the next call. Deterministic: each call draws the same numbers.
+  /// @param edges   In any order; coordinates must be finite. Borrowed for the call.
+  /// @param limits  Only the limits of the axes and of their ratio are used.
+  /// @return The ellipses found, scored by the number of votes. Valid until the next call.
+  /// Deterministic: each call uses the same random numbers.
   [[nodiscard]] std::span<const ellipse::Detection> find(std::span<const EdgePixel> edges,
                                                          const ellipse::Thresholds& limits);
 
  private:
-  // Knuth's MMIX generator; only its upper bits are used.
+  // Knuth's MMIX generator; only the upper bits are used.
   using Random = std::
       linear_congruential_engine<std::uint64_t, 6364136223846793005U, 1442695040888963407U, 0U>;
 
@@ -55,12 +55,12 @@ class RandomizedHough {
 
   double pixels_per_voter_ = 1.0;
   std::vector<EdgePixel> shuffled_;
-  std::vector<EdgePixel> sorted_;  // by the direction of the normal
+  std::vector<EdgePixel> sorted_;  // by direction of the normal
   std::array<std::size_t, kDirections + 1> starts_{};
   std::vector<float> voter_x_;
   std::vector<float> voter_y_;
-  std::vector<float> semi_minor_;  // each voter's
-  std::vector<int> votes_;         // by the semi-minor axis, in bins of a pixel
+  std::vector<float> semi_minor_;  // one per voter
+  std::vector<int> votes_;         // by semi-minor axis, in bins of 1 px
   std::vector<ellipse::Detection> found_;
 };
 

@@ -43,7 +43,7 @@ class RenderedPictures : public PictureSource {
  private:
   ellipse::Scene scene_;
   FrameTimes times_;
-  // Its ground takes time and memory: there from the first frame to the last.
+  // Exists from the first frame to the last, because its ground is expensive in time and memory.
   std::optional<ellipse::SceneRenderer> renderer_;
 };
 

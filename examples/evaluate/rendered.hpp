@@ -8,11 +8,11 @@
 
 namespace evaluate {
 
-/// When the frames of a rendered sequence are.
+/// Times of the frames of a rendered sequence.
 struct FrameTimes {
-  double from_s = 0.0;  ///< Time of the first one.
+  double from_s = 0.0;  ///< Time of the first frame.
   int frames = 0;
-  int stride = 1;  ///< Each is so many frames of the camera after the last.
+  int stride = 1;  ///< Uses every stride-th camera frame.
   double frames_per_second = 30.0;
 
   [[nodiscard]] double at_s(std::size_t frame) const {
@@ -20,13 +20,13 @@ struct FrameTimes {
   }
 };
 
-/// The size of all rendered frames.
+/// Size of all rendered frames.
 inline constexpr int kRenderedWidth = 640;
 inline constexpr int kRenderedHeight = 360;
 
-/// A sequence of a scene, 640 x 360, named "name/frame0000.png" and so on. Its truth is there at
-/// once; a picture is rendered whenever it is asked for, the same one on every machine.
-/// @param distortion  What the scene's lens makes of such a frame; nullptr for a pinhole.
+/// A sequence of a scene, 640 x 360, with frames "name/frame0000.png" and so on. The truth is
+/// computed immediately; pictures are rendered on demand and are identical on every machine.
+/// @param distortion  Lens distortion of the frames; nullptr for a pinhole camera.
 [[nodiscard]] Sequence make_rendered(const std::string& dataset,
                                      const std::string& name,
                                      const ellipse::Scene& scene,

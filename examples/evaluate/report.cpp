@@ -22,8 +22,8 @@
 namespace evaluate {
 namespace {
 
-constexpr std::size_t kExhibits = 18;          // of one data set
-constexpr std::size_t kExhibitsOfSeveral = 6;  // of each, where there are several
+constexpr std::size_t kExhibits = 18;          // for a single data set
+constexpr std::size_t kExhibitsOfSeveral = 6;  // for each of several data sets
 
 constexpr const char* kStyle = R"(
 :root { --ink: #1c2228; --soft: #5c6873; --line: #d9dee3; --paper: #ffffff; --accent: #0b6e4f; }
@@ -64,7 +64,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// Green where it is good, so that the eye finds what is not.
+// Green for good values, so that others stand out.
 std::string tint(const std::string& cell) {
   char* end = nullptr;
   const double grade = std::strtod(cell.c_str(), &end);
@@ -106,7 +106,7 @@ void write_tiles(std::ostream& out, const Evaluation& evaluation, const std::str
   out << "</div>\n";
 }
 
-// Only what stands in the page, not the file's own heading.
+// Removes the SVG file's header.
 std::string inline_svg(const std::string& svg) {
   const std::size_t begin = svg.find("<svg");
   return begin == std::string::npos ? svg : svg.substr(begin);

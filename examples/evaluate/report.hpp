@@ -8,12 +8,13 @@
 
 namespace evaluate {
 
-/// Writes `index.html` into a folder: one page with everything in it, tables, plots and the worst
-/// frames of the first method.
+/// Writes `index.html` to a folder: a self-contained page with tables, plots and the worst frames
+/// of the first method.
 ///
-/// @param command   The line that gave the figures.
-/// @param problems  Shown at the top: what the figures do not cover.
-/// Throws std::runtime_error where it cannot be written, or gnuplot is not there.
+/// @param command   The command line that produced the results.
+/// @param problems  Shown at the top: what the results do not cover.
+///
+/// Throws std::runtime_error if it cannot be written or gnuplot is missing.
 void write_report(const Evaluation& evaluation,
                   const std::string& command,
                   const std::vector<std::string>& problems,

@@ -18,7 +18,7 @@ constexpr std::size_t kMinBlocks = 5;
 constexpr double kBlockSeconds = 1.0;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Sums over any range of frames in O(1).
+// Prefix sums: the sum over any range of frames in O(1).
 class Sums {
  public:
   explicit Sums(std::span<const FrameCounts> counts) : before_(1) {
@@ -38,13 +38,13 @@ class Sums {
   std::vector<FrameCounts> before_;
 };
 
-// A range of frames, from the first of the source.
+// A range of frames, counted from the source's first.
 struct FrameRange {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
-// The ranges of one resample, one after the other.
+// The ranges of one resample.
 class Draw {
  public:
   Draw(const SourceFrames& source, const Scheme& scheme) : scheme_(scheme) {
@@ -105,7 +105,7 @@ Interval central_95(std::vector<double> values) {
   return {quantile(values, 0.025), quantile(values, 0.975)};
 }
 
-// Correlation of the errors of frames that are `lag` apart in the same sequence.
+// Covariance of errors between frames that are `lag` apart in the same sequence.
 double covariance(const SourceFrames& source,
                   const std::vector<double>& deviations,
                   std::size_t lag) {
@@ -120,7 +120,7 @@ double covariance(const SourceFrames& source,
   return sum;
 }
 
-// 1 + 2 (rho_1 + rho_2 + ...) up to the first that is not positive.
+// 1 + 2 (rho_1 + rho_2 + ...), up to the first non-positive term.
 double autocorrelation_time(const SourceFrames& source,
                             std::span<const FrameCounts> counts,
                             std::size_t max_lag) {

@@ -7,12 +7,12 @@
 
 namespace evaluate {
 
-/// What a method did in one frame, or in many: the counts that precision, recall and F1 come from.
+/// Counts of one or more frames, from which precision, recall and F1 are computed.
 struct FrameCounts {
-  int judged = 0;    ///< Frames that count.
-  int right = 0;     ///< Ellipses.
-  int mistaken = 0;  ///< Reported ellipses that match nothing.
-  int missed = 0;    ///< True ellipses that nothing matches.
+  int judged = 0;    ///< Judged frames.
+  int right = 0;     ///< Matched ellipses.
+  int mistaken = 0;  ///< Reported ellipses without a match.
+  int missed = 0;    ///< True ellipses without a match.
 
   FrameCounts& operator+=(const FrameCounts& other);
   [[nodiscard]] bool has_error() const { return mistaken > 0 || missed > 0; }
@@ -21,35 +21,35 @@ struct FrameCounts {
 
 [[nodiscard]] FrameCounts total(std::span<const FrameCounts> counts);
 
-/// F1, NaN where there is no ellipse to be found.
+/// F1; NaN if there is no ellipse to find.
 [[nodiscard]] double f1_of(const FrameCounts& sum);
 
-/// F1; of a source without any ellipse the share of the frames without a mistaken one.
+/// F1; for a source without ellipses, the fraction of frames without a mistaken one.
 [[nodiscard]] double grade_of(const FrameCounts& sum);
 
-/// The frames of one source, those of a sequence side by side.
+/// The frames of one source, grouped by sequence.
 struct SourceFrames {
   std::vector<std::size_t> sequence_lengths;
   double frames_per_second = 30.0;
 };
 
-/// Sources with this many sequences are resampled by whole sequences.
+/// Sources with at least this many sequences are resampled by whole sequences.
 inline constexpr std::size_t kMinSequences = 5;
 
-/// How a source is resampled. Neighbouring frames show nearly the same picture, so that frames are
-/// no independent draws: whole sequences are drawn with replacement, or, where the source has fewer
-/// than kMinSequences, blocks of consecutive frames of each sequence (circular block bootstrap
+/// Resampling scheme of a source. Consecutive frames show almost the same picture and are not
+/// independent draws. Whole sequences are therefore drawn with replacement; sources with fewer than
+/// kMinSequences use blocks of consecutive frames within each sequence (circular block bootstrap
 /// [PolitisRomano1992]).
 struct Scheme {
   bool draws_sequences = false;
-  std::size_t block_frames = 1;  ///< Where blocks are drawn.
+  std::size_t block_frames = 1;  ///< Block length, if blocks are drawn.
 };
 
-/// A block lasts one second, or longer where the errors of a method last longer: their integrated
-/// autocorrelation time. At most a fifth of the longest sequence.
+/// Chooses the scheme. A block lasts one second or the integrated autocorrelation time of the
+/// method's errors, whichever is longer, but at most a fifth of the longest sequence.
 [[nodiscard]] Scheme scheme_for(const SourceFrames& source, std::span<const FrameCounts> counts);
 
-/// The longer blocks of two schemes for one source.
+/// The scheme with the longer blocks.
 [[nodiscard]] Scheme longer(const Scheme& a, const Scheme& b);
 
 struct Interval {
@@ -57,19 +57,19 @@ struct Interval {
   double high = 0.0;
 };
 
-/// The central 95 % of the grade over kResamples resamples; the same on every machine. NaN for both
-/// ends where no frame has an error: resampling cannot show what has not happened.
+/// The central 95 % of the grade over kResamples resamples; identical on every machine. NaN for
+/// both ends if no frame has an error, because resampling cannot show unobserved errors.
 [[nodiscard]] Interval grade_interval(const SourceFrames& source,
                                       const Scheme& scheme,
                                       std::span<const FrameCounts> counts);
 
-/// The same of grade(a) - grade(b), both in the same resampled frames.
+/// The same for grade(a) - grade(b), with both on the same resampled frames.
 [[nodiscard]] Interval difference_interval(const SourceFrames& source,
                                            const Scheme& scheme,
                                            std::span<const FrameCounts> a,
                                            std::span<const FrameCounts> b);
 
-/// Whether a difference may be claimed: its interval lies on one side of 0.
+/// Whether a difference is significant: its interval excludes 0.
 [[nodiscard]] inline bool is_difference(const Interval& difference) {
   return difference.low > 0.0 || difference.high < 0.0;
 }

@@ -9,32 +9,32 @@
 
 namespace evaluate {
 
-/// A row that cannot be used, named by file and line. The file may go on.
+/// Invalid row, with file and line. The rest of the file may be valid.
 class RowError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One line of a table with a header, and where it stands.
+/// One row of a table with a header.
 class Row {
  public:
-  /// Borrows file and header. Throws RowError where the number of fields is not the header's.
+  /// Borrows file and header. Throws RowError if the number of fields differs from the header's.
   Row(const std::filesystem::path& file,
       int line,
       const std::vector<std::string>& header,
       std::vector<std::string> fields);
 
-  /// Throws RowError.
+  /// Throws RowError with file and line.
   [[noreturn]] void fail(const std::string& what) const;
 
   [[nodiscard]] bool has(const std::string& column) const;
 
-  /// Throws std::runtime_error where the table has no such column.
+  /// Throws std::runtime_error if the table has no such column.
   [[nodiscard]] const std::string& text(const std::string& column) const;
 
-  /// Throws RowError where the field is no finite number.
+  /// Throws RowError if the field is not a finite number.
   [[nodiscard]] double number(const std::string& column) const;
 
-  /// nullopt where there is no such column, or nothing in it.
+  /// nullopt if the column is missing or the field is empty.
   [[nodiscard]] std::optional<double> optional_number(const std::string& column) const;
 
  private:
@@ -46,8 +46,8 @@ class Row {
   std::vector<std::string> fields_;
 };
 
-/// Calls `use` with each row, and `skip` with what is wrong with a row that cannot be used.
-/// Throws std::runtime_error that names the file, where it cannot be read or is empty.
+/// Calls `use` for each row, and `skip` with the error of each invalid row.
+/// Throws std::runtime_error that names the file if it cannot be read or is empty.
 void for_each_row(const std::filesystem::path& file,
                   char separator,
                   const std::function<void(const Row&)>& use,

@@ -20,7 +20,7 @@ constexpr double kMaxFrames = 1e6;
   throw std::invalid_argument(text + ": " + what);
 }
 
-// Takes a number from the beginning of the rest.
+// Parses a number at the start of the rest and removes it.
 std::uint64_t take_seed(std::string_view& rest, const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), seed);
@@ -43,7 +43,7 @@ FrameTimes times_of(const ScenePace& pace) {
   return {0.0, static_cast<int>(frames), 1, pace.frames_per_second};
 }
 
-// One for all scenes that are seen by the same camera.
+// Shared by all scenes with the same camera.
 class SharedFrames {
  public:
   std::shared_ptr<const DistortedFrame> of(const ellipse::Scene& scene) {

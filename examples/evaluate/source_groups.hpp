@@ -6,23 +6,24 @@
 
 namespace evaluate {
 
-/// Which sources are left out together, because they share camera, target or place. From lines
+/// Groups of sources that are left out together because they share camera, target or location. File
+/// format:
 ///
 ///     airlab: airlab-*
 ///     rendered: twin thin scenes
 ///
-/// a group's name, a colon, and names of sources in which * and ? stand for anything (glob(7)).
-/// Empty lines and lines that begin with # do not count.
+/// Each line has a group's name, a colon, and names of sources with the wildcards * and ?
+/// (glob(7)). Empty lines and lines that begin with # are ignored.
 class SourceGroups {
  public:
-  /// The AirLab sources; all rendered ones.
+  /// Default groups: the AirLab sources, and all rendered ones.
   SourceGroups();
 
-  /// Throws std::runtime_error that names file and line.
+  /// Throws std::runtime_error with file and line.
   explicit SourceGroups(const std::filesystem::path& file);
 
-  /// The first group that has the source, else the source's own name. What stands before a colon
-  /// in a source's name does not count: it tells data sets of the same name apart.
+  /// The first group that contains the source, otherwise the source's own name. A prefix up to a
+  /// colon in a source's name is ignored; it distinguishes data sets of the same name.
   [[nodiscard]] std::string group_of(const std::string& source) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace evaluate {
 
-/// The counts of a frame's outcome: a wrong target is a mistaken ellipse and a missed one.
+/// The counts of a frame's outcome. A wrong target counts as one mistaken and one missed ellipse.
 [[nodiscard]] FrameCounts counts_of(Outcome outcome);
 
 /// The sum of a method's counts over a source.
@@ -18,29 +18,29 @@ namespace evaluate {
                                         std::size_t method,
                                         const std::string& dataset);
 
-/// What one method did on one source.
+/// A method's result on one source.
 struct SourceGrade {
   double grade = 0.0;  ///< See grade_of().
   FrameCounts counts;
   Interval interval;
-  /// From the first method. nullopt for the first method itself.
+  /// From the first method; nullopt for the first method itself.
   std::optional<Interval> difference;
 };
 
-/// What all methods did on one source.
+/// Results of all methods on one source.
 struct SourceResults {
   std::string source;
-  int frames = 0;  ///< Judged or not.
+  int frames = 0;  ///< All frames, judged or not.
   bool has_target = false;
-  bool draws_sequences = false;          ///< How the intervals were made.
-  std::vector<SourceGrade> methods;      ///< As in the evaluation.
-  std::optional<std::size_t> best_peer;  ///< Of the methods that are not ours.
+  bool draws_sequences = false;          ///< Resampling by sequences instead of blocks.
+  std::vector<SourceGrade> methods;      ///< In the order of the evaluation.
+  std::optional<std::size_t> best_peer;  ///< Best method that is not ours.
 };
 
-/// A source is a data set. In the order in which they were seen.
+/// Results per source (data set), in order of evaluation.
 [[nodiscard]] std::vector<SourceResults> source_results(const Evaluation& evaluation);
 
-/// How the sequences of a data set were seen.
+/// The frames of a data set, grouped by sequence as evaluated.
 [[nodiscard]] SourceFrames source_frames(const Evaluation& evaluation, const std::string& dataset);
 
 }  // namespace evaluate

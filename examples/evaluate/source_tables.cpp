@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kNoDifference = "=";
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The figure with its mark; a blank keeps the digits in line.
+// The grade with its mark; a blank keeps the digits aligned.
 std::string marked(const SourceGrade& grade) {
   const bool is_claimed = !grade.difference || is_difference(*grade.difference);
   return number(grade.grade, 3) + (is_claimed ? " " : kNoDifference);
@@ -74,7 +74,7 @@ std::vector<std::string> mean_row(const Evaluation& evaluation,
   return row;
 }
 
-// All ellipses of one source that one method found.
+// Sum of one method's results for all ellipses of one source.
 struct AllSum {
   FrameCounts counts;
   Interval interval{kNaN, kNaN};  // of F1

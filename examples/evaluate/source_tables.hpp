@@ -9,22 +9,22 @@
 
 namespace evaluate {
 
-/// The figure of each method on each source, a row each, and the best peer beside the first method.
-/// A method whose difference from the first one is none is marked.
+/// F1 of each method on each source, one row per source, with the best peer next to the first
+/// method. Marks methods without a significant difference from the first one.
 [[nodiscard]] Table source_table(const Evaluation& evaluation,
                                  std::span<const SourceResults> results);
 
-/// The intervals of these figures.
+/// The confidence intervals of these values.
 [[nodiscard]] Table interval_table(const Evaluation& evaluation,
                                    std::span<const SourceResults> results);
 
-/// Precision, recall and F1 of each method over all ellipses of each source, centres and axes.
+/// Precision, recall and F1 over all ellipses of each source, with centre and axis errors.
 [[nodiscard]] Table all_ellipses_table(const Evaluation& evaluation);
 
-/// All tables over sources; that of all ellipses where they were asked for.
+/// All tables by source, with that of all ellipses if they were evaluated.
 [[nodiscard]] std::vector<Table> source_tables(const Evaluation& evaluation);
 
-/// The same figures for programs: values of the members "sources" and "all_ellipses".
+/// The same results as JSON: the members "sources" and "all_ellipses".
 void write_json_sources(std::ostream& out, const Evaluation& evaluation);
 
 }  // namespace evaluate

@@ -52,7 +52,7 @@ std::vector<std::string> range(const std::vector<std::string>& parts, const std:
   const double steps = std::floor((to - from) / step + 1e-9);
   if (steps >= static_cast<double>(kMaxValues)) fail(all, "more than 200 values");
   std::vector<std::string> values;
-  // Nine digits, so that 0.3 + 5 x 0.05 is 0.55.
+  // Rounds to nine digits, so that 0.3 + 5 x 0.05 is printed as 0.55.
   for (int i = 0; i <= static_cast<int>(steps); ++i) {
     values.push_back(format("%.9g", from + i * step));
   }
@@ -63,7 +63,7 @@ Measures measures_at(const Evaluation& evaluation, std::size_t value) {
   return measures_of(evaluation, value, [](const SeenFrame& /*seen*/) { return true; });
 }
 
-// The columns beside the value.
+// The columns after the value.
 struct Column {
   const char* name;
   int digits;
@@ -106,7 +106,8 @@ Panel panel_of(const Sweep& sweep,
   for (const std::string& value : sweep.values) {
     if (const auto x = number_in(value)) panel.x.push_back(*x);
   }
-  if (panel.x.size() < sweep.values.size()) panel.ranges = sweep.values;  // nicks side by side
+  if (panel.x.size() < sweep.values.size())
+    panel.ranges = sweep.values;  // non-numeric values: grouped bars
   for (const Column& column : kColumns) {
     if (std::find(names.begin(), names.end(), column.name) == names.end()) continue;
     Curve curve{column.name, {}};

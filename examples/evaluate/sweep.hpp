@@ -12,23 +12,22 @@
 
 namespace evaluate {
 
-/// One property at several values: the sensitivity studies of [Keipour2021] Figures 3 and 4.
+/// One property with several values: the sensitivity studies of [Keipour2021] Figures 3 and 4.
 struct Sweep {
   std::string property;
   std::vector<std::string> values;
 };
 
-/// From "property=from:to:step" (both ends count) or "property=value,value,...", where
-/// a value may also be a nick.
-/// Throws std::invalid_argument that names what is wrong.
+/// Parses "property=from:to:step" (both ends inclusive) or "property=value,value,...", where a
+/// value may be a nick. Throws std::invalid_argument that describes the error.
 [[nodiscard]] Sweep parse_sweep(const std::string& text);
 
-/// One method a value.
-/// Throws std::invalid_argument where the property is unknown or refuses a value.
+/// One method per value. Throws std::invalid_argument if the property is unknown or rejects a
+/// value.
 [[nodiscard]] std::vector<std::unique_ptr<Method>> methods_of(
     const Sweep& sweep, const ellipse::TrackerSettings& settings);
 
-/// A row a value: measures, counts and times over all data sets.
+/// One row per value: measures, counts and times over all data sets.
 [[nodiscard]] Table sweep_table(const Sweep& sweep, const Evaluation& evaluation);
 
 /// Writes PROPERTY.csv, PROPERTY.svg and PROPERTY.png with the paper's four panels.

@@ -39,7 +39,7 @@ std::vector<std::string> times_row(const std::string& method,
           number(quantile(ms, 0.99), 3)};
 }
 
-// F1, or accuracy where there is nothing to be found.
+// F1, or accuracy if there is nothing to find.
 double grade(const Measures& measures) {
   const int with_target = measures.count(Outcome::kTruePositive) +
                           measures.count(Outcome::kFalseNegative) + measures.count(Outcome::kWrong);

@@ -8,34 +8,34 @@
 
 namespace evaluate {
 
-/// Text in rows and columns, for the terminal and for the report.
+/// A table of text for the terminal and the report.
 struct Table {
   std::string title;
   std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;  ///< The first column holds names.
+  std::vector<std::vector<std::string>> rows;  ///< The first column contains names.
   std::string note;
 };
 
 /// [Keipour2021] Table II: the measures of each method on one data set.
 [[nodiscard]] Table measures_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// [Keipour2021] Table III: the times of each method by outcome, beside the reference's.
+/// [Keipour2021] Table III: processing times of each method by outcome, and of the reference.
 [[nodiscard]] Table times_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// F1 of each method on each sequence; where a sequence has no target, the share of its frames
-/// in which rightly none was found.
+/// F1 of each method on each sequence; for a sequence without a target, the fraction of frames
+/// without an answer.
 [[nodiscard]] Table sequences_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// The error of the centre of each method, by the frame scale at which the target was found.
+/// The centre error of each method, by the frame scale of the answer.
 [[nodiscard]] Table centre_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// All of them, of one data set.
+/// All tables of one data set.
 [[nodiscard]] std::vector<Table> all_tables(const Evaluation& evaluation,
                                             const std::string& dataset);
 
 void print(std::ostream& out, const Table& table);
 
-/// The same figures for programs.
+/// The same results as JSON.
 void write_json(std::ostream& out, const Evaluation& evaluation);
 
 }  // namespace evaluate

@@ -6,7 +6,7 @@
 
 namespace evaluate {
 
-/// As printf, into a string.
+/// printf() into a string.
 template <class... Values>
 [[nodiscard]] std::string format(const char* pattern, const Values&... values) {
   const int length = std::snprintf(nullptr, 0, pattern, values...);
@@ -16,12 +16,12 @@ template <class... Values>
   return text;
 }
 
-/// JSON has no NaN: what was not measured is null.
+/// null for NaN, which JSON cannot represent.
 [[nodiscard]] inline std::string json_number(double value) {
   return std::isfinite(value) ? format("%.6g", value) : "null";
 }
 
-/// A number for people; a dash where nothing was measured.
+/// A number for output; a dash for NaN.
 [[nodiscard]] inline std::string number(double value, int digits) {
   return std::isfinite(value) ? format("%.*f", digits, value) : "-";
 }

@@ -16,7 +16,7 @@ std::size_t range_of(double visible) {
   return visible > 0.0 ? range : kVisibleRanges - 1;
 }
 
-// What one answer is worth.
+// Accuracy of one answer.
 struct Verdict {
   bool is_right = false;
   double centre_error_px = 0.0;
@@ -31,12 +31,12 @@ Verdict verdict_on(const Result& result, const SeenFrame& seen) {
   const auto matched = matched_ellipse(*result.answer, seen.frame->truth, seen.size, Rule::kIou);
   const ellipse::Ellipse truth = matched.value_or(*seen.frame->truth.target);
   const double error_px = (result.answer->center() - truth.center()).norm();
-  // Unlike in judge(), a target that is larger than the frame can be matched.
+  // Unlike judge(), accepts a match with a target that encloses the frame.
   const bool is_matched = matched || is_right(*result.answer, truth, seen.size, Rule::kIou);
   return {is_matched, error_px, error_px / truth.semi_major};
 }
 
-// Goes through one sequence at a time.
+// Processes one sequence at a time.
 class Follower {
  public:
   explicit Follower(TrackingMeasures& measures) : measures_(measures) {}
@@ -107,11 +107,11 @@ class Follower {
   }
 
   TrackingMeasures& measures_;
-  bool has_begun_ = false;  // since the target was out of view
+  bool has_begun_ = false;  // since the target was last out of view
   bool has_begun_before_ = false;
-  bool was_visible_ = false;  // to kMinToStart, in the frame before
-  bool was_lost_ = false;     // since then
-  int waited_ = 0;            // frames since a return; 0 = for none
+  bool was_visible_ = false;  // at least kMinToStart in the previous frame
+  bool was_lost_ = false;     // since was_visible_ was last true
+  int waited_ = 0;            // frames since the return; 0 = not waiting
 };
 
 }  // namespace

@@ -8,14 +8,14 @@
 
 namespace evaluate {
 
-/// What each method makes of the frames of one data set, by how much of the target they show.
+/// Results of each method on one data set, by the visible fraction of the target.
 [[nodiscard]] Table visibility_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// How each method follows through one data set: targets where there are none, wrong ones, how soon
-/// it is right when the target comes back, times, the error of the centre.
+/// Tracking results of each method on one data set: false and wrong targets, time to recover after
+/// a return, processing times, centre error.
 [[nodiscard]] Table following_table(const Evaluation& evaluation, const std::string& dataset);
 
-/// The same figures for programs, as members of a JSON object.
+/// The same results as members of a JSON object.
 void write_json_tracking(std::ostream& out, const TrackingMeasures& measures);
 
 }  // namespace evaluate

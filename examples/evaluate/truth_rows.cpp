@@ -13,7 +13,7 @@ void check_axes(const Row& row, const ellipse::Ellipse& e) {
   }
 }
 
-// Of a ring: concentric and of the same shape.
+// The inner edge of a ring is concentric and of the same shape.
 ellipse::Ellipse inner_edge(const Row& row, ellipse::Ellipse outer, double semi_major) {
   if (!(semi_major > 0.0 && semi_major < outer.semi_major)) {
     row.fail("inner_semi_major must be above 0 and below semi_major");

@@ -5,11 +5,11 @@
 
 namespace evaluate {
 
-/// The ellipse in a row of gt.csv; none where all its fields are empty. Throws RowError.
+/// Reads the ellipse in a row of gt.csv; none if all its fields are empty. Throws RowError.
 [[nodiscard]] Truth truth_of_csv(const Row& row);
 
-/// The ellipse in a row of a ground_truth.txt: full axes, width <= height, the angle is that of the
-/// width [degrees]. Throws RowError.
+/// Reads the ellipse in a row of a ground_truth.txt: full axes, width <= height, the angle is that
+/// of the width [degrees]. Throws RowError.
 [[nodiscard]] Truth truth_of_published(const Row& row);
 
 }  // namespace evaluate

@@ -12,10 +12,10 @@ namespace {
 using ellipse::GroundKind;
 using ellipse::Scene;
 
-// What is varied among clips that are otherwise the same.
+// The parameter that varies between otherwise identical clips.
 enum Family { kNone = 0, kNoise = 1, kCrumple = 2, kBoth = 3 };
 
-// A piece of a scene: so many frames from a time on, each so many 30ths of a second after the last.
+// Part of a scene: a start time, a number of frames, and a frame interval in 30ths of a second.
 struct Clip {
   const char* dataset;
   const char* name;
@@ -66,7 +66,7 @@ void thin_dusk(Scene& scene) {
   scene.sensor.gain = 0.25;
 }
 
-// The seeds are used nowhere else.
+// These seeds are used nowhere else.
 constexpr Clip kClips[] = {
     {"twin", "approach", "approach", 101, 0.0, 140, 2, keep},
     {"twin", "approach-grass", "approach", 102, 3.0, 80, 2, on<GroundKind::kGrass>},
@@ -83,7 +83,7 @@ constexpr Clip kClips[] = {
     {"twin", "disc", "disc", 113, 2.0, 60, 2, keep},
     {"twin", "bullseye", "bullseye", 114, 2.0, 60, 2, keep},
     {"twin", "hover-clutter", "hover", 115, 0.0, 60, 2, keep},
-    // The same frames with one thing changed, so that its effect can be seen.
+    // The same frames with one parameter changed, to isolate its effect.
     {"twin", "plain", "approach", 116, 4.0, 30, 2, keep, kBoth},
     {"twin", "crumpled-1", "approach", 116, 4.0, 30, 2, crumpled<1>, kCrumple},
     {"twin", "crumpled-2", "approach", 116, 4.0, 30, 2, crumpled<2>, kCrumple},

@@ -7,11 +7,11 @@
 
 namespace evaluate {
 
-/// A rendered twin of the data set of [Keipour2021], of the same size: 1,511 frames of 640 x 360,
-/// 1,378 of them with the target ("twin"), and 456 frames of a pad with a thin ring ("thin").
-/// Nothing is rendered before it is asked for; the same frames on every machine.
+/// A rendered counterpart of the data set of [Keipour2021], of the same size: 1,511 frames of 640 x
+/// 360, 1,378 of them with the target ("twin"), and 456 frames of a pad with a thin ring ("thin").
+/// Pictures are rendered on demand and are identical on every machine.
 ///
-/// @param ground  An 8-bit grey picture to lie under all scenes; empty = each scene's own.
+/// @param ground  8-bit grey picture of the ground for all scenes; empty = each scene's own.
 [[nodiscard]] std::vector<Sequence> make_twin(const cv::Mat& ground = {});
 
 }  // namespace evaluate

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number at the end of a name: 12 of frame_0012. nullopt where it ends otherwise.
+// The number at the end of a name, such as 12 in frame_0012; nullopt if there is none.
 std::optional<std::size_t> number_at_end(const std::string& stem) {
   const std::size_t before = stem.find_last_not_of("0123456789");
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;

@@ -13,7 +13,7 @@
 
 namespace evaluate {
 
-/// The videos that lie beside a data set's table, and which of their frames it names.
+/// The videos next to a data set's table, and which of their frames the table names.
 class VideoFrames {
  public:
   /// A frame of a video.
@@ -25,16 +25,16 @@ class VideoFrames {
   explicit VideoFrames(std::filesystem::path dataset_folder)
       : dataset_folder_(std::move(dataset_folder)) {}
 
-  /// The frame that an image such as images/eye/frame_0012.png stands for; nullopt where there is
-  /// no video of the image's folder. Throws std::runtime_error that names the video, where it has
-  /// no such frame or cannot be decoded.
+  /// The video frame that an image such as images/eye/frame_0012.png denotes; nullopt if the
+  /// image's folder has no video. Throws std::runtime_error that names the video if it has no such
+  /// frame or cannot be decoded.
   [[nodiscard]] std::optional<Place> find(const std::filesystem::path& image);
 
-  /// What gives the pictures of an image's folder; nullptr where that is no video's.
+  /// The pictures of an image's folder; nullptr if the folder has no video.
   [[nodiscard]] std::shared_ptr<PictureSource> pictures_of(
       const std::filesystem::path& image_folder) const;
 
-  /// One line for each video with frames that find() was not asked for.
+  /// One message per video with frames that were not requested by find().
   [[nodiscard]] std::vector<std::string> unnamed_frames() const;
 
  private:
@@ -42,13 +42,13 @@ class VideoFrames {
     std::filesystem::path file;
     std::vector<std::int64_t> times_ns;
     std::vector<bool> is_named;
-    std::string error;  // why it cannot be decoded
+    std::string error;  // decoding error
   };
 
   [[nodiscard]] Video* video_of_folder(const std::filesystem::path& image_folder);
 
   std::filesystem::path dataset_folder_;
-  std::map<std::filesystem::path, std::optional<Video>> videos_;  // by the images' folder
+  std::map<std::filesystem::path, std::optional<Video>> videos_;  // by image folder
 };
 
 }  // namespace evaluate

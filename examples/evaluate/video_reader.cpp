@@ -29,8 +29,8 @@ constexpr std::array kExtensions = {
 
 }  // namespace
 
-// decodebin has one thread for each stream, so that the pipeline stops at the sink's one buffer
-// while nobody asks for the next frame.
+// decodebin has one thread per stream, so the pipeline blocks on the sink's queue of one buffer
+// until the next frame is requested.
 class VideoReader::Pipeline {
  public:
   explicit Pipeline(const fs::path& file) : file_(file) {
