@@ -62,8 +62,8 @@ std::vector<Axis> axes() {
        1.0,
        {0, 1, 2, 4, 8, 12},
        [](const SeenFrame& seen) { return seen.frame->conditions.noise; }},
-      {"Recall by crumpling",
-       "departure of the edge [% of the radius]",
+      {"Recall by edge deformation",
+       "edge deviation [% of the radius]",
        100.0,
        {0, 0.005, 0.015, 0.025},
        [](const SeenFrame& seen) { return seen.frame->conditions.crumple; }},
@@ -95,9 +95,9 @@ std::optional<Panel> recall_panel(const Evaluation& evaluation,
 
 Panel centre_panel(const Evaluation& evaluation, const std::string& dataset) {
   const std::vector<double> limits = {0, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5};
-  Panel panel{"Error of the centre",
+  Panel panel{"Centre error",
               "distance [px]",
-              "share of right answers",
+              "fraction of right answers",
               {},
               names_of(limits, 1.0),
               {},

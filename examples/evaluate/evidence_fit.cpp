@@ -263,8 +263,8 @@ Calibration EvidenceFitter::left_out_calibration(const SourceGroups& groups) con
 
 Table calibration_table(const Calibration& calibration) {
   Table table;
-  table.title = "Left out: candidates by the probability that they were told";
-  table.header = {"told", "candidates", "mean told", "right"};
+  table.title = "Left out: candidates by predicted probability";
+  table.header = {"predicted", "candidates", "mean", "right"};
   for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
     const CalibrationBin& bin = calibration.bins[i];
     const auto tenth = static_cast<double>(i) / 10.0;
@@ -273,8 +273,8 @@ Table calibration_table(const Calibration& calibration) {
                           bin.candidates > 0 ? number(bin.probability, 3) : "-",
                           bin.candidates > 0 ? number(bin.right, 3) : "-"});
   }
-  table.note = "Each source weighs the same. Log loss: " + number(calibration.log_loss, 4) +
-               ". Candidates between right and wrong do not count.";
+  table.note = "All sources have equal weight. Log loss: " + number(calibration.log_loss, 4) +
+               ". Candidates that are neither right nor wrong are excluded.";
   return table;
 }
 

@@ -84,9 +84,9 @@ Table table_of(const std::vector<LeftOut>& results, JudgedChoice LeftOut::*judge
   table.rows.push_back(
       {"mean", "", "", number(sum / count, 4) + " ", "", number(without / count, 4), ""});
   table.note =
-      "Without: the settings before any choice. =: no difference from them in 95 % of the "
-      "resamples. Where no frame shows an ellipse: the share of frames in which none was "
-      "found.";
+      "Without: the base settings. =: no difference from them, because the 95 % interval of the "
+      "difference contains 0. For sources without an ellipse: fraction of frames without an "
+      "answer.";
   return table;
 }
 

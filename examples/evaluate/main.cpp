@@ -79,7 +79,7 @@ void add_options(CLI::App& app, Options& options) {
       ->needs(datasets);
   app.add_option("--set", options.settings, "PROPERTY=VALUE of the element ellipsetrack")
       ->allow_extra_args(false);
-  app.add_option("--rule", options.rule, "When an answer counts as correct")
+  app.add_option("--rule", options.rule, "Criterion for a correct answer")
       ->capture_default_str()
       ->check(CLI::IsMember({"iou", "published"}));
   CLI::Option* sweep =
@@ -101,7 +101,7 @@ void add_options(CLI::App& app, Options& options) {
   leave->excludes(sweep)->excludes(make);
   app.add_option("--methods",
                  options.methods,
-                 "Comma-separated; default: all methods that are not given the target, with "
+                 "Comma-separated; default: all methods that find the target themselves, with "
                  "--leave-one-out the default method and its detector")
       ->delimiter(',')
       ->excludes(sweep)

@@ -280,7 +280,7 @@ class Program {
 
   static void print_interruption(const Evaluation& evaluation) {
     if (!evaluation.is_interrupted) return;
-    std::cout << "Interrupted: the figures cover " << evaluation.frames.size() << " of "
+    std::cout << "Interrupted: the results cover " << evaluation.frames.size() << " of "
               << evaluation.planned_frames << " frames.\n";
   }
 
@@ -290,7 +290,7 @@ class Program {
 
   void print_problems() const {
     if (missing_frames_ > 0) {
-      std::cout << "\nMissing frames: " << missing_frames_ << ". They are not in any figure.\n";
+      std::cout << "\nMissing frames: " << missing_frames_ << ". No result includes them.\n";
     }
     for (std::size_t i = 0; i < std::min(problems_.size(), kMaxProblemsPrinted); ++i) {
       std::cerr << "ellipse-evaluate: " << problems_[i] << '\n';

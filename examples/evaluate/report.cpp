@@ -100,8 +100,8 @@ void write_tiles(std::ostream& out, const Evaluation& evaluation, const std::str
   tile(number(m.f1(), 4), "F1");
   tile(number(m.precision(), 4), "precision");
   tile(number(m.recall(), 4), "recall");
-  tile(number(quantile(m.all_centre_errors_px(), 0.5), 3) + " px", "median error of the centre");
-  tile(number(quantile(m.all_times_ms(), 0.5), 2) + " ms", "median time a frame");
+  tile(number(quantile(m.all_centre_errors_px(), 0.5), 3) + " px", "median centre error");
+  tile(number(quantile(m.all_times_ms(), 0.5), 2) + " ms", "median time per frame");
   tile(number(ratio, 2) + " &times;", "of Canny + findContours");
   out << "</div>\n";
 }
@@ -118,8 +118,8 @@ void write_gallery(std::ostream& out,
                    std::size_t most) {
   out << "<h3>The worst frames of " << escaped(evaluation.methods[0].name)
       << "</h3>\n<p class=\"note\"><span class=\"truth\">Truth</span> and <span class=\"answer\">"
-         "answer</span>. WD: wrong target, FP: none is there, FN: missed, TP: right, but far "
-         "off.</p>\n<div class=\"gallery\">\n";
+         "answer</span>. WD: wrong target, FP: no target present, FN: missed, TP: right, but "
+         "inaccurate.</p>\n<div class=\"gallery\">\n";
   for (const Exhibit& exhibit : worst_frames(evaluation, 0, dataset, most)) {
     cv::Mat small = exhibit.picture;
     if (small.cols > 640) {
@@ -139,7 +139,7 @@ void write_problems(std::ostream& out,
                     const Evaluation& evaluation,
                     const std::vector<std::string>& problems) {
   if (!evaluation.is_interrupted && problems.empty()) return;
-  out << "<div class=\"problems\"><b>These figures are not complete.</b>";
+  out << "<div class=\"problems\"><b>These results are incomplete.</b>";
   if (evaluation.is_interrupted) {
     out << "<p>Interrupted after " << evaluation.frames.size() << " of "
         << evaluation.planned_frames << " frames.</p>";
@@ -161,7 +161,7 @@ void write_report(const Evaluation& evaluation,
   std::ofstream out(file);
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>gst-ellipse: "
          "evaluation</title>\n<meta name=\"viewport\" content=\"width=device-width\"><style>"
-      << kStyle << "</style></head><body>\n<h1>Ellipse detection, measured</h1>\n<p class=\"note\">"
+      << kStyle << "</style></head><body>\n<h1>Ellipse detection benchmark</h1>\n<p class=\"note\">"
       << evaluation.frames.size() << " frames, " << evaluation.methods.size()
       << " methods in the same run. <code>" << escaped(command) << "</code></p>\n";
   write_problems(out, evaluation, problems);
@@ -176,7 +176,7 @@ void write_report(const Evaluation& evaluation,
     write_table(out, sequences_table(evaluation, dataset), true);
     write_table(out, visibility_table(evaluation, dataset), false);
     write_table(out, following_table(evaluation, dataset), false);
-    out << "<h3>Where it is good, and where not</h3>\n"
+    out << "<h3>Performance by condition</h3>\n"
         << inline_svg(plot(breakdown(evaluation, dataset), PlotFormat::kSvg)) << '\n';
     write_table(out, times_table(evaluation, dataset), false);
     write_table(out, centre_table(evaluation, dataset), false);

@@ -139,13 +139,17 @@ Table source_table(const Evaluation& evaluation, std::span<const SourceResults> 
   table.title = "F1 by source";
   table.header = {"source", "frames"};
   for (const MethodResults& method : evaluation.methods) table.header.push_back(method.name + " ");
-  table.header.insert(table.header.end(), {"best peer", "its F1", "first - it "});
+  table.header.insert(table.header.end(), {"best peer", "its F1", "difference "});
   for (const SourceResults& source : results) table.rows.push_back(row_of(evaluation, source));
   table.rows.push_back(mean_row(evaluation, results));
-  table.note = "Where no frame shows an ellipse: the share of frames in which none was found. " +
-               std::string(kNoDifference) + ": no difference from " + evaluation.methods[0].name +
-               ", because the 95 % interval of the difference in the same resampled frames holds "
-               "0. Peers are all methods without our detector or tracker, so also the paper's.";
+  table.note =
+      "For sources without an ellipse: fraction of frames without an answer. " +
+      std::string(kNoDifference) + ": no difference from " + evaluation.methods[0].name +
+      ", because the 95 % interval of the difference on the same resampled frames contains "
+      "0. Difference: " +
+      evaluation.methods[0].name +
+      " minus the best peer. Peers are all methods without our detector or tracker, "
+      "including the paper's.";
   return table;
 }
 
@@ -160,10 +164,10 @@ Table interval_table(const Evaluation& evaluation, std::span<const SourceResults
     table.rows.push_back(std::move(row));
   }
   table.note = "Bootstrap over whole sequences: " + names_of(results, true) +
-               "; over blocks of one second or the time for which errors last, because the source "
-               "has fewer than " +
+               "; over blocks of at least one second and the duration of errors, for sources with "
+               "fewer than " +
                std::to_string(kMinSequences) + " sequences: " + names_of(results, false) +
-               ". -: no error, so that resampling shows none.";
+               ". -: no error to resample.";
   return table;
 }
 
@@ -204,9 +208,9 @@ Table all_ellipses_table(const Evaluation& evaluation) {
                });
   table.note =
       "Matched one to one at IoU >= 0.8. True ellipses with less than 30 % of the perimeter "
-      "in the frame, and what matches them, do not count. Axes: the larger difference of "
-      "the semi-axes. Methods that look for one target are left out. Where the truth lists the "
-      "target alone, other ellipses that are really there count as mistaken.";
+      "in the frame, and their matches, do not count. Axes: the larger error of "
+      "the two semi-axes. Methods that find only the target are omitted. If the truth lists only "
+      "the target, other real ellipses count as mistaken.";
   return table;
 }
 

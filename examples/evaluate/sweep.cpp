@@ -154,7 +154,7 @@ Table sweep_table(const Sweep& sweep, const Evaluation& evaluation) {
     }
     table.rows.push_back(std::move(row));
   }
-  table.note = std::to_string(evaluation.frames.size()) + " frames of all data sets together";
+  table.note = std::to_string(evaluation.frames.size()) + " frames of all data sets";
   return table;
 }
 
@@ -179,7 +179,7 @@ void write_sweep(const Sweep& sweep,
       panel_of(sweep, evaluation, "Measures", "", {"accuracy", "recall", "F1"}),
       panel_of(sweep, evaluation, "Right", "frames", {"TP", "TN"}),
       panel_of(sweep, evaluation, "False", "frames", {"FP", "FN", "WD"}),
-      panel_of(sweep, evaluation, "Time a frame", "ms", {"average_ms", "median_ms"}),
+      panel_of(sweep, evaluation, "Time per frame", "ms", {"average_ms", "median_ms"}),
   };
   plot_to(folder / (sweep.property + ".svg"), panels, PlotFormat::kSvg);
   plot_to(folder / (sweep.property + ".png"), panels, PlotFormat::kPng);

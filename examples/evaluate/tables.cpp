@@ -96,15 +96,16 @@ Table measures_table(const Evaluation& evaluation, const std::string& dataset) {
   }
   table.note = std::to_string(frames) + " frames";
   if (not_judged > 0) {
-    table.note += "; not judged, because not labelled, told or hardly visible: up to " +
-                  std::to_string(not_judged);
+    table.note +=
+        "; not judged (unlabelled, initialized with the truth, or hardly visible): up to " +
+        std::to_string(not_judged);
   }
   return table;
 }
 
 Table times_table(const Evaluation& evaluation, const std::string& dataset) {
   Table table;
-  table.title = "Time a frame on " + dataset + " [ms]";
+  table.title = "Time per frame on " + dataset + " [ms]";
   table.header = {"method", "outcome", "frames", "average", "maximum", "minimum", "median", "p99"};
   std::string ratios;
   std::vector<double> reference_ms;
@@ -123,7 +124,7 @@ Table times_table(const Evaluation& evaluation, const std::string& dataset) {
     table.rows.push_back(times_row("", "all", m.all_times_ms()));
   }
   table.rows.push_back(times_row("cv::Canny + cv::findContours", "all", reference_ms));
-  table.note = "Median over the median of cv::Canny + cv::findContours: " + ratios + ".";
+  table.note = "Ratio of medians to cv::Canny + cv::findContours: " + ratios + ".";
   return table;
 }
 
@@ -144,13 +145,13 @@ Table sequences_table(const Evaluation& evaluation, const std::string& dataset) 
     }
     table.rows.push_back(std::move(row));
   }
-  table.note = "Where no frame shows the target: the share of frames in which none was found.";
+  table.note = "For sequences without a target: fraction of frames without an answer.";
   return table;
 }
 
 Table centre_table(const Evaluation& evaluation, const std::string& dataset) {
   Table table;
-  table.title = "Error of the centre on " + dataset + " [px]";
+  table.title = "Centre error on " + dataset + " [px]";
   table.header = {"method", "scale", "frames", "median", "p95"};
   for (std::size_t i = 0; i < evaluation.methods.size(); ++i) {
     const Measures m = measures_of(evaluation, i, in_dataset(dataset));
@@ -171,7 +172,7 @@ Table centre_table(const Evaluation& evaluation, const std::string& dataset) {
       add_row("all", m.all_centre_errors_px());
     }
   }
-  table.note = "Of right answers.";
+  table.note = "Right answers only.";
   return table;
 }
 

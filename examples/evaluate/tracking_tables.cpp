@@ -63,7 +63,7 @@ void write_json_range(std::ostream& out, const RangeCounts& counts) {
 
 Table visibility_table(const Evaluation& evaluation, const std::string& dataset) {
   Table table;
-  table.title = "Tracking on " + dataset + ", by the visible part of the perimeter";
+  table.title = "Tracking on " + dataset + ", by visible part of the perimeter";
   table.header = {
       "visible", "method", "frames", "right", "centre 5 %", "centre 2 %", "wrong", "none"};
   const std::vector<TrackingMeasures> all = all_measures(evaluation, dataset);
@@ -77,17 +77,15 @@ Table visibility_table(const Evaluation& evaluation, const std::string& dataset)
     }
   }
   table.note =
-      "Shares of the frames from the first one with half of the perimeter in view, of each "
-      "sequence "
-      "and after each time out of view. "
-      "Right: IoU inside the frame >= 0.8. Centre: within 5 and 2 % of the semi-major axis. Wrong: "
-      "neither right nor within 5 %.";
+      "Fractions of frames, counted from the first frame with half of the perimeter in view, in "
+      "each sequence and after each time out of view. Right: IoU inside the frame >= 0.8. Centre: "
+      "within 5 and 2 % of the semi-major axis. Wrong: neither right nor within 5 %.";
   return table;
 }
 
 Table following_table(const Evaluation& evaluation, const std::string& dataset) {
   Table table;
-  table.title = "Following through " + dataset;
+  table.title = "Tracking summary on " + dataset;
   table.header = {"method",
                   "empty",
                   "locks",
@@ -119,10 +117,11 @@ Table following_table(const Evaluation& evaluation, const std::string& dataset) 
                           number(quantile(m.centre_errors_px, 0.5), 3)});
   }
   table.note =
-      "Locks: share of the empty frames, which show nothing of the target, where one is reported. "
-      "Wrong: frames. Given: starts from the truth. Returns: times when half of the perimeter is "
-      "in view again and the target was lost or out of view; frames until it is right, 1 = at "
-      "once. Centre: median where 60 % and more is visible.";
+      "Locks: fraction of the empty frames, which show no part of the target, with an answer. "
+      "Wrong: number of frames. Given: initializations with the truth. Returns: times when half of "
+      "the perimeter came back into view after the target was lost or out of view, and frames "
+      "until the answer was right, 1 = immediately. Centre: median for frames with at least 60 % "
+      "visible.";
   return table;
 }
 

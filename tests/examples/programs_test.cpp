@@ -152,7 +152,7 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   terminal.type('\x03');
   EXPECT_EQ(terminal.wait_for_end(), 130);
   const std::string& shown = terminal.text();
-  EXPECT_NE(shown.find("Interrupted: the figures cover"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Interrupted: the results cover"), std::string::npos) << shown;
   EXPECT_NE(shown.find("Accuracy, precision, recall and F1 on twin"), std::string::npos) << shown;
   EXPECT_GT(fs::file_size(json), 200U);
 }
@@ -283,8 +283,8 @@ TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
               (folder_ / "json").string());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   for (const char* part : {"\n54 frames",  // 17 scenes
-                           "Tracking on scenes, by the visible part of the perimeter",
-                           "Following through scenes",
+                           "Tracking on scenes, by visible part of the perimeter",
+                           "Tracking summary on scenes",
                            "touchdown-7"}) {
     EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
   }
@@ -303,7 +303,7 @@ TEST_F(Programs, EvaluateLooksThroughLenses) {
                                   frames.string() + " --report " + (folder_ / "page").string());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   for (const char* part : {"\n36 frames",  // 18 scenes, two lenses
-                           "Following through distorted",
+                           "Tracking summary on distorted",
                            "touchdown-barrel-7",
                            "approach-fisheye-7"}) {
     EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
