@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using ellipse::Shape;
 
 constexpr int kTag = 0;
-// The library counts pixels from the corner of the first one, not from its middle.
+// The library's pixel origin is the corner of the first pixel, not its centre.
 constexpr double kPixelOrigin = 0.5;
 
 template <auto kFree>
@@ -35,15 +35,15 @@ using Family = std::unique_ptr<apriltag_family_t, Free<tag36h11_destroy>>;
 using Detector = std::unique_ptr<apriltag_detector_t, Free<apriltag_detector_destroy>>;
 using Detections = std::unique_ptr<zarray_t, Free<apriltag_detections_destroy>>;
 
-// Of the tag with its border; inscribed in the ring's inner circle.
+// Side of a cell; the tag with its border is inscribed in the ring's inner circle.
 double cell_size(const apriltag_family_t& family, const ellipse::Pad& pad) {
   const auto inner = ellipse::inner_radius(pad);
   if (!inner) throw std::invalid_argument("apriltag: the pad has no ring around the tag");
   return std::numbers::sqrt2 * *inner / family.total_width;
 }
 
-// The cells of the tag on the pad, x ahead and y to the left. Columns and rows begin at the tag's
-// black frame.
+// The cells of the tag on the pad, x forward and y left. Columns and rows start at the tag's black
+// frame.
 class Cells {
  public:
   Cells(const apriltag_family_t& family, double size)
@@ -76,10 +76,10 @@ class Cells {
 
   double size_;
   int width_;
-  std::vector<bool> is_white_;  // row by row
+  std::vector<bool> is_white_;  // row-major
 };
 
-// Calls use(line, first, end) for the runs of at least `shortest` white cells in each line.
+// Calls use(line, first, end) for each run of at least `shortest` white cells in a line.
 template <class IsWhite, class Use>
 void for_each_run(int width, int shortest, const IsWhite& is_white, const Use& use) {
   for (int line = 0; line < width; ++line) {
@@ -105,7 +105,7 @@ class AprilTag : public Peer {
     image_u8_t image{picture.width,
                      picture.height,
                      static_cast<std::int32_t>(picture.stride),
-                     const_cast<std::uint8_t*>(picture.data)};  // the library does not write to it
+                     const_cast<std::uint8_t*>(picture.data)};  // the library only reads it
     const Detections found(apriltag_detector_detect(detector_.get(), &image));
     apriltag_detection_t* best = nullptr;
     for (int i = 0; i < zarray_size(found.get()); ++i) {
@@ -118,14 +118,16 @@ class AprilTag : public Peer {
   }
 
  private:
-  // The library's own pose estimate returns matrices that Debian's build exports no way to free.
+  // The library's pose estimate allocates matrices that Debian's build provides no function to
+  // free.
   [[nodiscard]] Sighting sighting_of(const apriltag_detection_t& detection) const {
     const double half = 0.5 * tag_size_;
     const std::array<cv::Point3d, 4> corners = {
         {{-half, half, 0.0}, {half, half, 0.0}, {half, -half, 0.0}, {-half, -half, 0.0}}};
     std::array<cv::Point2d, 4> seen;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const double* corner = detection.p[seen.size() - 1 - i];  // the library's first: bottom left
+      const double* corner =
+          detection.p[seen.size() - 1 - i];  // the library's first corner is bottom left
       seen[i] = {corner[0] - kPixelOrigin, corner[1] - kPixelOrigin};
     }
     const cv::Matx33d matrix(
@@ -139,7 +141,7 @@ class AprilTag : public Peer {
 
   ellipse::Camera camera_;
   Family family_;
-  Detector detector_;  // goes before the family that it borrows
+  Detector detector_;  // destroyed before the family that it borrows
   double tag_size_ = 0.0;
 };
 
@@ -149,8 +151,8 @@ bool has_apriltag() {
   return true;
 }
 
-// A black square, and on it the white cells in whole runs: between painted neighbours the blurred
-// edges would let the black through. Rows join cells sideways, columns upwards.
+// A black square with the white cells merged into runs. Between separate neighbours, the blurred
+// edges would show the black. Rows merge cells horizontally, columns vertically.
 ellipse::Sheet tag_sheet(const ellipse::Pad& pad) {
   const Family family(tag36h11_create());
   const Cells cells(*family, cell_size(*family, pad));

@@ -9,17 +9,17 @@
 
 namespace landing {
 
-/// Whether this build has the library apriltag. Where it has not, the functions below throw the
-/// std::runtime_error that says so.
+/// Whether this build includes the apriltag library. Without it, the functions below throw
+/// std::runtime_error.
 [[nodiscard]] bool has_apriltag();
 
-/// The tag painted inside a pad's ring: number 0 of the family tag36h11, as large as fits there
-/// with a white border one cell wide.
-/// @throws std::invalid_argument where the pad has no ring.
+/// The tag painted inside a pad's ring: number 0 of the family tag36h11, as large as fits with a
+/// white border of one cell.
+/// @throws std::invalid_argument if the pad has no ring.
 [[nodiscard]] ellipse::Sheet tag_sheet(const ellipse::Pad& pad);
 
-/// Locates that tag by the library's detector, at the full resolution of the picture; the
-/// position is that of a square with these corners.
+/// Locates that tag with the library's detector at full resolution. The position follows from a
+/// square with these corners.
 /// @param radius  Of the pad [m].
 [[nodiscard]] std::unique_ptr<Peer> make_apriltag(const ellipse::Camera& camera,
                                                   const ellipse::Pad& pad,

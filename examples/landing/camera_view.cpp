@@ -7,7 +7,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Matrix3d Rig::body_from_camera() const {
-  // Straight down: right is -y of the body, the picture's down is backwards, forward is down.
+  // Camera pointing down: its x is the body's -y, its y points backwards, its top forward.
   Matrix3d down;
   down << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
   return Eigen::AngleAxisd(-pitch_rad, Vector3d::UnitY()).toRotationMatrix() * down;

@@ -11,19 +11,20 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSeenInARow = 4;           // pictures until it is believed
-constexpr double kEnoughToBegin = 0.6;   // of its outline in view
-constexpr double kEnoughToTell = 0.1;    // of it, with which the picture tells how sure it is
-constexpr double kBlindError = 0.1;      // of a place that is told by the pattern inside alone [m]
-constexpr double kLost_s = 1.0;          // unseen while nothing hurries
-constexpr double kInSight_s = 2.0;       // since it was seen: better known than radio tells
-constexpr double kSpiralGrowth = 0.5;    // of the search's circles [m/s]
-constexpr double kSpiralSpeed = 1.5;     // along them [m/s]
-constexpr double kSweepRate = 0.5;       // of its height [rad/s]
+constexpr int kSeenInARow = 4;          // consecutive detections before the target is trusted
+constexpr double kEnoughToBegin = 0.6;  // minimum visible fraction of the outline to start with
+constexpr double kEnoughToTell =
+    0.1;                             // visible fraction above which the reported error is reliable
+constexpr double kBlindError = 0.1;  // position error if only the inner pattern is visible [m]
+constexpr double kLost_s = 1.0;      // without detection, in phases that can wait
+constexpr double kInSight_s = 2.0;   // since the last detection; more accurate than radio
+constexpr double kSpiralGrowth = 0.5;    // growth of the search spiral [m/s]
+constexpr double kSpiralSpeed = 1.5;     // speed along the spiral [m/s]
+constexpr double kSweepRate = 0.5;       // of the search height [rad/s]
 constexpr double kWidestSpiral = 3.0;    // [m]
 constexpr double kTouchDownSpeed = 0.8;  // [m/s]
-constexpr double kMaxDrift = 1.2;        // velocity beside the platform's that is safe low [m/s]
-constexpr double kMoves = 0.5;           // a platform that is faster has a heading [m/s]
+constexpr double kMaxDrift = 1.2;  // relative horizontal speed that is safe near the ground [m/s]
+constexpr double kMoves = 0.5;     // minimum speed for a defined heading [m/s]
 
 }  // namespace
 
@@ -31,10 +32,10 @@ struct Controller::Situation {
   double now_s = 0.0;
   Motion own;
   TargetFilter::State platform;
-  Vector2d off{0.0, 0.0};  // from the vehicle to the platform [m]
+  Vector2d off{0.0, 0.0};  // horizontal vector from vehicle to platform [m]
   double distance = 0.0;   // its length
-  double drift = 0.0;      // speed beside the platform [m/s]
-  double height = 0.0;     // above it [m]
+  double drift = 0.0;      // relative horizontal speed [m/s]
+  double height = 0.0;     // above the platform [m]
   double unseen_s = 0.0;
 };
 
@@ -61,8 +62,8 @@ void Controller::take_in(const Observation& seen) {
                  seen.time_s - last_seen_s_ < kInSight_s);
 }
 
-// While the target is searched, a part of an outline at the picture's border tells its place too
-// badly to begin with.
+// During the search, ignores a target cut by the picture's border: its position is too inaccurate
+// to start with.
 void Controller::look(const Observation& seen) {
   const bool is_glimpse = phase_ == Phase::kSearch && seen.visible_fraction < kEnoughToBegin;
   if (!seen.pad || is_glimpse) {
@@ -70,8 +71,8 @@ void Controller::look(const Observation& seen) {
     refused_in_a_row_ = 0;
     return;
   }
-  // What the picture cannot tell: an error of the attitude turns what was seen; and with nothing of
-  // the outline in view it may hold one line for another.
+  // Adds errors that the picture cannot show: an attitude error rotates the measurement, and
+  // without visible outline one line of the pattern can be mistaken for another.
   const double attitude = 0.01 + 0.01 * seen.pad->norm();
   const double blind = kBlindError * std::max(0.0, 1.0 - seen.visible_fraction / kEnoughToTell);
   const double error = std::hypot(attitude, blind, seen.error);
@@ -168,8 +169,8 @@ Command Controller::command(const Situation& now) const {
     const double turn = kSpiralSpeed / std::max(radius, 1.0) * since_s;
     goal += radius * Vector2d(std::cos(turn), std::sin(turn));
   }
-  // The platform's own velocity as it will be when the command has its effect, and towards it no
-  // faster than can be braked.
+  // The platform's velocity when the command takes effect, plus a correction that can still be
+  // braked.
   const double distance = goal.norm();
   Vector2d correction{0.0, 0.0};
   if (distance > 0.0) {
@@ -192,7 +193,7 @@ double Controller::climb_rate(const Situation& now) const {
   };
   switch (phase_) {
     case Phase::kSearch: {
-      // From far more is in view, from near it is larger.
+      // Flying higher enlarges the field of view; flying lower enlarges the target.
       const double turn = kSweepRate * (now.now_s - phase_since_s_);
       return towards(settings_.search_height + settings_.search_sweep * std::sin(turn));
     }
@@ -215,7 +216,7 @@ double Controller::climb_rate(const Situation& now) const {
   return 1.5;
 }
 
-// Along the platform's way, where it has one.
+// Aligns with the platform's direction of motion if it moves.
 double Controller::yaw_rate(const Situation& now) const {
   const Vector2d way = now.platform.velocity.head<2>();
   const bool turns = phase_ != Phase::kSearch && phase_ != Phase::kApproach;

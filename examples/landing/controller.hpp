@@ -9,75 +9,75 @@
 
 namespace landing {
 
-/// What the vehicle is about.
+/// Phase of the landing.
 enum class Phase {
-  kSearch,     ///< Circles, higher and lower, where the platform should be.
-  kApproach,   ///< Flies to above it.
-  kAlign,      ///< Takes on its velocity and its heading.
+  kSearch,     ///< Circles at varying height around the platform's expected position.
+  kApproach,   ///< Flies to a position above the platform.
+  kAlign,      ///< Matches its velocity and heading.
   kFollow,     ///< Stays above it until that is steady.
-  kDescend,    ///< Comes down, the slower the less it is above the middle.
-  kTouchDown,  ///< The last half metre, where nothing of the pad needs to be in view.
-  kClimb,      ///< Something was not safe: up, and again.
+  kDescend,    ///< Descends, more slowly when off centre.
+  kTouchDown,  ///< The last half metre; the pad need not be visible.
+  kClimb,      ///< Aborted as unsafe: climbs and tries again.
 };
 inline constexpr std::array kPhaseNames = {
     "search", "approach", "align", "follow", "descend", "touch down", "climb"};
 
-/// What it flies by. A value.
+/// Settings of the controller. Value type.
 struct ControllerSettings {
   double gain = 1.2;                  ///< Velocity per distance [1/s].
-  double most_correction = 5.0;       ///< Velocity beside the platform's own [m/s].
-  double braking = 2.0;               ///< Deceleration that it counts on [m/s^2].
-  double lead_s = 0.35;               ///< Of the command: the vehicle's own lag.
+  double most_correction = 5.0;       ///< Velocity relative to the platform [m/s].
+  double braking = 2.0;               ///< Assumed deceleration [m/s^2].
+  double lead_s = 0.35;               ///< Compensates the vehicle's velocity lag.
   double approach_height = 5.0;       ///< [m]
-  double search_height = 8.5;         ///< In the middle [m], and
-  double search_sweep = 2.5;          ///< so far up and down [m].
-  double touch_down_height = 0.55;    ///< Below it there is no waiting [m].
-  double safe_height = 4.0;           ///< Where a climb ends [m].
-  double radio_error = 1.8;           ///< Standard deviation of what the platform tells [m],
-  double radio_velocity_error = 0.4;  ///< and of its velocity [m/s].
-  double most_unseen_s = 0.6;         ///< That is safe while it comes down.
-  double most_unseen_low_s = 1.5;     ///< And below `blind_height`.
-  double blind_height = 1.0;          ///< From here on little of the pad is in view [m].
-  double last_height = 0.2;           ///< From here on down in any case [m].
-  double most_off_touching = 0.22;    ///< Distance from the middle that is safe there [m].
+  double search_height = 8.5;         ///< Mean height [m],
+  double search_sweep = 2.5;          ///< and amplitude [m].
+  double touch_down_height = 0.55;    ///< No hovering below this height [m].
+  double safe_height = 4.0;           ///< Height at which a climb ends [m].
+  double radio_error = 1.8;           ///< Standard deviation of the reported position [m],
+  double radio_velocity_error = 0.4;  ///< and velocity [m/s].
+  double most_unseen_s = 0.6;         ///< Maximum time without detection while descending,
+  double most_unseen_low_s = 1.5;     ///< and below `blind_height`.
+  double blind_height = 1.0;          ///< Below it the camera sees little of the pad [m].
+  double last_height = 0.2;           ///< Below it the vehicle always lands [m].
+  double most_off_touching = 0.22;    ///< Maximum distance from the centre at touchdown [m].
 };
 
-/// What the platform tells by radio.
+/// The platform's radio report.
 struct Radio {
   Eigen::Vector2d position;  ///< From the body's origin [m].
   Eigen::Vector2d velocity;  ///< [m/s]
 };
 
-/// What was told at a time, and what the vehicle believed then.
+/// A measurement and the vehicle's state estimate at that time.
 struct Observation {
   double time_s = 0.0;
-  Motion own;                          ///< Its autopilot's estimate.
-  std::optional<Eigen::Vector3d> pad;  ///< From the body's origin, in the world's axes [m].
-  double error = 0.0;                  ///< Standard deviation of that, as the picture tells [m].
-  double visible_fraction = 1.0;       ///< Share of the pad's outline that the picture shows.
+  Motion own;                          ///< The autopilot's estimate.
+  std::optional<Eigen::Vector3d> pad;  ///< Vector from the body's origin, in world axes [m].
+  double error = 0.0;             ///< Its standard deviation as estimated from the picture [m].
+  double visible_fraction = 1.0;  ///< Visible fraction of the pad's outline.
   std::optional<Radio> radio;
 };
 
-/// Lands by what the camera sees: velocity commands from where the pad is, beside an estimate of
-/// the platform's own velocity.
+/// Lands by velocity commands, computed from the observed pad position and an estimate of the
+/// platform's motion.
 class Controller {
  public:
-  /// @param platform  What is known of it before it is seen.
+  /// @param platform  Prior knowledge of the platform.
   Controller(const ControllerSettings& settings, const TargetFilter& platform);
 
-  /// The command at a time. @param seen  The picture that has just come, not before the last one.
+  /// The command at time now_s. @param seen  A new measurement, in order of time.
   Command update(double now_s, const Motion& own, const std::optional<Observation>& seen);
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Whether ellipsetrack follows something else: it had better search anew.
+  /// Whether ellipsetrack tracks something else and should search again.
   [[nodiscard]] bool is_deceived() const { return refused_in_a_row_ >= kMaxRefused; }
 
-  /// Times that something was not safe.
+  /// Number of aborted descents.
   [[nodiscard]] int climbs() const { return climbs_; }
 
  private:
-  struct Situation;  // what it decides by
+  struct Situation;  // input of the decisions
   static constexpr int kMaxRefused = 5;
 
   void take_in(const Observation& seen);

@@ -13,19 +13,19 @@
 
 namespace landing {
 
-/// What a method reports about one picture.
+/// A method's result for one picture.
 struct Look {
   bool has_target = false;
-  std::optional<Eigen::Vector3d> position;  ///< Of the pad's centre in the camera's frame [m].
+  std::optional<Eigen::Vector3d> position;  ///< Pad centre in the camera frame [m].
   double error = 0.0;                       ///< Standard deviation of the position [m].
-  double visible_fraction = 0.0;            ///< Share of the outline that the picture shows.
+  double visible_fraction = 0.0;            ///< Visible fraction of the outline.
   Sample sample;                            ///< The picture with its metadata.
 };
 
-/// Fills a picture.
+/// Renders a picture into an image.
 using Draw = std::function<void(const ellipse::MutableImage&)>;
 
-/// The size and the rate of the camera's pictures.
+/// Size and rate of the camera's pictures.
 struct PictureFormat {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -34,11 +34,12 @@ struct PictureFormat {
   /// Raw GStreamer caps, GRAY8.
   [[nodiscard]] std::string caps() const;
 
-  /// Draws a picture into a new buffer with the time of frame number `frame`. The caller owns it.
+  /// Draws a picture into a new buffer with the timestamp of frame number `frame`. The caller owns
+  /// it.
   [[nodiscard]] GstBuffer* draw(std::uint64_t frame, const Draw& draw) const;
 };
 
-/// Looks for the pad, picture by picture. Serves one thread.
+/// Locates the pad, picture by picture. Not thread-safe.
 class Eye {
  public:
   Eye() = default;
@@ -46,12 +47,12 @@ class Eye {
   Eye(const Eye&) = delete;
   Eye& operator=(const Eye&) = delete;
 
-  /// Has a picture drawn, and searches it.
-  /// @param gravity  Down in the camera's frame.
-  /// Throws std::runtime_error where a pipeline has failed.
+  /// Draws a picture and locates the pad in it.
+  /// @param gravity  Direction of gravity in the camera frame.
+  /// Throws std::runtime_error if a pipeline failed.
   [[nodiscard]] virtual Look look(const Eigen::Vector3d& gravity, const Draw& draw) = 0;
 
-  /// Drops everything learned from earlier pictures.
+  /// Discards everything learned from earlier pictures.
   virtual void forget() = 0;
 };
 

@@ -19,9 +19,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMaxStep_s = 0.005;
-constexpr double kGoodView = 0.3;  // share of the outline that is enough to be found
-// What the platform tells by radio, once a second, as from a receiver of satellites.
-constexpr double kRadioOffset = 1.5;    // that stays [m]
+constexpr double kGoodView = 0.3;  // visible fraction sufficient for detection
+// The platform's radio report, once a second, with the errors of a satellite receiver.
+constexpr double kRadioOffset = 1.5;    // constant bias [m]
 constexpr double kRadioNoise = 0.5;     // [m]
 constexpr double kVelocityError = 0.3;  // [m/s]
 
@@ -76,7 +76,7 @@ Start start_of(const Flight& flight) {
   return start;
 }
 
-// One landing under way.
+// A landing in progress.
 class Run {
  public:
   explicit Run(const Flight& flight)
@@ -143,7 +143,8 @@ class Run {
     outcome_.moments.push_back(std::move(moment));
   }
 
-  // Once a second. Both know where they are by satellites; dead reckoning drifts beside it.
+  // Once a second. Both receivers know their satellite position; the vehicle's dead reckoning
+  // drifts.
   std::optional<Radio> radio_at(std::uint64_t frame) {
     if (frame % static_cast<std::uint64_t>(flight_.rate) != 0) return std::nullopt;
     const Vector2d away = platform_.position() - vehicle_.truth().position.head<2>();
@@ -175,7 +176,7 @@ class Run {
     return seen;
   }
 
-  // Until the next picture, or until the feet are on the platform.
+  // Simulates until the next picture or touchdown.
   void move(const Command& command) {
     const int steps = static_cast<int>(std::ceil(1.0 / flight_.rate / kMaxStep_s));
     const double step_s = 1.0 / flight_.rate / steps;
@@ -207,7 +208,7 @@ class Run {
   Controller controller_;
   ellipse::Random radio_;
   ellipse::SceneRenderer renderer_;
-  std::optional<ellipse::SceneRenderer> bare_renderer_;  // where the pad is hidden
+  std::optional<ellipse::SceneRenderer> bare_renderer_;  // renders the scene without the pad
   std::unique_ptr<Eye> eye_;
   std::deque<Observation> under_way_;
   std::optional<double> hidden_from_s_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipse-landing: lands a simulated multirotor on a moving platform by what ellipsetrack, or a
-// peer, sees.
+// ellipse-landing: lands a simulated multirotor on a moving platform, guided by ellipsetrack or a
+// peer.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +41,7 @@ struct Options {
   std::string report;
 };
 
-// Every third on another course, every fourth in another light: a seed says which.
+// The seed also selects the course and the light.
 std::vector<Landing> planned(const Options& options) {
   const auto conditions = landing::condition_names();
   std::vector<Landing> landings;
@@ -63,7 +63,8 @@ std::vector<Landing> planned(const Options& options) {
   return landings;
 }
 
-// Each by itself, as many at once as there are processors: the order changes nothing.
+// Flies all landings in parallel, one per processor. They are independent, so the order has no
+// effect.
 void fly_all(std::vector<Landing>& landings, int jobs) {
   std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
@@ -96,7 +97,7 @@ void fly_all(std::vector<Landing>& landings, int jobs) {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Before hours of flying, not after them. Devices and pipes are opened when they are written.
+// Checks the outputs before hours of simulation. Devices and pipes are not opened.
 void check_can_be_written(const std::string& option, const fs::path& path, const fs::path& file) {
   std::error_code ignored;
   const bool is_new = !fs::exists(file, ignored);
@@ -110,7 +111,7 @@ void check_can_be_written(const std::string& option, const fs::path& path, const
 void check_outputs(const Options& options) {
   if (!options.video.empty()) check_can_be_written("--video", options.video, options.video);
   if (options.report.empty()) return;
-  std::error_code ignored;  // what cannot be written in a folder that is not there
+  std::error_code ignored;  // a missing folder is reported below
   fs::create_directories(options.report, ignored);
   check_can_be_written("--report", options.report, fs::path(options.report) / "report.md");
 }

@@ -16,11 +16,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kFiner = 3;        // than what is shown
-constexpr int kPlanWidth = 400;  // the height stands to its right [px]
+constexpr int kFiner = 3;        // supersampling factor
+constexpr int kPlanWidth = 400;  // the height scale is to its right [px]
 constexpr double kPxPerM = 20.0;
 constexpr double kGrid = 2.5;      // [m]
-constexpr double kHighest = 12.0;  // on the scale of heights [m]
+constexpr double kHighest = 12.0;  // top of the height scale [m]
 constexpr double kFarthest = 60.0;
 
 const cv::Scalar kPaper(247, 245, 240);
@@ -82,7 +82,7 @@ void Map::draw_ways() {
   }
 }
 
-// Where the corners of the picture lie on the ground; nothing where one of them shows the sky.
+// The camera's footprint on the ground; not drawn if a corner of the picture shows the sky.
 void Map::draw_footprint(const Moment& moment) {
   const Rig& rig = flight_.rig;
   const Eigen::Matrix3d ray = rig.camera.matrix().inverse();

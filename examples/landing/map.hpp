@@ -9,8 +9,8 @@
 
 namespace landing {
 
-/// Draws a landing from above, moment by moment: the platform in the middle, both ways so far, what
-/// the camera sees of the ground, and the height beside it.
+/// Draws a landing from above, step by step: the platform in the centre, both paths, the camera's
+/// footprint on the ground, and the height next to it.
 class Map {
  public:
   static constexpr int kWidth = 480;   ///< [px]
@@ -18,7 +18,7 @@ class Map {
 
   explicit Map(const Flight& flight) : flight_(flight) {}
 
-  /// The picture at the next moment, kWidth x kHeight, 8-bit RGB. Valid until the next call.
+  /// The next picture, kWidth x kHeight, 8-bit RGB. Valid until the next call.
   const cv::Mat& draw(const Moment& moment);
 
  private:
@@ -33,11 +33,11 @@ class Map {
   void write(const std::string& text, int x, int y, double size, const cv::Scalar& colour);
 
   const Flight& flight_;
-  Eigen::Vector2d middle_{0.0, 0.0};  // of the map, in the world
+  Eigen::Vector2d middle_{0.0, 0.0};  // centre of the map, in the world
   std::vector<Eigen::Vector2d> platform_way_;
   std::vector<Eigen::Vector2d> vehicle_way_;
   std::vector<bool> was_seen_;
-  cv::Mat canvas_;  // larger than what is shown, for smooth lines
+  cv::Mat canvas_;  // supersampled, for smooth lines
   cv::Mat shown_;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kShadowReach = 1000.0;  // half the length of a shadow, beyond the horizon [radii]
+constexpr double kShadowReach = 1000.0;  // half the length of a shadow; reaches the horizon [radii]
 
 std::string properties_of(const std::string& method, const Rig& rig) {
   const std::size_t plus = method.find('+');
@@ -31,7 +31,7 @@ std::string properties_of(const std::string& method, const Rig& rig) {
                           2.0 * rig.pad_radius);
 }
 
-// The shadow on a sheet: black that lets the rest of the light through.
+// A shadow on a sheet, as a translucent black shape.
 ellipse::Shape painted(const ellipse::Shadow& shadow) {
   const Vector2d normal(std::cos(shadow.direction_rad), std::sin(shadow.direction_rad));
   const Vector2d along = kShadowReach * Vector2d(-normal.y(), normal.x());
@@ -44,8 +44,8 @@ ellipse::Shape painted(const ellipse::Shadow& shadow) {
   return shape;
 }
 
-// The renderer shades the ground and the pad, and not the sheets on them: the shadows become shapes
-// above all of these.
+// The renderer shades ground and pad, but not sheets. Shadows are therefore added as shapes on top
+// of the sheets.
 void lay_marker(ellipse::Sheet marker, ellipse::Scene& scene) {
   scene.pad.pattern = ellipse::Pattern::kRing;
   for (const ellipse::Shadow& shadow : scene.light.shadows) {

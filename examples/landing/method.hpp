@@ -9,18 +9,18 @@
 
 namespace landing {
 
-// A method is "apriltag", "whycon", or detector and tracking of ellipsetrack: "arcs+edges".
+// A method is "apriltag", "whycon", or detector and tracking of ellipsetrack such as "arcs+edges".
 
-/// Throws std::invalid_argument where a method is none of these, std::runtime_error where it is not
-/// built in. What ellipsetrack has, only eye_of() knows.
+/// Throws std::invalid_argument if the method has another form, std::runtime_error if it is not
+/// part of this build. Names of ellipsetrack's detectors and modes are checked by eye_of() only.
 void check_method(const std::string& method);
 
-/// Lays the pad that a method can see on the ground: for apriltag and whycon their markers in place
-/// of the mark inside the ring; other methods take the scene's own.
+/// Puts the pad that the method requires on the ground: apriltag and whycon replace the mark inside
+/// the ring by their markers; other methods keep the scene's pad.
 void lay_pad(const std::string& method, ellipse::Scene& scene);
 
-/// @param pad  As lay_pad() has made it.
-/// Throws as check_method(), and std::runtime_error where ellipsetrack refuses the method.
+/// @param pad  From lay_pad().
+/// Throws as check_method(), and std::runtime_error if ellipsetrack rejects the method.
 [[nodiscard]] std::unique_ptr<Eye> eye_of(const std::string& method,
                                           const Rig& rig,
                                           const ellipse::Pad& pad,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Stands in for apriltag_pad.cpp where the library is missing.
+// Replaces apriltag_pad.cpp if the library is missing.
 #include <stdexcept>
 
 #include "examples/landing/apriltag_pad.hpp"

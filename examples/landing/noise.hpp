@@ -6,7 +6,8 @@
 
 namespace landing {
 
-/// Nearly normal with standard deviation 1: the same on every machine, as no logarithm is.
+/// Approximately normal with standard deviation 1. Uses no logarithm, whose result depends on the
+/// machine.
 [[nodiscard]] inline double normal(ellipse::Random& random) {
   double sum = -6.0;
   for (int i = 0; i < 12; ++i) sum += random.unit();

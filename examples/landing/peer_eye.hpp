@@ -10,20 +10,20 @@
 
 namespace landing {
 
-/// Standard deviation of an edge located to the nearest pixel [px]: a uniform error.
+/// Standard deviation of an edge rounded to whole pixels [px]: a uniform error.
 inline const double kPixelError_px = 1.0 / std::sqrt(12.0);
 
-/// Where a peer sees the pad.
+/// A peer's position of the pad.
 struct Sighting {
-  Eigen::Vector3d position;  ///< Of its centre in the camera's frame [m].
-  double half_size_px;       ///< Of the marker in the picture.
+  Eigen::Vector3d position;  ///< Pad centre in the camera frame [m].
+  double half_size_px;       ///< Half the marker's size in the picture.
 
-  /// Standard deviation of the position [m]: the distance is inversely proportional to the
-  /// marker's size, whose relative error is that of one edge.
+  /// Standard deviation of the position [m]. Distance is inversely proportional to the marker's
+  /// size, whose relative error is that of one edge.
   [[nodiscard]] double error() const { return position.norm() * kPixelError_px / half_size_px; }
 };
 
-/// Another way to locate a landing pad. Serves one thread.
+/// Another method to locate a landing pad. Not thread-safe.
 class Peer {
  public:
   Peer() = default;
@@ -31,16 +31,16 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// @param gravity  Down in the camera's frame.
-  /// nullopt where the marker is not found.
+  /// @param gravity  Direction of gravity in the camera frame.
+  /// @return nullopt if the marker is not found.
   [[nodiscard]] virtual std::optional<Sighting> find(const ellipse::ImageView& picture,
                                                      const Eigen::Vector3d& gravity) = 0;
 
-  /// Drops everything learned from earlier pictures.
+  /// Discards everything learned from earlier pictures.
   virtual void forget() {}
 };
 
-/// Looks by a peer, without a pipeline. A peer sees its marker whole or not at all.
+/// Runs a peer without a pipeline. A peer detects its marker completely or not at all.
 class PeerEye : public Eye {
  public:
   PeerEye(const PictureFormat& format, std::unique_ptr<Peer> peer);

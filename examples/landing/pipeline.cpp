@@ -9,8 +9,8 @@ namespace landing {
 namespace {
 
 constexpr GstClockTime kPatience = 60 * GST_SECOND;
-constexpr GstClockTime kPause = 2 * GST_MSECOND;     // between looks at a full queue
-constexpr GstClockTime kGlance = 100 * GST_MSECOND;  // waits for a picture between looks at the bus
+constexpr GstClockTime kPause = 2 * GST_MSECOND;     // between checks of a full queue
+constexpr GstClockTime kGlance = 100 * GST_MSECOND;  // wait for a picture between checks of the bus
 constexpr guint64 kQueued = 4;
 
 [[noreturn]] void raise(GError* error) {
@@ -45,7 +45,7 @@ void Pipeline::play() {
   if (gst_element_set_state(pipeline_, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) fail();
 }
 
-// An appsrc that blocks would do so for ever once an element behind it has failed.
+// A blocking appsrc would wait forever after an element downstream has failed.
 void Pipeline::push(const Element& source, GstBuffer* buffer) {
   BufferHolder held(buffer);
   GstAppSrc* queue = GST_APP_SRC(source.get());
@@ -57,7 +57,7 @@ void Pipeline::push(const Element& source, GstBuffer* buffer) {
   if (gst_app_src_push_buffer(queue, held.release()) != GST_FLOW_OK) fail();
 }
 
-// An appsink that waits would do so for ever once an element before it has failed.
+// A blocking appsink would wait forever after an element upstream has failed.
 Sample Pipeline::pull(const Element& sink) {
   for (GstClockTime waited = 0; waited <= kPatience; waited += kGlance) {
     Sample sample(gst_app_sink_try_pull_sample(GST_APP_SINK(sink.get()), kGlance));

@@ -17,34 +17,34 @@ struct SampleDeleter {
 };
 using Sample = std::unique_ptr<GstSample, SampleDeleter>;
 
-/// A pipeline written as for gst-launch-1.0. It stops with this object.
+/// A pipeline in gst-launch-1.0 syntax. Stopped by the destructor.
 class Pipeline {
  public:
-  /// Throws std::runtime_error where it cannot be made.
+  /// Throws std::runtime_error if the line is invalid or an element is missing.
   explicit Pipeline(const std::string& line);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
-  /// The element that the line gives this name.
+  /// The element with this name in the line.
   [[nodiscard]] Element element(const char* name) const;
 
-  /// Throws std::runtime_error where an element cannot start.
+  /// Throws std::runtime_error if an element cannot start.
   void play();
 
-  /// Hands a buffer to an appsrc as soon as few are queued there. Takes the buffer.
-  /// Throws the std::runtime_error of what has stopped the pipeline.
+  /// Pushes a buffer into an appsrc when its queue has space. Takes ownership of the buffer.
+  /// Throws std::runtime_error with the error that stopped the pipeline.
   void push(const Element& source, GstBuffer* buffer);
 
-  /// Waits for what an appsink is handed.
-  /// Throws the std::runtime_error of what has stopped the pipeline.
+  /// Blocks for the next sample of an appsink.
+  /// Throws std::runtime_error with the error that stopped the pipeline.
   [[nodiscard]] Sample pull(const Element& sink);
 
-  /// Waits for the end of the stream. Throws std::runtime_error where it ends otherwise.
+  /// Blocks until the end of the stream. Throws std::runtime_error on an error.
   void await_end();
 
  private:
-  /// Throws the std::runtime_error of what has stopped it.
+  /// Throws std::runtime_error with the error that stopped the pipeline.
   [[noreturn]] void fail();
   [[nodiscard]] bool has_ended(GstClockTime patience);
 

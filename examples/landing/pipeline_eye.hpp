@@ -6,11 +6,11 @@
 
 namespace landing {
 
-/// A pipeline appsrc ! ellipsetrack ! appsink that is stepped picture by picture.
+/// Runs appsrc ! ellipsetrack ! appsink, one picture at a time.
 class PipelineEye : public Eye {
  public:
-  /// @param properties  Of ellipsetrack, as gst-launch-1.0 writes them: camera and diameter too.
-  /// Throws std::runtime_error where there is no such element or property.
+  /// @param properties  For ellipsetrack in gst-launch-1.0 syntax, including camera and diameter.
+  /// Throws std::runtime_error if the element or a property does not exist.
   PipelineEye(const PictureFormat& format, const std::string& properties);
 
   [[nodiscard]] Look look(const Eigen::Vector3d& gravity, const Draw& draw) override;

@@ -4,20 +4,20 @@
 
 namespace landing {
 
-/// Where the platform drives.
+/// The platform's path.
 enum class Course { kStraight, kCircle, kFigureOfEight };
 
-/// Their names, in their order.
+/// The name of a course.
 [[nodiscard]] const char* name_of(Course course);
 
-/// A flat platform that drives over level ground at a constant speed, the pad on it.
+/// A flat platform with the pad, driving over level ground at constant speed.
 class Platform {
  public:
-  /// @param speed  [m/s]; 0 = it stands.
-  /// @param phase  Where on its course it begins, 0 to 1.
+  /// @param speed  [m/s]; 0 = stationary.
+  /// @param phase  Start position on the course, 0 to 1.
   Platform(Course course, double speed, double phase);
 
-  /// Drives on by a short time: a hundredth of a second at most.
+  /// Advances by at most 0.01 s.
   void step(double step_s);
 
   [[nodiscard]] const Eigen::Vector2d& position() const { return position_; }  ///< [m]
@@ -29,7 +29,7 @@ class Platform {
 
   Course course_;
   double speed_;
-  double place_;  // the course's own parameter
+  double place_;  // parameter of the course
   Eigen::Vector2d position_{0.0, 0.0};
   Eigen::Vector2d velocity_{0.0, 0.0};
   double heading_rad_ = 0.0;

@@ -61,7 +61,7 @@ void write_data(std::ostream& script, const std::string& name, const Write& writ
   script << "EOD\n";
 }
 
-// A rectangle for each phase, its name above.
+// One labelled rectangle per phase.
 void write_phases(std::ostream& script, const std::vector<Moment>& moments) {
   constexpr const char* kShades[] = {
       "#f4e3e3", "#e9eef8", "#e3f0ee", "#e6f2df", "#fdf3da", "#f6e0c6", "#f0d6e4"};

@@ -22,7 +22,7 @@ struct Group {
   std::vector<const Landing*> landings;
 };
 
-// By method and speed, in the order of their first landings.
+// Groups by method and speed, in order of their first landings.
 std::vector<Group> groups_of(const std::vector<Landing>& landings) {
   std::vector<Group> groups;
   for (const Landing& landing : landings) {
@@ -38,7 +38,7 @@ std::vector<Group> groups_of(const std::vector<Landing>& landings) {
 
 using Figure = std::function<double(const Outcome&)>;
 
-// Of those that touched down, from the smallest.
+// Values of the landings that touched down, in ascending order.
 std::vector<double> sorted(const Group& group, const Figure& figure) {
   std::vector<double> values;
   for (const Landing* landing : group.landings) {
@@ -48,7 +48,7 @@ std::vector<double> sorted(const Group& group, const Figure& figure) {
   return values;
 }
 
-// The smallest value that this share of them does not exceed.
+// The smallest value that this fraction of the values does not exceed.
 double quantile(const std::vector<double>& values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double place = std::ceil(share * static_cast<double>(values.size())) - 1.0;

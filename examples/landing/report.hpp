@@ -14,17 +14,17 @@ struct Landing {
   Outcome outcome;
 };
 
-/// The distance from the pad's centre within which a landing is right [m].
+/// Maximum distance from the pad's centre of a successful landing [m].
 inline constexpr double kMaxOff = 0.3;
 
-/// How the landings of each method at each speed ended.
+/// Outcomes of the landings by method and speed.
 [[nodiscard]] evaluate::Table outcome_table(const std::vector<Landing>& landings);
 
-/// The pictures without a target, by what the vehicle was about.
+/// Pictures without a target, by phase.
 [[nodiscard]] evaluate::Table unseen_table(const std::vector<Landing>& landings);
 
-/// Writes report.md, landings.csv and the plots touchdown.svg, errors.svg and flight.svg, each also
-/// as .png, into a folder. Throws std::runtime_error where that fails.
+/// Writes report.md, landings.csv and the plots touchdown.svg, errors.svg and flight.svg (each also
+/// as .png) to a folder. Throws std::runtime_error if that fails.
 void write_report(const std::vector<Landing>& landings,
                   const std::string& command,
                   const std::filesystem::path& folder);

@@ -10,12 +10,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kFade_s = 4.0;        // of an acceleration that is not seen any more
+constexpr double kFade_s = 4.0;        // time constant of an acceleration
 constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
 constexpr double kUprightJerk = 1e-5;  // the platform drives on level ground
-constexpr double kGate = 25.0;         // squared innovation by its variance
-constexpr double kHeightError = 0.5;   // of the platform below the vehicle [m]
-constexpr double kHeightDrift = 0.1;   // of dead reckoning, upwards and downwards [m/s]
+constexpr double kGate = 25.0;         // squared innovation / variance
+constexpr double kHeightError = 0.5;   // platform height, standard deviation [m]
+constexpr double kHeightDrift = 0.1;   // vertical dead reckoning, standard deviation [m/s]
 constexpr double kMaxSpeed = 6.0;      // of any platform [m/s]
 
 }  // namespace
@@ -41,13 +41,13 @@ TargetFilter::Axis TargetFilter::level_axis(double position,
           kLevelJerk};
 }
 
-// Its squared innovation by the variance that is expected of it.
+// Squared innovation divided by its expected variance.
 double TargetFilter::surprise(const Axis& axis, double position, double variance) {
   const double innovation = position - axis.mean[0];
   return innovation * innovation / (axis.covariance(0, 0) + variance);
 }
 
-// By a measured position (0) or velocity (1).
+// Kalman update with a measured position (part 0) or velocity (part 1).
 void TargetFilter::correct(Axis& axis, Eigen::Index part, double value, double variance) {
   const Vector3d gain = axis.covariance.col(part) / (axis.covariance(part, part) + variance);
   axis.mean += gain * (value - axis.mean[part]);
@@ -55,7 +55,7 @@ void TargetFilter::correct(Axis& axis, Eigen::Index part, double value, double v
   axis.covariance -= (gain * axis.covariance.row(part)).eval();
 }
 
-// White jerk on an acceleration that fades away.
+// Prediction: white jerk, and an exponentially decaying acceleration.
 TargetFilter::Axis TargetFilter::moved(const Axis& axis, double by_s) {
   const double t = by_s;
   const double kept = std::exp(-t / kFade_s);
@@ -114,7 +114,8 @@ void TargetFilter::hear(double time_s,
   }
 }
 
-// The ground does not climb; what was seen to drift may drift otherwise by now.
+// The platform stays on level ground, but the vertical drift may have changed since the last
+// detection.
 void TargetFilter::forget_climb() {
   Axis& upright = axes_[2];
   const double variance = std::max(upright.covariance(0, 0), kHeightError * kHeightError);

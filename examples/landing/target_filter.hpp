@@ -5,28 +5,29 @@
 
 namespace landing {
 
-/// Where the platform is and how it moves, in the world that the vehicle's dead reckoning knows:
-/// for each axis a Kalman filter of position, velocity and an acceleration that fades.
+/// Estimates the platform's motion in the vehicle's dead-reckoning frame: one Kalman filter per
+/// axis with position, velocity and a decaying acceleration.
 class TargetFilter {
  public:
-  /// @param position, velocity  A rough knowledge at a time, as by radio [m, m/s].
-  /// @param position_error, velocity_error  Its standard deviations, of the level axes.
+  /// @param position, velocity  Rough prior, for example by radio [m, m/s].
+  /// @param position_error, velocity_error  Standard deviations of the horizontal axes.
   TargetFilter(double time_s,
                const Eigen::Vector3d& position,
                const Eigen::Vector2d& velocity,
                double position_error,
                double velocity_error);
 
-  /// Takes in where the pad was seen at a time, not before the last one.
+  /// Updates with a detection, in order of time.
   /// @param error  Standard deviation of each coordinate [m].
-  /// @return false where this cannot be the target; then nothing was taken in.
+  /// @return false if it is rejected as an outlier; the state is then unchanged.
   bool see(double time_s, const Eigen::Vector3d& position, double error);
 
-  /// Takes in where the platform says that it is and how it moves, by radio. Where that cannot be,
-  /// what was seen was something else, and is forgotten.
-  /// @param is_in_sight  Then it is known better, and not corrected.
-  /// @param position_error, velocity_error  Standard deviations of the level coordinates; of the
-  ///                                        height nothing is told [m, m/s].
+  /// Updates with a radio report of position and velocity. If the report contradicts the state, the
+  /// state is reset, because the detections were of something else.
+  /// @param is_in_sight  The target was detected recently. The estimate is then more accurate than
+  /// radio and is not corrected.
+  /// @param position_error, velocity_error  Standard deviations of the horizontal coordinates [m,
+  /// m/s]. The report contains no height.
   void hear(double time_s,
             const Eigen::Vector2d& position,
             const Eigen::Vector2d& velocity,
@@ -34,7 +35,7 @@ class TargetFilter {
             double velocity_error,
             bool is_in_sight);
 
-  /// What it would be at a time, not before the last one [m, m/s].
+  /// The predicted state at a time not before the last update [m, m/s].
   struct State {
     Eigen::Vector3d position;
     Eigen::Vector3d velocity;
@@ -46,7 +47,7 @@ class TargetFilter {
   struct Axis {
     Eigen::Vector3d mean;  // position, velocity, acceleration
     Eigen::Matrix3d covariance;
-    double jerk;  // spectral density of what is not known of it [m^2/s^5]
+    double jerk;  // spectral density of the unmodelled jerk [m^2/s^5]
   };
 
   [[nodiscard]] static Axis level_axis(double position,

@@ -15,9 +15,9 @@ using Eigen::Vector3d;
 
 const Vector3d kUp = Vector3d::UnitZ();
 constexpr double kGravity = 9.81;
-constexpr double kFeelingLag_s = 0.5;   // until the autopilot knows a gust
-constexpr double kMinLift = 4.0;        // upward thrust [m/s^2]: it never turns over
-constexpr double kVerticalShare = 0.3;  // of the gusts that goes up and down
+constexpr double kFeelingLag_s = 0.5;   // delay until the autopilot detects a gust
+constexpr double kMinLift = 4.0;        // minimum upward thrust [m/s^2]; prevents a flip
+constexpr double kVerticalShare = 0.3;  // vertical fraction of the gusts
 
 Vector3d limited(const Vector3d& value, double most) {
   const double size = value.norm();
@@ -57,15 +57,15 @@ void Vehicle::step(const Command& command, double step_s) {
   believe(step_s);
 }
 
-// An Ornstein-Uhlenbeck process: its variance stays what it is at any step.
+// Ornstein-Uhlenbeck process; its variance does not depend on the step.
 void Vehicle::blow(double step_s) {
   const double kept = std::exp(-step_s / model_.gust_lag_s);
-  const double level = model_.gust / std::sqrt(2.0);  // along each of the two level axes
+  const double level = model_.gust / std::sqrt(2.0);  // per horizontal axis
   const Vector3d size(level, level, kVerticalShare * model_.gust);
   wind_ = kept * wind_ + std::sqrt(1.0 - kept * kept) * size.cwiseProduct(normal_vector(random_));
 }
 
-// Thrust acts along the body's own z: to push aside it must tilt.
+// Thrust acts along the body's z axis, so horizontal acceleration requires tilt.
 void Vehicle::tilt(const Vector3d& wanted_thrust, double step_s) {
   Vector3d wanted = wanted_thrust;
   wanted.z() = std::max(wanted.z(), kMinLift);

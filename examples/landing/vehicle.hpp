@@ -8,10 +8,10 @@
 
 namespace landing {
 
-// The world: x and y level, z up, the platform at z = 0; metres and seconds. A vehicle's body:
-// x forward, y left, z up (REP 103), its origin between its feet.
+// World: x and y horizontal, z up, the platform at z = 0; metres and seconds. Body: x forward, y
+// left, z up (REP 103), origin between the feet.
 
-/// What the autopilot is asked for.
+/// Command to the autopilot.
 struct Command {
   Eigen::Vector3d velocity{0.0, 0.0, 0.0};  ///< In the world [m/s].
   double yaw_rate = 0.0;                    ///< To the left [rad/s].
@@ -23,34 +23,34 @@ struct Motion {
   Eigen::Quaterniond world_from_body = Eigen::Quaterniond::Identity();
 };
 
-/// How a multirotor with its autopilot answers. A value.
+/// Dynamics of a multirotor with its autopilot. Value type.
 struct VehicleModel {
   double velocity_lag_s = 0.35;       ///< Of the velocity behind its command.
-  double thrust_lag_s = 0.12;         ///< Of the thrust, hence of the tilt, behind its own.
+  double thrust_lag_s = 0.12;         ///< Of the thrust, and thus the tilt.
   double yaw_lag_s = 0.3;             ///< Of the yaw rate.
-  double most_acceleration = 4.0;     ///< That the autopilot asks for [m/s^2].
-  double drag = 0.25;                 ///< Acceleration per speed through the air [1/s].
-  double gust = 3.0;                  ///< Root mean square of the level wind [m/s].
-  double gust_lag_s = 1.5;            ///< How long a gust lasts.
-  double velocity_error = 0.05;       ///< Of the autopilot's own velocity [m/s], constant.
-  double attitude_error_rad = 0.006;  ///< Of its attitude, about each axis, constant.
+  double most_acceleration = 4.0;     ///< Maximum that the autopilot requests [m/s^2].
+  double drag = 0.25;                 ///< Deceleration per airspeed [1/s].
+  double gust = 3.0;                  ///< Root mean square of the horizontal wind [m/s].
+  double gust_lag_s = 1.5;            ///< Correlation time of the wind.
+  double velocity_error = 0.05;       ///< Constant bias of the autopilot's velocity estimate [m/s].
+  double attitude_error_rad = 0.006;  ///< Constant bias of its attitude estimate, per axis.
 };
 
-/// A multirotor that flies by velocity commands, in gusts.
+/// A multirotor controlled by velocity commands, in gusty wind.
 class Vehicle {
  public:
-  /// @param seed  Of its wind, and of what it gets wrong of its motion.
+  /// @param seed  For the wind and the estimation errors.
   Vehicle(const VehicleModel& model,
           const Eigen::Vector3d& position,
           double yaw_rad,
           std::uint64_t seed);
 
-  /// Flies on by a short time: a hundredth of a second at most.
+  /// Advances by at most 0.01 s.
   void step(const Command& command, double step_s);
 
   [[nodiscard]] const Motion& truth() const { return truth_; }
 
-  /// What its autopilot believes: the position is dead reckoning, and drifts.
+  /// The autopilot's estimate. Its position is dead reckoning and drifts.
   [[nodiscard]] const Motion& estimate() const { return estimate_; }
 
  private:
@@ -63,10 +63,10 @@ class Vehicle {
   Motion truth_;
   Motion estimate_;
   Eigen::Vector3d wind_{0.0, 0.0, 0.0};
-  Eigen::Vector3d thrust_;                 // acceleration by it [m/s^2]
-  Eigen::Vector3d felt_{0.0, 0.0, 0.0};    // acceleration by gusts, as the autopilot feels it
+  Eigen::Vector3d thrust_;                 // acceleration by the rotors [m/s^2]
+  Eigen::Vector3d felt_{0.0, 0.0, 0.0};    // acceleration by gusts as estimated by the autopilot
   Eigen::Vector3d velocity_error_;         // [m/s]
-  Eigen::Quaterniond body_from_believed_;  // the error of its attitude
+  Eigen::Quaterniond body_from_believed_;  // attitude error
   double yaw_rad_;
   double yaw_rate_ = 0.0;
 };

@@ -37,7 +37,7 @@ std::string line_of(const ellipse::Camera& camera, int rate) {
       kViewWidth);
 }
 
-// Two pictures side by side into a file.
+// Writes two pictures side by side to a file.
 class Film {
  public:
   Film(const ellipse::Camera& camera, int rate, const std::string& file)

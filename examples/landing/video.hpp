@@ -6,9 +6,9 @@
 
 namespace landing {
 
-/// Flies a landing once more, and writes it as a Matroska file: what the camera sees with what was
-/// found in it, and a map beside it.
-/// Throws std::runtime_error where the file cannot be written.
+/// Repeats a flight and writes a Matroska video: the camera's picture with the detected target, and
+/// a map next to it.
+/// Throws std::runtime_error if the file cannot be written.
 void film(const Flight& flight, const std::string& file);
 
 }  // namespace landing

@@ -16,13 +16,13 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using ellipse::Ellipse;
 
-// A segment's edge is off the true one by half a pixel of sampling and as much of blur.
+// Edge error of a segment: half a pixel of sampling and the same of blur.
 constexpr double kEdge_px = 1.0;
-// Thresholds in turn: spaced by 16 levels, the least contrast that is found.
+// Number of thresholds to try; they are 16 levels apart, which is the minimum contrast.
 constexpr unsigned kThresholds = 16;
 constexpr double kLevels = 256.0;
 
-// 1/2, 1/4, 3/4, 1/8, ... for 1, 2, 3, 4, ...: each halves the largest gap left.
+// 1/2, 1/4, 3/4, 1/8, ... for 1, 2, 3, 4, ...: each value bisects the largest gap.
 double bisection(unsigned index) {
   double value = 0.0;
   for (double digit = 0.5; index != 0; index /= 2, digit /= 2.0) value += digit * (index % 2);
@@ -33,7 +33,7 @@ double bisection(unsigned index) {
 class Blob {
  public:
   void add(const Vector2d& pixel, double level) {
-    if (count_ == 0.0) origin_ = pixel;  // sums of small numbers lose no digits
+    if (count_ == 0.0) origin_ = pixel;  // relative coordinates preserve precision
     const Vector2d p = pixel - origin_;
     count_ += 1.0;
     sum_ += p;
@@ -54,8 +54,8 @@ class Blob {
     return *this;
   }
 
-  // The filled ellipse with these moments: its covariance is a quarter of its shape. A pixel is a
-  // square, with a variance of 1/12 of its own.
+  // The filled ellipse with these moments: its shape matrix is 4 times the covariance. Each pixel
+  // is a square, which adds a variance of 1/12.
   [[nodiscard]] std::optional<Ellipse> filled_ellipse() const {
     const Vector2d mean = sum_ / count_;
     const Matrix2d covariance =
@@ -75,32 +75,32 @@ double area_of(const Ellipse& e) {
   return std::numbers::pi * e.semi_major * e.semi_minor;
 }
 
-// Whether a segment fills its ellipse: the paper's test of circularity.
+// The paper's test of circularity: whether a segment fills its ellipse.
 bool is_filled(const Blob& blob, const Ellipse& e) {
   return std::abs(blob.area() - area_of(e)) <= kEdge_px * perimeter_px(e);
 }
 
-// Radius of the pad's next inner edge over that of its painted circle.
+// Ratio of the radii of the pad's next inner edge and its painted circle.
 double proportion(const ellipse::Pad& pad) {
   const auto inner = ellipse::inner_radius(pad);
   if (!inner) throw std::invalid_argument("whycon: the pad has no ring");
   return *inner;
 }
 
-// As wide as the square of 8 cells in one of 10 that is inscribed in the ring's inner circle.
+// Half the width of 8 cells, where a square of 10 cells is inscribed in the ring's inner circle.
 double roundel_radius(const ellipse::Pad& pad) {
   return 0.5 * 0.8 * std::numbers::sqrt2 * proportion(pad);
 }
 
 }  // namespace
 
-// The picture in black and white, each in connected segments.
+// The thresholded picture as connected black and white segments.
 struct WhyCon::Segments {
   Segments(const ellipse::ImageView& picture, double threshold)
       : grey(picture.height,
              picture.width,
              CV_8UC1,
-             const_cast<std::uint8_t*>(picture.data),  // cv::Mat has no view that is read only
+             const_cast<std::uint8_t*>(picture.data),  // cv::Mat has no read-only view
              static_cast<std::size_t>(picture.stride)) {
     const cv::Mat is_black = grey < threshold;
     blacks = cv::connectedComponentsWithStats(is_black, black, black_boxes, black_middles, 4);
@@ -121,7 +121,7 @@ struct WhyCon::Segments {
   }
 
   cv::Mat grey;
-  cv::Mat black;  // labels, 0 elsewhere
+  cv::Mat black;  // labels; 0 = other colour
   cv::Mat white;
   cv::Mat black_boxes;
   cv::Mat black_middles;
@@ -134,8 +134,8 @@ struct WhyCon::Ring {
   Blob black;
   Blob white;
   Blob both;
-  Ellipse outer;  // of both
-  Ellipse inner;  // of the white one
+  Ellipse outer;  // of both segments
+  Ellipse inner;  // of the white segment
 };
 
 WhyCon::WhyCon(const ellipse::Camera& camera, double inner_ratio, double radius)
@@ -179,10 +179,10 @@ std::optional<Ellipse> WhyCon::find_ring(const ellipse::ImageView& picture) {
   return compensated(*best);
 }
 
-// The black segment and the white one in its middle, where they make a ring.
+// Combines a black segment and the white one at its centre if they form a ring.
 std::optional<WhyCon::Ring> WhyCon::ring_of(const Segments& segments, int black) const {
   const cv::Rect box = Segments::box(segments.black_boxes, black);
-  // A ring thinner than its edges' errors has no proportion.
+  // A ring thinner than its edge errors has no defined proportion.
   const double smallest = 2.0 * 2.0 * kEdge_px / (1.0 - inner_ratio_);
   const bool is_cut = box.x == 0 || box.y == 0 || box.br().x == segments.grey.cols ||
                       box.br().y == segments.grey.rows;
@@ -224,16 +224,17 @@ bool WhyCon::is_ring(const Ring& ring) const {
   const double share = inner_ratio_ * inner_ratio_;
   const double area_error = kEdge_px * (perimeter_px(inner) + share * perimeter_px(outer));
   if (std::abs(ring.white.area() - share * ring.both.area()) > area_error) return false;
-  // A tilted circle's picture is off its centre's by radius^2 sin(tilt) / focal length, to first
-  // order: the two ellipses of concentric circles are so far apart.
+  // The centre of a tilted circle's image is displaced from the image of its centre by radius^2
+  // sin(tilt) / focal length, to first order. The ellipses of concentric circles are displaced from
+  // each other accordingly.
   const double flatness = outer.semi_minor / outer.semi_major;
   const double perspective = (1.0 - share) * outer.semi_major * outer.semi_major / camera_.fx *
                              std::sqrt(1.0 - flatness * flatness);
   return (outer.center() - inner.center()).norm() <= kEdge_px + perspective;
 }
 
-// Where the threshold is not half way between black and white, the black segment grows or shrinks
-// by as much on both sides: the known proportion tells the true outer edge.
+// If the threshold is not midway between black and white, the black segment grows or shrinks
+// equally on both sides. The known proportion then gives the true outer edge.
 Ellipse WhyCon::compensated(const Ring& ring) const {
   Ellipse e = ring.outer;
   const double share = 1.0 + inner_ratio_;

@@ -13,15 +13,15 @@
 namespace landing {
 
 /// Locates a black ring with a white disc inside by the method of [Krajnik2014], written from the
-/// paper: a threshold that adapts from picture to picture, connected segments, a black and a white
-/// one that are concentric and in the ring's proportion, the ellipse of their second moments, and
-/// the position from the known diameter.
+/// paper: an adaptive threshold, connected segments, a concentric pair of a black and a white one
+/// in the ring's proportion, the ellipse of their second moments, and the position from the known
+/// diameter.
 ///
-/// The paper searches from the last position on to save time; here all of the picture is
-/// segmented. Its two tilts are told apart by gravity.
+/// Deviations: the paper searches from the last position to save time; here the whole picture is
+/// segmented. Gravity resolves the ambiguity between the two tilts.
 class WhyCon : public Peer {
  public:
-  /// @param inner_ratio  Radius of the white disc over that of the ring. Above 0, below 1.
+  /// @param inner_ratio  Radius of the white disc / radius of the ring. Above 0, below 1.
   /// @param radius       Of the ring [m].
   WhyCon(const ellipse::Camera& camera, double inner_ratio, double radius);
 
@@ -47,12 +47,12 @@ class WhyCon : public Peer {
   ellipse::Camera camera_;
   double inner_ratio_;
   double radius_;
-  std::optional<double> last_threshold_;  // of the last picture with a ring
-  unsigned failures_ = 1;                 // pictures without one since then
+  std::optional<double> last_threshold_;  // of the last picture with a detected ring
+  unsigned failures_ = 1;                 // pictures since then
 };
 
 /// The marker painted inside a pad's ring: a smaller ring of the same proportion, as wide as the
-/// tag of tag36h11 that fits there. Throws std::invalid_argument where the pad has no ring.
+/// tag of tag36h11 that fits there. Throws std::invalid_argument if the pad has no ring.
 [[nodiscard]] ellipse::Sheet roundel_sheet(const ellipse::Pad& pad);
 
 /// Locates that marker. @param radius  Of the pad [m].
