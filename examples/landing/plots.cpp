@@ -151,7 +151,7 @@ void plot_errors(const std::vector<Landing>& landings, const std::filesystem::pa
   }
   script << "set xrange [0:0.6]\nset yrange [0:1.02]\nset key bottom right\n"
             "set xlabel \"distance from the centre at touchdown [m]\"\n"
-            "set ylabel \"share of landings within\"\n"
+            "set ylabel \"fraction of landings within\"\n"
          << format(
                 "set arrow from %g,0 to %g,1.02 nohead dt 2 lc rgb \"#999999\"\n", kMaxOff, kMaxOff)
          << "plot ";

@@ -145,14 +145,14 @@ Table outcome_table(const std::vector<Landing>& landings) {
                           std::to_string(all - static_cast<long>(off.size()))});
   }
   table.note =
-      "Off and drift: distance from the pad's centre, and level speed beside it, at touchdown. "
-      "Climbs: aborted descents.";
+      "Off and drift: distance from the pad's centre and horizontal speed relative to it, at "
+      "touchdown. Climbs: aborted descents.";
   return table;
 }
 
 Table unseen_table(const std::vector<Landing>& landings) {
   Table table;
-  table.title = "Pictures without a target [%], and of them with a third of the pad in view";
+  table.title = "Pictures without a target, and those of them with a third of the pad in view [%]";
   table.header = {"method, platform"};
   for (const char* phase : kPhaseNames) table.header.emplace_back(phase);
   for (const Group& group : groups_of(landings)) {
@@ -185,8 +185,8 @@ void write_report(const std::vector<Landing>& landings,
   out << "# Landings\n\n`" << command << "`\n";
   write_table(out, outcome_table(landings));
   write_table(out, unseen_table(landings));
-  out << "\n## Where they touched down\n\n![](touchdown.svg)\n\n![](errors.svg)\n"
-      << "\n## The first of them\n\n![](flight.svg)\n";
+  out << "\n## Touchdown positions\n\n![](touchdown.svg)\n\n![](errors.svg)\n"
+      << "\n## First landing\n\n![](flight.svg)\n";
   if (!out.flush()) {
     throw std::runtime_error((folder / "report.md").string() + ": cannot be written");
   }
