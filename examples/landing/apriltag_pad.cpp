@@ -133,10 +133,11 @@ class AprilTag : public Peer {
     const cv::Matx33d matrix(
         camera_.fx, 0.0, camera_.cx, 0.0, camera_.fy, camera_.cy, 0.0, 0.0, 1.0);
     cv::Vec3d turn;
-    cv::Vec3d place;
+    cv::Vec3d translation;
     cv::solvePnP(
-        corners, seen, matrix, cv::noArray(), turn, place, false, cv::SOLVEPNP_IPPE_SQUARE);
-    return {Vector3d(place[0], place[1], place[2]), half * camera_.fx / place[2]};
+        corners, seen, matrix, cv::noArray(), turn, translation, false, cv::SOLVEPNP_IPPE_SQUARE);
+    return {Vector3d(translation[0], translation[1], translation[2]),
+            half * camera_.fx / translation[2]};
   }
 
   ellipse::Camera camera_;

@@ -16,7 +16,7 @@ Matrix3d Rig::body_from_camera() const {
 ellipse::View view_of(const Rig& rig, const Motion& vehicle, const Platform& platform) {
   const Matrix3d world_from_body = vehicle.world_from_body.toRotationMatrix();
   const Matrix3d camera_from_world = (world_from_body * rig.body_from_camera()).transpose();
-  const Vector3d camera = vehicle.position + world_from_body * rig.place;
+  const Vector3d camera = vehicle.position + world_from_body * rig.position;
   const Vector3d pad(platform.position().x(), platform.position().y(), 0.0);
   const Eigen::AngleAxisd world_from_pad(platform.heading_rad(), Vector3d::UnitZ());
   const Vector3d camera_on_pad = (world_from_pad.inverse() * (camera - pad)) / rig.pad_radius;
@@ -38,7 +38,7 @@ Vector3d gravity_of(const Rig& rig, const Motion& vehicle) {
 }
 
 Vector3d pad_from_body(const Rig& rig, const Motion& vehicle, const Vector3d& pad_in_camera) {
-  return vehicle.world_from_body * (rig.body_from_camera() * pad_in_camera + rig.place);
+  return vehicle.world_from_body * (rig.body_from_camera() * pad_in_camera + rig.position);
 }
 
 }  // namespace landing

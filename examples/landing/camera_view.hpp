@@ -13,9 +13,9 @@ namespace landing {
 /// The camera on the vehicle and the size of the pad. Value type.
 struct Rig {
   ellipse::Camera camera = ellipse::Camera::with_hfov(1.4, 640, 360);
-  Eigen::Vector3d place{0.0, 0.0, 0.12};  ///< Position on the body [m].
-  double pitch_rad = 0.0;                 ///< From straight down towards forward.
-  double pad_radius = 0.75;               ///< [m]
+  Eigen::Vector3d position{0.0, 0.0, 0.12};  ///< Position on the body [m].
+  double pitch_rad = 0.0;                    ///< From straight down towards forward.
+  double pad_radius = 0.75;                  ///< [m]
 
   /// Rotation from optical axes (x right, y down, z forward) to body axes. The picture's top is
   /// forward.

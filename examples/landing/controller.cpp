@@ -11,20 +11,20 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSeenInARow = 4;          // consecutive detections before the target is trusted
-constexpr double kEnoughToBegin = 0.6;  // minimum visible fraction of the outline to start with
-constexpr double kEnoughToTell =
+constexpr int kMinConsecutive = 4;          // consecutive detections before the target is trusted
+constexpr double kMinVisibleToStart = 0.6;  // minimum visible fraction of the outline to start with
+constexpr double kMinVisibleToMeasure =
     0.1;                             // visible fraction above which the reported error is reliable
 constexpr double kBlindError = 0.1;  // position error if only the inner pattern is visible [m]
 constexpr double kLost_s = 1.0;      // without detection, in phases that can wait
-constexpr double kInSight_s = 2.0;   // since the last detection; more accurate than radio
-constexpr double kSpiralGrowth = 0.5;    // growth of the search spiral [m/s]
-constexpr double kSpiralSpeed = 1.5;     // speed along the spiral [m/s]
-constexpr double kSweepRate = 0.5;       // of the search height [rad/s]
-constexpr double kWidestSpiral = 3.0;    // [m]
-constexpr double kTouchDownSpeed = 0.8;  // [m/s]
+constexpr double kRecent_s = 2.0;    // since the last detection; more accurate than radio
+constexpr double kSpiralGrowth = 0.5;     // growth of the search spiral [m/s]
+constexpr double kSpiralSpeed = 1.5;      // speed along the spiral [m/s]
+constexpr double kSweepRate = 0.5;        // of the search height [rad/s]
+constexpr double kMaxSpiralRadius = 3.0;  // [m]
+constexpr double kTouchDownSpeed = 0.8;   // [m/s]
 constexpr double kMaxDrift = 1.2;  // relative horizontal speed that is safe near the ground [m/s]
-constexpr double kMoves = 0.5;     // minimum speed for a defined heading [m/s]
+constexpr double kMinSpeedForHeading = 0.5;  // minimum speed for a defined heading [m/s]
 
 }  // namespace
 
@@ -45,13 +45,13 @@ Controller::Controller(const ControllerSettings& settings, const TargetFilter& p
 Command Controller::update(double now_s,
                            const Motion& own,
                            const std::optional<Observation>& seen) {
-  if (seen) take_in(*seen);
+  if (seen) observe(*seen);
   const Situation now = judge(now_s, own);
   decide(now);
   return command(now);
 }
 
-void Controller::take_in(const Observation& seen) {
+void Controller::observe(const Observation& seen) {
   look(seen);
   if (!seen.radio) return;
   platform_.hear(seen.time_s,
@@ -59,30 +59,31 @@ void Controller::take_in(const Observation& seen) {
                  seen.radio->velocity,
                  settings_.radio_error,
                  settings_.radio_velocity_error,
-                 seen.time_s - last_seen_s_ < kInSight_s);
+                 seen.time_s - last_seen_s_ < kRecent_s);
 }
 
 // During the search, ignores a target cut by the picture's border: its position is too inaccurate
 // to start with.
 void Controller::look(const Observation& seen) {
-  const bool is_glimpse = phase_ == Phase::kSearch && seen.visible_fraction < kEnoughToBegin;
-  if (!seen.pad || is_glimpse) {
-    seen_in_a_row_ = 0;
-    refused_in_a_row_ = 0;
+  const bool is_partial = phase_ == Phase::kSearch && seen.visible_fraction < kMinVisibleToStart;
+  if (!seen.pad || is_partial) {
+    consecutive_ = 0;
+    rejected_ = 0;
     return;
   }
   // Adds errors that the picture cannot show: an attitude error rotates the measurement, and
   // without visible outline one line of the pattern can be mistaken for another.
   const double attitude = 0.01 + 0.01 * seen.pad->norm();
-  const double blind = kBlindError * std::max(0.0, 1.0 - seen.visible_fraction / kEnoughToTell);
+  const double blind =
+      kBlindError * std::max(0.0, 1.0 - seen.visible_fraction / kMinVisibleToMeasure);
   const double error = std::hypot(attitude, blind, seen.error);
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
-    seen_in_a_row_ = 0;
-    refused_in_a_row_ = refused_in_a_row_ % kMaxRefused + 1;
+    consecutive_ = 0;
+    rejected_ = rejected_ % kMaxRejected + 1;
     return;
   }
-  refused_in_a_row_ = 0;
-  ++seen_in_a_row_;
+  rejected_ = 0;
+  ++consecutive_;
   last_seen_s_ = seen.time_s;
 }
 
@@ -117,7 +118,7 @@ void Controller::decide(const Situation& now) {
 
   switch (phase_) {
     case Phase::kSearch:
-      if (seen_in_a_row_ >= kSeenInARow) begin(Phase::kApproach, now.now_s);
+      if (consecutive_ >= kMinConsecutive) begin(Phase::kApproach, now.now_s);
       break;
     case Phase::kApproach:
       if (now.distance < 0.8 + 0.1 * now.height) begin(Phase::kAlign, now.now_s);
@@ -130,7 +131,7 @@ void Controller::decide(const Situation& now) {
       break;
     case Phase::kDescend:
       if (now.height < settings_.touch_down_height &&
-          now.distance < 0.6 * settings_.most_off_touching) {
+          now.distance < 0.6 * settings_.max_off_touching) {
         begin(Phase::kTouchDown, now.now_s);
       }
       break;
@@ -147,10 +148,10 @@ void Controller::decide(const Situation& now) {
 bool Controller::is_unsafe(const Situation& now) const {
   if (now.height < settings_.last_height) return false;
   const double allowed_s =
-      now.height < settings_.blind_height ? settings_.most_unseen_low_s : settings_.most_unseen_s;
+      now.height < settings_.blind_height ? settings_.max_unseen_low_s : settings_.max_unseen_s;
   if (now.unseen_s > allowed_s) return true;
   if (phase_ == Phase::kTouchDown) {
-    return now.distance > settings_.most_off_touching || now.drift > kMaxDrift;
+    return now.distance > settings_.max_off_touching || now.drift > kMaxDrift;
   }
   return now.distance > 0.6 + 0.4 * now.height || (now.height < 1.5 && now.drift > kMaxDrift);
 }
@@ -165,7 +166,7 @@ Command Controller::command(const Situation& now) const {
   Vector2d goal = now.off;
   if (phase_ == Phase::kSearch) {
     const double since_s = now.now_s - phase_since_s_;
-    const double radius = std::min(kSpiralGrowth * since_s, kWidestSpiral);
+    const double radius = std::min(kSpiralGrowth * since_s, kMaxSpiralRadius);
     const double turn = kSpiralSpeed / std::max(radius, 1.0) * since_s;
     goal += radius * Vector2d(std::cos(turn), std::sin(turn));
   }
@@ -176,7 +177,7 @@ Command Controller::command(const Situation& now) const {
   if (distance > 0.0) {
     const double speed = std::min({settings_.gain * distance,
                                    std::sqrt(2.0 * settings_.braking * distance),
-                                   settings_.most_correction});
+                                   settings_.max_correction});
     correction = speed / distance * goal;
   }
   const Vector2d ahead =
@@ -220,7 +221,7 @@ double Controller::climb_rate(const Situation& now) const {
 double Controller::yaw_rate(const Situation& now) const {
   const Vector2d way = now.platform.velocity.head<2>();
   const bool turns = phase_ != Phase::kSearch && phase_ != Phase::kApproach;
-  if (!turns || way.norm() < kMoves) return 0.0;
+  if (!turns || way.norm() < kMinSpeedForHeading) return 0.0;
   const Vector3d forward = now.own.world_from_body * Vector3d::UnitX();
   const double off = std::remainder(
       std::atan2(way.y(), way.x()) - std::atan2(forward.y(), forward.x()), 2.0 * std::numbers::pi);

@@ -25,7 +25,7 @@ inline constexpr std::array kPhaseNames = {
 /// Settings of the controller. Value type.
 struct ControllerSettings {
   double gain = 1.2;                  ///< Velocity per distance [1/s].
-  double most_correction = 5.0;       ///< Velocity relative to the platform [m/s].
+  double max_correction = 5.0;        ///< Velocity relative to the platform [m/s].
   double braking = 2.0;               ///< Assumed deceleration [m/s^2].
   double lead_s = 0.35;               ///< Compensates the vehicle's velocity lag.
   double approach_height = 5.0;       ///< [m]
@@ -35,11 +35,11 @@ struct ControllerSettings {
   double safe_height = 4.0;           ///< Height at which a climb ends [m].
   double radio_error = 1.8;           ///< Standard deviation of the reported position [m],
   double radio_velocity_error = 0.4;  ///< and velocity [m/s].
-  double most_unseen_s = 0.6;         ///< Maximum time without detection while descending,
-  double most_unseen_low_s = 1.5;     ///< and below `blind_height`.
+  double max_unseen_s = 0.6;          ///< Maximum time without detection while descending,
+  double max_unseen_low_s = 1.5;      ///< and below `blind_height`.
   double blind_height = 1.0;          ///< Below it the camera sees little of the pad [m].
   double last_height = 0.2;           ///< Below it the vehicle always lands [m].
-  double most_off_touching = 0.22;    ///< Maximum distance from the centre at touchdown [m].
+  double max_off_touching = 0.22;     ///< Maximum distance from the centre at touchdown [m].
 };
 
 /// The platform's radio report.
@@ -71,16 +71,16 @@ class Controller {
   [[nodiscard]] Phase phase() const { return phase_; }
 
   /// Whether ellipsetrack tracks something else and should search again.
-  [[nodiscard]] bool is_deceived() const { return refused_in_a_row_ >= kMaxRefused; }
+  [[nodiscard]] bool is_off_target() const { return rejected_ >= kMaxRejected; }
 
   /// Number of aborted descents.
   [[nodiscard]] int climbs() const { return climbs_; }
 
  private:
   struct Situation;  // input of the decisions
-  static constexpr int kMaxRefused = 5;
+  static constexpr int kMaxRejected = 5;
 
-  void take_in(const Observation& seen);
+  void observe(const Observation& seen);
   void look(const Observation& seen);
   [[nodiscard]] Situation judge(double now_s, const Motion& own) const;
   void decide(const Situation& now);
@@ -97,8 +97,8 @@ class Controller {
   double phase_since_s_ = 0.0;
   double steady_since_s_ = 0.0;
   double last_seen_s_ = -1e9;
-  int seen_in_a_row_ = 0;
-  int refused_in_a_row_ = 0;
+  int consecutive_ = 0;
+  int rejected_ = 0;
   int climbs_ = 0;
 };
 

@@ -102,7 +102,7 @@ class Run {
       const double now_s = static_cast<double>(frame) / flight_.rate;
       take_picture(now_s, watcher);
       const Command command = controller_.update(now_s, vehicle_.estimate(), arrived_observation());
-      if (controller_.is_deceived()) eye_->forget();
+      if (controller_.is_off_target()) eye_->forget();
       move(command);
     }
     outcome_.climbs = controller_.climbs();

@@ -61,9 +61,9 @@ struct Outcome {
   std::array<int, kPhaseNames.size()> missed{};  ///< and those with 30 % of the outline visible.
   std::vector<Moment> moments;                   ///< One per picture.
 
-  /// @param most_off  [m]
-  [[nodiscard]] bool is_within(double most_off) const {
-    return has_touched_down && off.norm() <= most_off;
+  /// @param max_off  [m]
+  [[nodiscard]] bool is_within(double max_off) const {
+    return has_touched_down && off.norm() <= max_off;
   }
 };
 

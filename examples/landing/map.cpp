@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 constexpr int kFiner = 3;        // supersampling factor
 constexpr int kPlanWidth = 400;  // the height scale is to its right [px]
 constexpr double kPxPerM = 20.0;
-constexpr double kGrid = 2.5;      // [m]
-constexpr double kHighest = 12.0;  // top of the height scale [m]
+constexpr double kGrid = 2.5;        // [m]
+constexpr double kMaxHeight = 12.0;  // top of the height scale [m]
 constexpr double kFarthest = 60.0;
 
 const cv::Scalar kPaper(247, 245, 240);
@@ -53,8 +53,8 @@ const cv::Mat& Map::draw(const Moment& moment) {
   return shown_;
 }
 
-cv::Point Map::at(const Vector2d& place) const {
-  const Vector2d px = kFiner * kPxPerM * (place - middle_);
+cv::Point Map::at(const Vector2d& point) const {
+  const Vector2d px = kFiner * kPxPerM * (point - middle_);
   return {static_cast<int>(std::lround(0.5 * kFiner * kPlanWidth + px.x())),
           static_cast<int>(std::lround(0.5 * kFiner * kHeight - px.y()))};
 }
@@ -86,7 +86,7 @@ void Map::draw_ways() {
 void Map::draw_footprint(const Moment& moment) {
   const Rig& rig = flight_.rig;
   const Eigen::Matrix3d ray = rig.camera.matrix().inverse();
-  const Vector3d from = moment.vehicle.position + moment.vehicle.world_from_body * rig.place;
+  const Vector3d from = moment.vehicle.position + moment.vehicle.world_from_body * rig.position;
   std::vector<cv::Point> corners;
   const double right = rig.camera.width - 0.5;
   const double bottom = rig.camera.height - 0.5;
@@ -141,11 +141,11 @@ void Map::draw_height(const Moment& moment) {
                 kPaper,
                 cv::FILLED);
   const auto y_of = [&](double height) {
-    const double share = std::clamp(height / kHighest, 0.0, 1.0);
+    const double share = std::clamp(height / kMaxHeight, 0.0, 1.0);
     return static_cast<int>(std::lround(bottom + share * (top - bottom)));
   };
   cv::line(canvas_, {x, bottom}, {x, top}, kFaint, 3);
-  for (int height = 0; height <= static_cast<int>(kHighest); height += 2) {
+  for (int height = 0; height <= static_cast<int>(kMaxHeight); height += 2) {
     cv::line(canvas_, {x, y_of(height)}, {x + 15, y_of(height)}, kFaint, 3);
     write(std::to_string(height), x / kFiner + 9, y_of(height) / kFiner + 4, 0.35, kFaint);
   }

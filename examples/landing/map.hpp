@@ -22,7 +22,7 @@ class Map {
   const cv::Mat& draw(const Moment& moment);
 
  private:
-  [[nodiscard]] cv::Point at(const Eigen::Vector2d& place) const;
+  [[nodiscard]] cv::Point at(const Eigen::Vector2d& point) const;
   void draw_grid();
   void draw_ways();
   void draw_footprint(const Moment& moment);

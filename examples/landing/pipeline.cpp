@@ -8,9 +8,10 @@
 namespace landing {
 namespace {
 
-constexpr GstClockTime kPatience = 60 * GST_SECOND;
-constexpr GstClockTime kPause = 2 * GST_MSECOND;     // between checks of a full queue
-constexpr GstClockTime kGlance = 100 * GST_MSECOND;  // wait for a picture between checks of the bus
+constexpr GstClockTime kTimeout = 60 * GST_SECOND;
+constexpr GstClockTime kQueuePoll = 2 * GST_MSECOND;  // between checks of a full queue
+constexpr GstClockTime kBusPoll =
+    100 * GST_MSECOND;  // wait for a picture between checks of the bus
 constexpr guint64 kQueued = 4;
 
 [[noreturn]] void raise(GError* error) {
@@ -50,17 +51,17 @@ void Pipeline::push(const Element& source, GstBuffer* buffer) {
   BufferHolder held(buffer);
   GstAppSrc* queue = GST_APP_SRC(source.get());
   for (GstClockTime waited = 0; gst_app_src_get_current_level_buffers(queue) >= kQueued;
-       waited += kPause) {
-    if (has_ended(kPause)) throw std::runtime_error("the pipeline has ended");
-    if (waited > kPatience) throw std::runtime_error("the pipeline has stalled");
+       waited += kQueuePoll) {
+    if (has_ended(kQueuePoll)) throw std::runtime_error("the pipeline has ended");
+    if (waited > kTimeout) throw std::runtime_error("the pipeline has stalled");
   }
   if (gst_app_src_push_buffer(queue, held.release()) != GST_FLOW_OK) fail();
 }
 
 // A blocking appsink would wait forever after an element upstream has failed.
 Sample Pipeline::pull(const Element& sink) {
-  for (GstClockTime waited = 0; waited <= kPatience; waited += kGlance) {
-    Sample sample(gst_app_sink_try_pull_sample(GST_APP_SINK(sink.get()), kGlance));
+  for (GstClockTime waited = 0; waited <= kTimeout; waited += kBusPoll) {
+    Sample sample(gst_app_sink_try_pull_sample(GST_APP_SINK(sink.get()), kBusPoll));
     if (sample) return sample;
     if (has_ended(0)) throw std::runtime_error("the pipeline has ended");
   }
@@ -68,7 +69,7 @@ Sample Pipeline::pull(const Element& sink) {
 }
 
 void Pipeline::await_end() {
-  if (!has_ended(kPatience))
+  if (!has_ended(kTimeout))
     throw std::runtime_error("the pipeline does not reach the end of the stream");
 }
 

@@ -21,17 +21,17 @@ const char* name_of(Course course) {
 }
 
 Platform::Platform(Course course, double speed, double phase)
-    : course_(course), speed_(speed), place_(2.0 * std::numbers::pi * phase) {
+    : course_(course), speed_(speed), parameter_(2.0 * std::numbers::pi * phase) {
   step(0.0);
 }
 
 // Derivative of the position by the course's parameter. The figure of eight is Gerono's lemniscate.
-Vector2d Platform::slope(double place) const {
+Vector2d Platform::slope(double parameter) const {
   switch (course_) {
     case Course::kCircle:
-      return kCircleRadius * Vector2d(-std::sin(place), std::cos(place));
+      return kCircleRadius * Vector2d(-std::sin(parameter), std::cos(parameter));
     case Course::kFigureOfEight:
-      return kEightReach * Vector2d(std::cos(place), std::cos(2.0 * place));
+      return kEightReach * Vector2d(std::cos(parameter), std::cos(2.0 * parameter));
     case Course::kStraight:
       break;
   }
@@ -39,12 +39,12 @@ Vector2d Platform::slope(double place) const {
 }
 
 void Platform::step(double step_s) {
-  const double half = place_ + 0.5 * step_s * speed_ / slope(place_).norm();
+  const double half = parameter_ + 0.5 * step_s * speed_ / slope(parameter_).norm();
   const Vector2d along = slope(half);
   const double share = step_s * speed_ / along.norm();
   position_ += share * along;
-  place_ += share;
-  const Vector2d ahead = slope(place_);
+  parameter_ += share;
+  const Vector2d ahead = slope(parameter_);
   velocity_ = speed_ * ahead.normalized();
   heading_rad_ = std::atan2(ahead.y(), ahead.x());
 }

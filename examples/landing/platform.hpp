@@ -25,11 +25,11 @@ class Platform {
   [[nodiscard]] double heading_rad() const { return heading_rad_; }            ///< From x to y.
 
  private:
-  [[nodiscard]] Eigen::Vector2d slope(double place) const;
+  [[nodiscard]] Eigen::Vector2d slope(double parameter) const;
 
   Course course_;
   double speed_;
-  double place_;  // parameter of the course
+  double parameter_;  // parameter of the course
   Eigen::Vector2d position_{0.0, 0.0};
   Eigen::Vector2d velocity_{0.0, 0.0};
   double heading_rad_ = 0.0;

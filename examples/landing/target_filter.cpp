@@ -42,7 +42,7 @@ TargetFilter::Axis TargetFilter::level_axis(double position,
 }
 
 // Squared innovation divided by its expected variance.
-double TargetFilter::surprise(const Axis& axis, double position, double variance) {
+double TargetFilter::normalized_innovation(const Axis& axis, double position, double variance) {
   const double innovation = position - axis.mean[0];
   return innovation * innovation / (axis.covariance(0, 0) + variance);
 }
@@ -85,7 +85,8 @@ bool TargetFilter::see(double time_s, const Vector3d& position, double error) {
   const double variance = error * error;
   double off = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    off = std::max(off, surprise(axes_[static_cast<std::size_t>(i)], position[i], variance));
+    off = std::max(
+        off, normalized_innovation(axes_[static_cast<std::size_t>(i)], position[i], variance));
   }
   if (off > kGate) return false;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -99,15 +100,15 @@ void TargetFilter::hear(double time_s,
                         const Eigen::Vector2d& velocity,
                         double position_error,
                         double velocity_error,
-                        bool is_in_sight) {
+                        bool is_recently_seen) {
   move_to(time_s);
-  if (!is_in_sight) forget_climb();
+  if (!is_recently_seen) forget_climb();
   const double variance = position_error * position_error;
   for (Eigen::Index i = 0; i < 2; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (surprise(axis, position[i], variance) > kGate) {
+    if (normalized_innovation(axis, position[i], variance) > kGate) {
       axis = level_axis(position[i], velocity[i], position_error, velocity_error);
-    } else if (!is_in_sight) {
+    } else if (!is_recently_seen) {
       correct(axis, 0, position[i], variance);
       correct(axis, 1, velocity[i], velocity_error * velocity_error);
     }

@@ -24,8 +24,8 @@ class TargetFilter {
 
   /// Updates with a radio report of position and velocity. If the report contradicts the state, the
   /// state is reset, because the detections were of something else.
-  /// @param is_in_sight  The target was detected recently. The estimate is then more accurate than
-  /// radio and is not corrected.
+  /// @param is_recently_seen  The target was detected recently. The estimate is then more accurate
+  /// than radio and is not corrected.
   /// @param position_error, velocity_error  Standard deviations of the horizontal coordinates [m,
   /// m/s]. The report contains no height.
   void hear(double time_s,
@@ -33,7 +33,7 @@ class TargetFilter {
             const Eigen::Vector2d& velocity,
             double position_error,
             double velocity_error,
-            bool is_in_sight);
+            bool is_recently_seen);
 
   /// The predicted state at a time not before the last update [m, m/s].
   struct State {
@@ -54,7 +54,9 @@ class TargetFilter {
                                        double velocity,
                                        double position_error,
                                        double velocity_error);
-  [[nodiscard]] static double surprise(const Axis& axis, double position, double variance);
+  [[nodiscard]] static double normalized_innovation(const Axis& axis,
+                                                    double position,
+                                                    double variance);
   static void correct(Axis& axis, Eigen::Index part, double value, double variance);
   void move_to(double time_s);
   void forget_climb();

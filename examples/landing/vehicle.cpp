@@ -45,7 +45,7 @@ Vehicle::Vehicle(const VehicleModel& model,
 void Vehicle::step(const Command& command, double step_s) {
   blow(step_s);
   const Vector3d off = command.velocity - estimate_.velocity;
-  const Vector3d wanted = limited(off / model_.velocity_lag_s, model_.most_acceleration);
+  const Vector3d wanted = limited(off / model_.velocity_lag_s, model_.max_acceleration);
   felt_ += (model_.drag * wind_ - felt_) * std::min(1.0, step_s / kFeelingLag_s);
   tilt(wanted - felt_ + model_.drag * estimate_.velocity + kGravity * kUp, step_s);
   yaw_rate_ += (command.yaw_rate - yaw_rate_) * std::min(1.0, step_s / model_.yaw_lag_s);

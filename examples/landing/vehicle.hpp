@@ -28,7 +28,7 @@ struct VehicleModel {
   double velocity_lag_s = 0.35;       ///< Of the velocity behind its command.
   double thrust_lag_s = 0.12;         ///< Of the thrust, and thus the tilt.
   double yaw_lag_s = 0.3;             ///< Of the yaw rate.
-  double most_acceleration = 4.0;     ///< Maximum that the autopilot requests [m/s^2].
+  double max_acceleration = 4.0;      ///< Maximum that the autopilot requests [m/s^2].
   double drag = 0.25;                 ///< Deceleration per airspeed [1/s].
   double gust = 3.0;                  ///< Root mean square of the horizontal wind [m/s].
   double gust_lag_s = 1.5;            ///< Correlation time of the wind.

@@ -109,7 +109,7 @@ TEST(CameraView, PutsThePadWhereTheVehicleSeesIt) {
   ASSERT_TRUE(seen);
   EXPECT_LT(seen->cy, rig.camera.cy);
   EXPECT_GT(seen->cx, rig.camera.cx);
-  const double height = vehicle.position.z() + rig.place.z();
+  const double height = vehicle.position.z() + rig.position.z();
   EXPECT_NEAR(seen->cx, rig.camera.cx + rig.camera.fx * 0.5 / height, 1e-6);
   EXPECT_NEAR(seen->semi_major, rig.camera.fx * rig.pad_radius / height, 1e-6);
 }
