@@ -155,33 +155,33 @@ Scene distractors(std::uint64_t seed) {
 }
 
 constexpr std::array kCatalog = {
-    NamedScene{"approach", "Down from 20 radii to 2.6 and up again, 10 s each", approach},
-    NamedScene{"oblique", "60 degrees from the vertical, over a road", oblique},
-    NamedScene{"dusk", "The approach with a seventh of the light", dusk},
-    NamedScene{"glare", "Sun on the pad, shadows across it, light from one side", glare},
-    NamedScene{"occluded", "Swinging bars and a leg before the pad", occluded},
-    NamedScene{"dash", "To and fro at 40 px a frame, with the blur of the motion", dash},
-    NamedScene{"touchdown", "Down until the pad is larger than the picture", touchdown},
-    NamedScene{"reenter", "The pad leaves the picture and comes back", reenter},
-    NamedScene{"thin", "A ring as thin as 0.055 radii", thin},
-    NamedScene{"disc", "A bright disc without a plate", disc},
-    NamedScene{"bullseye", "Bright rings in each other on a dark plate", bullseye},
-    NamedScene{"crumpled", "A pad whose edge leaves the ellipse by 2 % of the radius", crumpled},
-    NamedScene{"noise", "Noise of 14 grey levels, then JPEG of quality 45", noise},
-    NamedScene{"negative", "No pad: squares, flowers, rounded rectangles, arcs", negative},
-    NamedScene{"orbit", "Around a ring with an H, at 45 degrees", orbit},
-    NamedScene{"shake", "Hovering, trembling at 7 to 11 Hz", shake},
-    NamedScene{"hover", "Hovering over a ring among clutter", hover},
-    NamedScene{"distractors", "The approach over discs and lesser rings", distractors},
+    NamedScene{"approach", "Descent from 20 to 2.6 pad radii and climb, 10 s each", approach},
+    NamedScene{"oblique", "View at 60 degrees from the vertical, over a road", oblique},
+    NamedScene{"dusk", "Approach at one seventh of the light", dusk},
+    NamedScene{"glare", "Glare on the pad, shadows and uneven light", glare},
+    NamedScene{"occluded", "Swinging bars and a landing leg in front of the pad", occluded},
+    NamedScene{"dash", "Lateral motion of 40 px per frame with motion blur", dash},
+    NamedScene{"touchdown", "Descent until the pad is larger than the picture", touchdown},
+    NamedScene{"reenter", "The pad leaves the picture and returns", reenter},
+    NamedScene{"thin", "Thin ring of 0.055 pad radii", thin},
+    NamedScene{"disc", "Bright disc without a plate", disc},
+    NamedScene{"bullseye", "Concentric bright rings on a dark plate", bullseye},
+    NamedScene{"crumpled", "Edge deviates from the ellipse by 2 % of the radius", crumpled},
+    NamedScene{"noise", "Noise of 14 grey levels and JPEG at quality 45", noise},
+    NamedScene{"negative", "No pad; squares, flowers, rounded rectangles and arcs", negative},
+    NamedScene{"orbit", "Orbit around a ring with an H, at 45 degrees", orbit},
+    NamedScene{"shake", "Hover with vibration at 7 to 11 Hz", shake},
+    NamedScene{"hover", "Hover over a ring among clutter", hover},
+    NamedScene{"distractors", "Approach over discs and smaller rings", distractors},
 };
 
 void barrel(Scene& scene) {
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
 }
 
-// The pad appears half as large as through a lens of 58 degrees, so distances are halved and it
-// fills the view at the end of a descent. Sideways motion doubles to leave the wider view; kReenter
-// keeps its distance, so that the whole pad stays in front of the camera.
+// The pad appears half as large as through a lens of 58 degrees. Distances are therefore halved, so
+// that it fills the picture at the end of a descent. Lateral motion is doubled to leave the wider
+// field of view; kReenter keeps its distance, so that the whole pad stays in front of the camera.
 void fisheye(Scene& scene) {
   scene.lens = Distortion{LensModel::kFisheye, {}};
   scene.hfov_rad = 2.0 / 3.0 * std::numbers::pi;
@@ -192,8 +192,8 @@ void fisheye(Scene& scene) {
 }
 
 constexpr std::array kLenses = {
-    NamedLens{"barrel", "Brown-Conrady, k1 = -0.22, the scene's field of view", barrel},
-    NamedLens{"fisheye", "Equidistant, 120 degrees, flown twice as near", fisheye},
+    NamedLens{"barrel", "Brown-Conrady, k1 = -0.22, with the scene's field of view", barrel},
+    NamedLens{"fisheye", "Equidistant, 120 degrees, at half the distance", fisheye},
 };
 
 constexpr std::array kPatternNicks = {"ring-x", "ring", "disc", "ring-h", "bullseye", "none"};
