@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The core alone, without GStreamer: which ellipses does a picture show, and which is the target?
+// Uses the core library without GStreamer: detects the ellipses in a picture and selects the
+// target.
 //   ./01_detect_image picture.jpg
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>

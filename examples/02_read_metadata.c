@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the target in a pad probe, as an application does that steers by it.
+ * Reads the target's metadata in a pad probe, as a control application would.
  *   ./02_read_metadata
  */
 #include <gst/ellipse/gstellipsemeta.h>

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Prints the ellipses of each frame, read in a pad probe, until the stream ends or Ctrl-C.
+"""Prints the ellipses of each frame from a pad probe, until the stream ends or Ctrl-C.
 
   ./03_probe.py                            a rendered landing
-  ./03_probe.py "v4l2src ! videoconvert"   a camera, or any source as gst-launch-1.0 writes it
+  ./03_probe.py "v4l2src ! videoconvert"   a camera, or any source in gst-launch-1.0 syntax
 
-`meson devenv -C build` opens a shell in which it finds the plugin and GstEllipse.
+To use an uninstalled build, run it in `meson devenv -C build`.
 """
 import signal
 import sys
@@ -17,14 +17,14 @@ try:
     gi.require_version("Gst", "1.0")
     gi.require_version("GstEllipse", "1.0")
 except ImportError as error:
-    sys.exit(f"{error}: install python3-gi, and start this with /usr/bin/python3")
+    sys.exit(f"{error}: install python3-gi and run this with /usr/bin/python3")
 except ValueError as error:
     sys.exit(f"{error}: is it installed, or GI_TYPELIB_PATH set?")
 from gi.repository import GLib, Gst, GstEllipse  # noqa: E402
 
 
 def on_buffer(_pad, info, frames):
-    # An ellipse belongs to its buffer: take its numbers here, or keep ellipse.to_structure().
+    # An ellipse is valid only with its buffer: read its fields here, or keep ellipse.to_structure().
     frame = next(frames)
     ellipses = GstEllipse.buffer_list_ellipse_meta(info.get_buffer())
     for ellipse in ellipses:
@@ -43,7 +43,7 @@ def on_buffer(_pad, info, frames):
 
 
 def run(pipeline):
-    """Plays a pipeline to its end; returns what went wrong, or None."""
+    """Runs a pipeline until it ends; returns the error message, or None."""
     loop = GLib.MainLoop()
     failures = []
 
@@ -65,7 +65,7 @@ def run(pipeline):
 
 def main():
     Gst.init(None)
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends with its reader: ./03_probe.py | head
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # exit silently in ./03_probe.py | head
     if not Gst.ElementFactory.find("ellipsetrack"):
         sys.exit("there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?")
     source = sys.argv[1] if len(sys.argv) > 1 else "ellipsetestsrc num-buffers=60"

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Plots the target's centre while the stream runs, until the window is closed or Ctrl-C.
+"""Plots the target's centre live, until the window is closed or Ctrl-C.
 
   ./04_live_plot.py                            a rendered landing
-  ./04_live_plot.py "v4l2src ! videoconvert"   a camera, or any source as gst-launch-1.0 writes it
-  ./04_live_plot.py --save centre.png          no window: as fast as it goes, the picture at the end
+  ./04_live_plot.py "v4l2src ! videoconvert"   a camera, or any source in gst-launch-1.0 syntax
+  ./04_live_plot.py --save centre.png          no window; runs at full speed and saves the final plot
 
-`meson devenv -C build` opens a shell in which it finds the plugin and GstEllipse.
+To use an uninstalled build, run it in `meson devenv -C build`.
 """
 import argparse
 import math
@@ -21,7 +21,7 @@ try:
     gi.require_version("Gst", "1.0")
     gi.require_version("GstEllipse", "1.0")
 except ImportError as error:
-    sys.exit(f"{error}: install python3-gi, and start this with /usr/bin/python3")
+    sys.exit(f"{error}: install python3-gi and run this with /usr/bin/python3")
 except ValueError as error:
     sys.exit(f"{error}: is it installed, or GI_TYPELIB_PATH set?")
 from gi.repository import GLib, Gst, GstEllipse  # noqa: E402
@@ -31,7 +31,7 @@ try:
 except ImportError as error:
     sys.exit(f"{error}: install python3-matplotlib")
 
-MOST_FRAMES = 1800  # a minute at 30 frames a second; older ones leave the plot
+MOST_FRAMES = 1800  # one minute at 30 Hz; older frames are dropped
 REDRAW_S = 0.05
 TRUTH, TARGET = GstEllipse.EllipseRole.TRUTH, GstEllipse.EllipseRole.TARGET
 STYLES = {
@@ -41,7 +41,7 @@ STYLES = {
 
 
 class Trail:
-    """The frames so far: time [s] and the centres [px] by role. The streaming thread adds to it."""
+    """Time [s] and centres [px] by role of recent frames. Filled by the streaming thread."""
 
     def __init__(self):
         self.frames = deque(maxlen=MOST_FRAMES)
@@ -59,15 +59,15 @@ class Trail:
         return Gst.PadProbeReturn.OK
 
     def summary(self):
-        """How often the target was found and, where the truth is known, how well."""
+        """Counts frames with a target and, if the truth is known, the maximum centre error."""
         found = sum(TARGET in centres for _, centres in self.frames)
         errors = [math.dist(*c.values()) for _, c in self.frames if len(c) == len(STYLES)]
-        off = f", centre off by {max(errors):.2f} px at most" if errors else ""
+        off = f", maximum centre error {max(errors):.2f} px" if errors else ""
         return f"{len(self.frames)} frames, target in {found}{off}"
 
 
 class Plot:
-    """The centre's path in the picture, and its x and y over time."""
+    """Plots the centre's path in the picture, and its x and y over time."""
 
     def __init__(self):
         self.figure, axes = pyplot.subplot_mosaic(
@@ -108,7 +108,7 @@ class Plot:
 
 
 def play(pipeline, plot, trail, has_window):
-    """Runs until the stream ends, or its window is closed; returns what went wrong, or None."""
+    """Runs until the stream ends or the window is closed; returns the error message, or None."""
     interrupted = threading.Event()
     signal.signal(signal.SIGINT, lambda *_: interrupted.set())
     if has_window:
@@ -148,7 +148,7 @@ def main():
 
     trail, plot = Trail(), Plot()
     if not options.save and pyplot.get_backend().lower() == "agg":
-        sys.exit("there is no screen to plot on: plot into a file with --save")
+        sys.exit("no display available: save the plot to a file with --save")
     pad = pipeline.get_by_name("track").get_static_pad("src")
     pad.add_probe(Gst.PadProbeType.BUFFER, trail.on_buffer)
     failure = play(pipeline, plot, trail, has_window=not options.save)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prints the ellipses of each frame, read in a pad probe, until the stream ends or Ctrl-C: what
- * 03_probe.py does, in C.
+ * Prints the ellipses of each frame from a pad probe, until the stream ends or Ctrl-C. The C
+ * version of 03_probe.py.
  *   ./05_probe                            a rendered landing
- *   ./05_probe "v4l2src ! videoconvert"   a camera, or any source as gst-launch-1.0 writes it
+ *   ./05_probe "v4l2src ! videoconvert"   a camera, or any source in gst-launch-1.0 syntax
  */
 #include <glib-unix.h>
 #include <gst/ellipse/gstellipsemeta.h>
@@ -65,7 +65,7 @@ static gboolean on_interrupt(gpointer loop) {
   return G_SOURCE_CONTINUE;
 }
 
-/* Plays a pipeline to its end, and returns the program's status. */
+/* Runs a pipeline until it ends. Returns the exit status. */
 static int run(GstElement* pipeline) {
   Program program = {.loop = g_main_loop_new(NULL, FALSE), .status = 0};
   GstBus* bus = gst_element_get_bus(pipeline);

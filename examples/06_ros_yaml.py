@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Turns the JSON lines of ellipsejson into messages of ROS, without ROS.
+"""Converts the JSON lines of ellipsejson to ROS messages in YAML. Does not require ROS.
 
 gst-launch-1.0 -q ... ! ellipsetrack hfov=1.012 target-diameter=1.5 ! ellipsejson ! fdsink |
   ./06_ros_yaml.py [FRAME_ID]
 
-Writes one YAML document per frame in which the target was seen, of the form of
-geometry_msgs/PoseWithCovarianceStamped: `rostopic pub` and `ros2 topic pub` take them. The pose's z
-axis is the target's normal. How the target is turned about it is not known: x lies as near to the
-camera's x as it can, and that variance is a large one.
+Writes one YAML document per frame with a visible target, in the format of
+geometry_msgs/PoseWithCovarianceStamped for `rostopic pub` and `ros2 topic pub`. The pose's z axis is
+the target's normal. The rotation about it is unknown: x is as close to the camera's x as possible,
+and the variance is large.
 """
 import json
 import math
 import sys
 
 UNKNOWN = 1e6  # variance [rad^2]
-TILT_VARIANCE = 0.01  # of the normal [rad^2]
+TILT_VARIANCE = 0.01  # variance of the normal [rad^2]
 
 
 def quaternion_to(normal):
-    """The shortest turn that takes z to the normal, as x, y, z, w."""
+    """The smallest rotation from z to the normal, as x, y, z, w."""
     x, y, z = normal["x"], normal["y"], normal["z"]
     if z < -0.999999:
         return 1.0, 0.0, 0.0, 0.0
@@ -28,7 +28,7 @@ def quaternion_to(normal):
 
 
 def covariance_of(target):
-    """6 x 6 by rows: x, y, z, turns about x, y, z."""
+    """6 x 6, row-major: x, y, z, rotation about x, y, z."""
     xx, xy, xz, yy, yz, zz = target["position_covariance"]
     rows = [[0.0] * 6 for _ in range(6)]
     rows[0][:3] = xx, xy, xz

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds gst-ellipse, if need be, and runs it:
+# Builds gst-ellipse if necessary and runs ellipse-demo:
 #   ./examples/demo.sh                  a rendered landing
 #   ./examples/demo.sh video.mp4        a file
 #   ./examples/demo.sh frame%04d.jpg    pictures

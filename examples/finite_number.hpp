@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-/// A check of an option that takes a number: CLI::Range and CLI::PositiveNumber let "nan" pass,
-/// which is not below any limit, and the latter "inf".
+/// Rejects options that are not finite numbers. CLI::Range and CLI::PositiveNumber accept "nan",
+/// because it is not below any limit; the latter also accepts "inf".
 inline CLI::Validator finite_number() {
   return CLI::Validator(
       [](const std::string& text) {

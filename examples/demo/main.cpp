@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipse-demo: runs the tracker over a test scene, a file, pictures, a camera or a URI, and writes
-// the annotated video, the NDJSON and a contact sheet.
+// ellipse-demo: runs the tracker on a test scene, a file, pictures, a camera or a URI, and writes
+// the annotated video, the JSON lines and a contact sheet.
 #include <gst/app/app.h>
 #include <gst/gst.h>
 #include <gst/video/video.h>
@@ -33,7 +33,7 @@ constexpr int kThumbnailWidth = 480;
 struct Options {
   std::string input;
   std::string output = "out";
-  int frames = 0;  // 0 = all that there are; a camera and the test scene have no end
+  int frames = 0;  // 0 = all; kCameraFrames for a camera, 600 for the test scene
 };
 
 std::string quoted(const std::string& text) {
@@ -42,7 +42,7 @@ std::string quoted(const std::string& text) {
   return quoted_text.str();
 }
 
-// The number of the first picture of a printf pattern such as frame%04d.jpg.
+// The smallest index for which a picture of a printf pattern such as frame%04d.jpg exists.
 int first_index(const std::string& pattern) {
   constexpr int kMaxTried = 100'000;
   for (int i = 0; i < kMaxTried; ++i) {
@@ -54,7 +54,7 @@ int first_index(const std::string& pattern) {
   throw std::runtime_error("no such picture");
 }
 
-// A pattern with exactly one number in it, so that it is safe to print with.
+// Whether the input contains exactly one integer conversion, so that it is a safe printf format.
 bool is_picture_pattern(const std::string& input) {
   const std::size_t percent = input.find('%');
   if (percent == std::string::npos || input.find('%', percent + 1) != std::string::npos) {
@@ -73,8 +73,8 @@ std::string picture_source(const std::string& pattern) {
          (is_png ? "pngdec" : "jpegdec");
 }
 
-// (ANY), because libav's decoders offer separate fields too: a feature that plain video/x-raw
-// leaves out, and a decoder is taken only where all that it offers is wanted.
+// (ANY) is required because libav's decoders also offer interlaced fields as a caps feature, and
+// uridecodebin uses a decoder only if the caps cover everything it offers.
 std::string uri_source(const std::string& uri) {
   return "uridecodebin uri=" + quoted(uri) + " caps=\"video/x-raw(ANY)\" expose-all-streams=false";
 }
@@ -103,7 +103,7 @@ std::string source_for(const Options& options) {
   return source;
 }
 
-// Some dozen frames, evenly spread over a stream whose length is not known beforehand.
+// About a dozen evenly spaced frames of a stream of unknown length.
 class ContactSheet {
  public:
   void add(const cv::Mat& frame) {
@@ -226,7 +226,7 @@ class Demo {
   }
 
  private:
-  // Lets so many frames into the tracker as were asked for, and ends the stream behind them.
+  // Passes the requested number of frames to the tracker, then ends the stream.
   void limit_frames() {
     GstElement* track = gst_bin_get_by_name(GST_BIN(pipeline_), "track");
     GstPad* pad = gst_element_get_static_pad(track, "sink");
@@ -237,30 +237,30 @@ class Demo {
 
   static GstPadProbeReturn on_frame(GstPad* pad, GstPadProbeInfo*, gpointer data) {
     auto* demo = static_cast<Demo*>(data);
-    if (demo->entered_ < demo->options_.frames) {
-      ++demo->entered_;
+    if (demo->passed_ < demo->options_.frames) {
+      ++demo->passed_;
       return GST_PAD_PROBE_OK;
     }
-    if (demo->entered_++ == demo->options_.frames) gst_pad_send_event(pad, gst_event_new_eos());
+    if (demo->passed_++ == demo->options_.frames) gst_pad_send_event(pad, gst_event_new_eos());
     return GST_PAD_PROBE_DROP;
   }
 
-  // Waits for a frame, but no longer than the pipeline lives. NULL at its end.
+  // Blocks for a frame until the pipeline ends. Returns NULL at its end.
   GstSample* next_sample(GstAppSink* sink) {
-    constexpr GstClockTime kGlance = 100 * GST_MSECOND;
+    constexpr GstClockTime kBusPoll = 100 * GST_MSECOND;
     GstSample* sample = nullptr;
     while (sample == nullptr && !gst_app_sink_is_eos(sink)) {
-      sample = gst_app_sink_try_pull_sample(sink, kGlance);
+      sample = gst_app_sink_try_pull_sample(sink, kBusPoll);
       watch_bus(0);
     }
     return sample;
   }
 
-  // Throws where the pipeline has failed; notes where it has come to its end.
-  void watch_bus(GstClockTime patience) {
+  // Throws if the pipeline has failed; records its end.
+  void watch_bus(GstClockTime timeout) {
     GstBus* bus = gst_element_get_bus(pipeline_);
     GstMessage* message = gst_bus_timed_pop_filtered(
-        bus, patience, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+        bus, timeout, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
     gst_object_unref(bus);
     if (message == nullptr) return;
     if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) fail(message);
@@ -301,7 +301,7 @@ class Demo {
   GstElement* pipeline_ = nullptr;
   ContactSheet sheet_;
   bool has_ended_ = false;
-  int entered_ = 0;  // frames that went into the tracker; the streaming thread's
+  int passed_ = 0;  // frames passed to the tracker; used by the streaming thread
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: MIT
 //
-// Sends MAVLink LANDING_TARGET over UDP for the JSON lines of ellipsejson on standard input:
+// Reads the JSON lines of ellipsejson from standard input and sends MAVLink LANDING_TARGET over UDP:
 //   gst-launch-1.0 -q ... ! ellipsetrack hfov=1.01 target-diameter=1.5 ! ellipsejson ! fdsink |
 //     node landing_target.js --to 127.0.0.1:14550
 import dgram from 'node:dgram'
@@ -11,15 +11,15 @@ import { MavLinkProtocolV2, common, minimal } from 'node-mavlink'
 import { landingTarget } from './message.js'
 
 const usage = `usage: landing_target.js [OPTION]...
-  --to HOST:PORT     where the autopilot, or a router before it, listens (127.0.0.1:14550);
-                     of IPv6 as [::1]:14550
-  --system N         MAVLink system id, the vehicle's (1)
+  --to HOST:PORT     address of the autopilot or a MAVLink router (127.0.0.1:14550);
+                     for IPv6 as [::1]:14550
+  --system N         MAVLink system id of the vehicle (1)
   --component N      MAVLink component id (191, an onboard computer)
-  --hfov RAD         horizontal field of view: sizes, and angles where ellipsetrack has no camera
-  --pitch RAD        of the camera, from straight down towards the front (0)
-  --turn RAD         of the picture's top, from the front to the right (0)
-  --angles-only      no position even where it is known: PX4 takes none in the vehicle's frame
-  --predicted        also where the target was not seen and its motion continued
+  --hfov RAD         horizontal field of view; gives sizes, and angles if ellipsetrack has no camera
+  --pitch RAD        pitch of the camera, from straight down to forward (0)
+  --turn RAD         rotation of the picture's top, from forward to the right (0)
+  --angles-only      omit the position; PX4 does not accept it in the vehicle's frame
+  --predicted        also send predicted targets, which were not visible
 `
 
 function optionsFrom(args) {
@@ -37,9 +37,9 @@ function optionsFrom(args) {
       help: { type: 'boolean', default: false },
     },
   })
-  const number = (name, least, most) => {
+  const number = (name, min, max) => {
     const value = Number(values[name])
-    if (!(value >= least && value <= most)) throw new Error(`--${name} ${values[name]}: not in ${least} to ${most}`)
+    if (!(value >= min && value <= max)) throw new Error(`--${name} ${values[name]}: not in ${min} to ${max}`)
     return value
   }
   const [, address, name, port] = /^(?:\[([^\]]+)\]|([^:]+)):(\d+)$/.exec(values.to) ?? []
@@ -58,7 +58,7 @@ function optionsFrom(args) {
   }
 }
 
-/** The link: numbers messages and sends each in a datagram of its own. */
+/** Numbers messages and sends each in its own datagram. */
 class Link {
   #socket
   #sequence = 0
@@ -80,12 +80,12 @@ class Link {
     })
   }
 
-  /** A network that is away for a moment ends nothing: the next message is a newer one. */
+  /** Sends a message and ignores network errors, because the next message replaces it. */
   async offer(message) {
     try {
       await this.send(message)
     } catch (error) {
-      if (++this.#unsent === 1) warn(`${error.message}: going on`)
+      if (++this.#unsent === 1) warn(`${error.message}; continuing`)
     }
   }
 
@@ -114,7 +114,7 @@ async function main() {
   const link = new Link(options)
   let beat
   try {
-    await link.send(heartbeat()) // one that cannot be sent says that --to is wrong
+    await link.send(heartbeat()) // fails if --to is invalid
     beat = setInterval(() => void link.offer(heartbeat()), 1000)
     let number = 0
     for await (const text of readline.createInterface({ input: process.stdin })) {

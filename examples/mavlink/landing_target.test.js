@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What arrives on the loopback, decoded by the same library's parser, beside the scene's truth.
+// Decodes the messages that arrive on the loopback and compares them with the scene's truth.
 import assert from 'node:assert/strict'
 import { spawn } from 'node:child_process'
 import dgram from 'node:dgram'
@@ -26,7 +26,7 @@ async function textOf(stream) {
   return text
 }
 
-/** The lines of a rendered landing. */
+/** The JSON lines of a rendered landing. */
 async function linesOf(properties) {
   const line = `-q ellipsetestsrc num-buffers=${frames} ! ellipsetrack ${properties} ! ellipsejson ! fdsink`
   const gst = spawn('gst-launch-1.0', line.split(' '), { stdio: ['ignore', 'pipe', 'inherit'] })
@@ -35,19 +35,19 @@ async function linesOf(properties) {
   return text.trimEnd().split('\n')
 }
 
-/** Runs the program over these lines to its end: its status, and what it has to say. */
+/** Runs the program on these lines. @returns its exit status and standard error. */
 async function run(lines, options, nodeOptions = []) {
   const child = spawn(process.execPath, [...nodeOptions, program, ...options], {
     stdio: ['pipe', 'inherit', 'pipe'],
-    timeout: 60000, // where it would not end
+    timeout: 60000, // kills a program that hangs
   })
-  child.stdin.on('error', () => {}) // it may give up before it has read everything
+  child.stdin.on('error', () => {}) // the program may exit before it has read everything
   child.stdin.end(lines.map((line) => line + '\n').join(''))
   const [complaint, [status]] = await Promise.all([textOf(child.stderr), once(child, 'close')])
   return { complaint, status }
 }
 
-/** What the program sends to an address of this machine for these lines, decoded. */
+/** Runs the program and decodes what it sends to an address of this machine. */
 async function sentTo(address, lines, options, nodeOptions) {
   const isIpv6 = address.includes(':')
   const socket = dgram.createSocket(isIpv6 ? 'udp6' : 'udp4')
@@ -59,7 +59,7 @@ async function sentTo(address, lines, options, nodeOptions) {
   const packets = []
   stream.pipe(new MavLinkPacketSplitter()).pipe(parser)
   parser.on('data', (packet) => packets.push(packet))
-  const marker = 'all that was sent has arrived' // on the loopback datagrams keep their order
+  const marker = 'all that was sent has arrived' // datagrams on the loopback stay in order
   socket.on('message', (datagram) => (String(datagram) === marker ? stream.end() : stream.write(datagram)))
   const to = isIpv6 ? `[${address}]:${port}` : `${address}:${port}`
   const ended = await run(lines, ['--to', to, ...options], nodeOptions)
@@ -87,7 +87,7 @@ before(async () => {
   withoutCamera = await linesOf('')
 })
 
-/** Turns a vector by a quaternion w, x, y, z. */
+/** Rotates a vector by a quaternion w, x, y, z. */
 function turned([w, x, y, z], v) {
   const t = { x: 2 * (y * v.z - z * v.y), y: 2 * (z * v.x - x * v.z), z: 2 * (x * v.y - y * v.x) }
   return {
@@ -97,7 +97,7 @@ function turned([w, x, y, z], v) {
   }
 }
 
-/** How far a circle in space, seen by the camera, is from an ellipse at most [px]. */
+/** Maximum distance between the message's circle, projected into the picture, and an ellipse [px]. */
 function distanceFrom(ellipse, line, message) {
   const f = line.width / 2 / Math.tan(hfov / 2)
   const [c, s] = [Math.cos(ellipse.angle_rad), Math.sin(ellipse.angle_rad)]
@@ -106,10 +106,10 @@ function distanceFrom(ellipse, line, message) {
     const turn = (i * Math.PI) / 45
     const rim = turned(message.q, { x: (diameter / 2) * Math.cos(turn), y: (diameter / 2) * Math.sin(turn), z: 0 })
     const body = { x: message.x + rim.x, y: message.y + rim.y, z: message.z + rim.z }
-    const u = (f * body.y) / body.z + (line.width - 1) / 2 - ellipse.cx // the camera looks down
+    const u = (f * body.y) / body.z + (line.width - 1) / 2 - ellipse.cx // the camera points down
     const v = (-f * body.x) / body.z + (line.height - 1) / 2 - ellipse.cy
-    const place = Math.hypot((c * u + s * v) / ellipse.semi_major, (c * v - s * u) / ellipse.semi_minor)
-    farthest = Math.max(farthest, Math.abs(place - 1) * ellipse.semi_minor)
+    const radius = Math.hypot((c * u + s * v) / ellipse.semi_major, (c * v - s * u) / ellipse.semi_minor)
+    farthest = Math.max(farthest, Math.abs(radius - 1) * ellipse.semi_minor)
   }
   return farthest
 }
@@ -132,7 +132,7 @@ test('a position for each frame, as the scene has it', async () => {
     near(data.distance, Math.hypot(data.x, data.y, data.z), 1e-4, 'distance')
     near(Math.tan(data.angleX), data.y / data.z, 1e-5, 'angle_x')
     near(Math.tan(data.angleY), -data.x / data.z, 1e-5, 'angle_y')
-    // The circle that the message tells of has the picture that the scene has painted.
+    // The message's circle, projected into the picture, is the scene's true ellipse.
     const off = distanceFrom(truthOf(line), line, data)
     assert.ok(off < 0.5, `frame ${i}: its picture is ${off} px off`)
   })
@@ -201,13 +201,13 @@ test('a line that is none, or tells no direction, is named', async () => {
   assert.match(broken.complaint, /^landing_target\.js: line 2: /)
   const blind = await sentFor(withoutCamera)
   assert.equal(blind.status, 1)
-  assert.match(blind.complaint, /line 1: no bearing: give ellipsetrack a camera, or --hfov/)
+  assert.match(blind.complaint, /line 1: no bearing: set a camera for ellipsetrack, or --hfov/)
   const port = await sentFor([], '--to', 'nowhere')
   assert.match(port.complaint, /--to nowhere: expected HOST:PORT/)
 })
 
 test('an address that nothing can be sent to ends it', async () => {
-  for (const to of ['255.255.255.255:14550', '127.0.0.1:99999']) { // neither of which leaves this machine
+  for (const to of ['255.255.255.255:14550', '127.0.0.1:99999']) { // neither is sent off this machine
     const { status, complaint } = await run(withPose, ['--to', to])
     assert.equal(status, 1, to)
     assert.match(complaint, /^landing_target\.js: .+\n$/, to)
@@ -239,7 +239,7 @@ test('a network that is away for a moment ends nothing', async () => {
   assert.equal(status, 0)
   assert.equal(
     complaint,
-    'landing_target.js: send ENETUNREACH: going on\nlanding_target.js: messages not sent: 5\n',
+    'landing_target.js: send ENETUNREACH; continuing\nlanding_target.js: messages not sent: 5\n',
   )
-  assert.ok(messages.length >= 1 + frames - 5) // and heartbeats, by the second
+  assert.ok(messages.length >= 1 + frames - 5) // and one heartbeat per second
 })

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// What a line of ellipsejson says, as a MAVLink LANDING_TARGET.
+// Converts a line of ellipsejson to a MAVLink LANDING_TARGET.
 import { common } from 'node-mavlink'
 
 /**
- * How the camera sits on the vehicle. Without angles it looks straight down, the top of its picture
- * to the front.
+ * Mounting of the camera on the vehicle. With zero angles it points straight down, with the top of
+ * its picture forward.
  *
  * @typedef {object} Mount
- * @property {number} pitch  From straight down towards the front [rad].
- * @property {number} turn   Of the picture's top from the front to the right [rad].
+ * @property {number} pitch  Pitch of the camera, from straight down to forward [rad].
+ * @property {number} turn   Rotation of the picture's top, from forward to the right [rad].
  */
 
 /**
- * From the camera's frame (x right, y down, z forward) to the vehicle's: front, right, down.
+ * Rotates a vector from the camera frame (x right, y down, z forward) to the vehicle's: forward,
+ * right, down.
  *
  * @param {{x: number, y: number, z: number}} v
  * @param {Mount} mount
@@ -27,7 +28,7 @@ export function bodyFromCamera(v, { pitch, turn }) {
   }
 }
 
-/** The shortest turn of a level pad's normal, straight up, to this one: w, x, y, z. */
+/** The smallest rotation from a level pad's normal, straight up, to this one: w, x, y, z. */
 function orientation(normal) {
   const q = [1 - normal.z, normal.y, -normal.x, 0]
   const size = Math.hypot(...q)
@@ -38,12 +39,12 @@ const focal = (line, hfov) => line.width / 2 / Math.tan(hfov / 2)
 
 function bearing(line, target, hfov) {
   if (target.bearing) return target.bearing
-  if (!hfov) throw new Error('no bearing: give ellipsetrack a camera, or --hfov')
+  if (!hfov) throw new Error('no bearing: set a camera for ellipsetrack, or --hfov')
   const f = focal(line, hfov)
   return { x: (target.cx - (line.width - 1) / 2) / f, y: (target.cy - (line.height - 1) / 2) / f, z: 1 }
 }
 
-/** The angle under which the ellipse's box is seen, along x and y. */
+/** The angular size of the ellipse's bounding box, along x and y [rad]. */
 function sizes(line, target, hfov) {
   if (!hfov) return [0, 0]
   const f = focal(line, hfov)
@@ -57,14 +58,14 @@ function sizes(line, target, hfov) {
 }
 
 /**
- * The message of a frame; null where no target was seen in it.
+ * The message for a frame; null if it has no visible target.
  *
  * @param {object} line  A parsed line of ellipsejson.
  * @param {{mount: Mount, hfov: number, anglesOnly: boolean, predicted: boolean}} options
- *   hfov: the horizontal field of view [rad] of a lens without distortion, for sizes, and for
- *   angles where ellipsetrack knows no camera; 0 = not known. predicted: also where the target was
- *   not seen, and its motion continued.
- * @throws {Error} where the line tells no direction.
+ *   hfov: horizontal field of view [rad] of a lens without distortion; gives sizes, and angles if
+ *   ellipsetrack has no camera; 0 = unknown. predicted: also convert predicted targets, which were
+ *   not visible.
+ * @throws {Error} if the line has no bearing and hfov is unknown.
  */
 export function landingTarget(line, { mount, hfov, anglesOnly, predicted }) {
   const target = line.targets.find((one) => one.role === 'target')
@@ -75,7 +76,7 @@ export function landingTarget(line, { mount, hfov, anglesOnly, predicted }) {
   message.targetNum = 0
   message.frame = common.MavFrame.BODY_FRD
   message.type = common.LandingTargetType.VISION_OTHER
-  // Of a camera that looks straight down: x to the right, y to the back.
+  // Angles as for a camera that points straight down: x to the right, y to the back.
   const way = bodyFromCamera(bearing(line, target, hfov), mount)
   message.angleX = Math.atan2(way.y, way.z)
   message.angleY = Math.atan2(-way.x, way.z)
@@ -85,9 +86,9 @@ export function landingTarget(line, { mount, hfov, anglesOnly, predicted }) {
     message.positionValid = 0
     return message
   }
-  const place = bodyFromCamera(target.position, mount)
-  Object.assign(message, place)
-  message.distance = Math.hypot(place.x, place.y, place.z)
+  const position = bodyFromCamera(target.position, mount)
+  Object.assign(message, position)
+  message.distance = Math.hypot(position.x, position.y, position.z)
   message.q = orientation(bodyFromCamera(target.normal, mount))
   message.positionValid = 1
   return message

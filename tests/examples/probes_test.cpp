@@ -219,7 +219,7 @@ TEST_P(LivePlot, DrawsTheTargetOverTheTruth) {
   int found = 0;
   double off_px = 1.0;
   ASSERT_EQ(std::sscanf(outcome.text.c_str(),
-                        "60 frames, target in %d, centre off by %lf px at most",
+                        "60 frames, target in %d, maximum centre error %lf px",
                         &found,
                         &off_px),
             2)
