@@ -24,7 +24,7 @@ from gi.repository import GLib, Gst, GstEllipse  # noqa: E402
 
 
 def on_buffer(_pad, info, frames):
-    # An ellipse is valid only with its buffer: read its fields here, or keep ellipse.to_structure().
+    # An ellipse is valid only with its buffer: read it here, or keep ellipse.to_structure().
     frame = next(frames)
     ellipses = GstEllipse.buffer_list_ellipse_meta(info.get_buffer())
     for ellipse in ellipses:

@@ -6,9 +6,9 @@ gst-launch-1.0 -q ... ! ellipsetrack hfov=1.012 target-diameter=1.5 ! ellipsejso
   ./06_ros_yaml.py [FRAME_ID]
 
 Writes one YAML document per frame with a visible target, in the format of
-geometry_msgs/PoseWithCovarianceStamped for `rostopic pub` and `ros2 topic pub`. The pose's z axis is
-the target's normal. The rotation about it is unknown: x is as close to the camera's x as possible,
-and the variance is large.
+geometry_msgs/PoseWithCovarianceStamped for `rostopic pub` and `ros2 topic pub`. The pose's z axis
+is the target's normal. The rotation about it is unknown: x is as close to the camera's x as
+possible, and the variance is large.
 """
 import json
 import math

@@ -83,12 +83,12 @@ class Watch {
  public:
   Watch(GSubprocess* program, const std::function<bool()>& is_wanted)
       : thread_([program, &is_wanted](const std::stop_token& stop) {
-          while (!stop.stop_requested() && is_wanted()) g_usleep(kPatienceUs);
+          while (!stop.stop_requested() && is_wanted()) g_usleep(kPollUs);
           if (!stop.stop_requested()) g_subprocess_force_exit(program);
         }) {}
 
  private:
-  static constexpr gulong kPatienceUs = 20'000;
+  static constexpr gulong kPollUs = 20'000;
   std::jthread thread_;
 };
 

@@ -83,7 +83,7 @@ class Reader {
 
  private:
   // Indices of a frame.
-  struct Place {
+  struct FrameIndex {
     SequenceKey sequence;
     std::size_t index = 0;
   };
@@ -124,8 +124,9 @@ class Reader {
   [[nodiscard]] std::string own_name() const { return folder_.filename().string(); }
 
   Frame* find(const fs::path& image) {
-    const auto place = places_.find(image);
-    return place == places_.end() ? nullptr : &frames_[place->second.sequence][place->second.index];
+    const auto found = indices_.find(image);
+    return found == indices_.end() ? nullptr
+                                   : &frames_[found->second.sequence][found->second.index];
   }
 
   // Adds another ellipse from a further row of the same image.
@@ -152,15 +153,15 @@ class Reader {
   void add(Frame frame, const std::string& dataset) {
     const fs::path image = frame.image;
     if (!fs::exists(image)) {
-      const auto place = videos_.find(image);
-      if (!place) throw std::runtime_error("image " + image.string() + " does not exist");
+      const auto video = videos_.find(image);
+      if (!video) throw std::runtime_error("image " + image.string() + " does not exist");
       frame.image.clear();
-      if (frame.pts_ns == kNoTime) frame.pts_ns = place->pts_ns;
+      if (frame.pts_ns == kNoTime) frame.pts_ns = video->pts_ns;
     }
     const SequenceKey key{dataset, sequence_of(image)};
     frame.name = key.second + "/" + image.filename().string();
     folders_[key] = image.parent_path();
-    places_[image] = {key, frames_[key].size()};
+    indices_[image] = {key, frames_[key].size()};
     frames_[key].push_back(std::move(frame));
   }
 
@@ -241,7 +242,7 @@ class Reader {
   VideoFrames videos_;
   FramesBySequence frames_;
   std::map<SequenceKey, fs::path> folders_;
-  std::map<fs::path, Place> places_;  // by image
+  std::map<fs::path, FrameIndex> indices_;  // by image
   std::set<fs::path> named_;
   Dataset dataset_;
 };

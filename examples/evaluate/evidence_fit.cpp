@@ -24,8 +24,8 @@ using ellipse::kFeatures;
 constexpr double kRightIou = 0.85;
 constexpr double kWrongIou = 0.6;
 constexpr int kRounds = 2;                // fits after the first one
-constexpr int kHardest = 5;               // number of wrong candidates per frame
-constexpr double kFewCandidates = 100.0;  // a source with fewer is weighted less
+constexpr int kWrongPerFrame = 5;         // number of wrong candidates per frame
+constexpr double kMinCandidates = 100.0;  // a source with fewer is weighted less
 constexpr ellipse::Tolerance kSameEllipse{1.0, 0.05};
 constexpr double kRidge = 1e-5;
 constexpr int kMaxNewtonSteps = 40;
@@ -55,7 +55,7 @@ void weigh(std::vector<Sample>& samples) {
   double sum = 0.0;
   for (Sample& s : samples) {
     const double count = counts[{s.candidate->source, s.candidate->is_right}];
-    s.weight = 1.0 / std::max(count, kFewCandidates);
+    s.weight = 1.0 / std::max(count, kMinCandidates);
     sum += s.weight;
   }
   for (Sample& s : samples) s.weight /= sum;
@@ -133,7 +133,8 @@ std::vector<Sample> hardest(const std::vector<Sample>& all, const EvidenceTable&
   std::vector<Sample> kept;
   for (const auto& [odds, i] : order) {
     const LabelledCandidate& candidate = *all[i].candidate;
-    if (candidate.is_right || wrong_of_frame[candidate.frame]++ < kHardest) kept.push_back(all[i]);
+    if (candidate.is_right || wrong_of_frame[candidate.frame]++ < kWrongPerFrame)
+      kept.push_back(all[i]);
   }
   weigh(kept);
   return kept;

@@ -17,7 +17,7 @@ struct Limits {
 
 /// One message per violated limit, with method and data set. A measure that is undefined because no
 /// frame shows a target violates its limit.
-[[nodiscard]] std::vector<std::string> unkept_limits(const Evaluation& evaluation,
-                                                     const Limits& limits);
+[[nodiscard]] std::vector<std::string> violated_limits(const Evaluation& evaluation,
+                                                       const Limits& limits);
 
 }  // namespace evaluate

@@ -109,10 +109,10 @@ class BoxMethod : public Method {
     const bool is_enough = frame.truth.is_labelled &&
                            visible_part(frame.truth, {picture.cols, picture.rows}) >= kMinToStart;
     if (!is_enough) return answer;
-    const auto told =
+    const auto truth =
         distortion_ != nullptr ? distortion_->to_picture(*frame.truth.target) : frame.truth.target;
-    if (told && peer_.begin(picture, *told)) {
-      answer.target = told;
+    if (truth && peer_.begin(picture, *truth)) {
+      answer.target = truth;
       answer.is_given = true;
     }
     return answer;

@@ -93,10 +93,10 @@ class EdgeDrawingPeer final : public Peer {
   // there are few edges, where this is possible and cheap. As a consequence, a single ellipse below
   // about 18 px in an otherwise empty picture is missed.
   [[nodiscard]] bool is_safe() {
-    const std::size_t most_pixels = 8 * static_cast<std::size_t>(size_.width + size_.height);
+    const std::size_t max_pixels = 8 * static_cast<std::size_t>(size_.width + size_.height);
     const auto edges = edge_drawing_->getSegments();
     for (const auto& edge : edges) {
-      if (edge.size() >= most_pixels) return false;
+      if (edge.size() >= max_pixels) return false;
     }
     if (edges.size() > kManyEdges) return true;
     const auto params = edge_drawing_->params;

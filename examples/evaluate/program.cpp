@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxProblemsPrinted = 20;
-constexpr int kExitUnkept = 1;
+constexpr int kExitViolated = 1;
 constexpr int kExitProblems = 2;
 constexpr int kExitInterrupted = 130;
 
@@ -99,9 +99,9 @@ class Program {
       compare();
     }
     print_problems();
-    for (const std::string& text : unkept_) std::cerr << "ellipse-evaluate: " << text << '\n';
+    for (const std::string& text : violations_) std::cerr << "ellipse-evaluate: " << text << '\n';
     if (interrupted) return kExitInterrupted;
-    if (!unkept_.empty()) return kExitUnkept;
+    if (!violations_.empty()) return kExitViolated;
     return missing_frames_ > 0 ? kExitProblems : 0;
   }
 
@@ -259,7 +259,7 @@ class Program {
       for (const Table& table : all_tables(evaluation, dataset)) print(std::cout, table);
     }
     for (const Table& table : source_tables(evaluation)) print(std::cout, table);
-    unkept_ = unkept_limits(evaluation, options_.limits);
+    violations_ = violated_limits(evaluation, options_.limits);
     if (frames_out.is_open()) write_frames(frames_out, evaluation, 0);
     if (json_out.is_open()) write_json(json_out, evaluation);
     check_written(frames_out, options_.frames_file);
@@ -306,7 +306,7 @@ class Program {
   std::vector<PeerCommand> peers_;
   std::vector<Sequence> sequences_;
   std::vector<std::string> problems_;
-  std::vector<std::string> unkept_;
+  std::vector<std::string> violations_;
   std::size_t missing_frames_ = 0;
   std::optional<TemporaryFolder> files_;  // for other programs
 };

@@ -33,18 +33,18 @@ std::size_t index_below(std::size_t n, Random& random) {
 
 // Whether two pixels can be the ends of an axis: the length is within limits, both edges are
 // perpendicular to the connecting line, and both are dark inside or both light.
-bool can_be_axis(const EdgePixel& p, const EdgePixel& q, float least_sq, float most_sq) {
+bool can_be_axis(const EdgePixel& p, const EdgePixel& q, float min_sq, float max_sq) {
   const float dx = q.x - p.x;
   const float dy = q.y - p.y;
   const float length_sq = dx * dx + dy * dy;
-  if (!(length_sq >= least_sq && length_sq <= most_sq)) return false;
+  if (!(length_sq >= min_sq && length_sq <= max_sq)) return false;
   const float along_p = p.normal_x * dx + p.normal_y * dy;
   const float along_q = q.normal_x * dx + q.normal_y * dy;
   if (along_p * along_q >= 0.0F) return false;
   const float across_p = p.normal_x * dy - p.normal_y * dx;
   const float across_q = q.normal_x * dy - q.normal_y * dx;
-  const float most_across_sq = kMaxSine * kMaxSine * length_sq;
-  return across_p * across_p <= most_across_sq && across_q * across_q <= most_across_sq;
+  const float max_across_sq = kMaxSine * kMaxSine * length_sq;
+  return across_p * across_p <= max_across_sq && across_q * across_q <= max_across_sq;
 }
 
 bool are_same(const ellipse::Ellipse& a, const ellipse::Ellipse& b) {
@@ -60,15 +60,15 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
   Random random;
   choose_voters(edges, random);
   sort_by_direction(edges);
-  const auto least_sq = static_cast<float>(limits.min_axis_px * limits.min_axis_px);
-  const auto most_sq = static_cast<float>(limits.max_axis_px * limits.max_axis_px);
+  const auto min_sq = static_cast<float>(limits.min_axis_px * limits.min_axis_px);
+  const auto max_sq = static_cast<float>(limits.max_axis_px * limits.max_axis_px);
   int votings = 0;
   for (int trial = 0; trial < kTrials && votings < kMaxVotings; ++trial) {
     const EdgePixel& p = edges[index_below(edges.size(), random)];
     const auto facing = facing_pixels(p);
     if (facing.empty()) continue;
     const EdgePixel& q = facing[index_below(facing.size(), random)];
-    if (!can_be_axis(p, q, least_sq, most_sq)) continue;
+    if (!can_be_axis(p, q, min_sq, max_sq)) continue;
     ++votings;
     const auto candidate = vote(p, q);
     if (candidate && limits.admit_axes_of(candidate->ellipse)) keep(*candidate);

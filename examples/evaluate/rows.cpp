@@ -35,12 +35,12 @@ Row::Row(const fs::path& file,
        std::to_string(header_.size()));
 }
 
-std::string Row::place() const {
+std::string Row::location() const {
   return file_.string() + ":" + std::to_string(line_) + ": ";
 }
 
 void Row::fail(const std::string& what) const {
-  throw RowError(place() + what);
+  throw RowError(location() + what);
 }
 
 bool Row::has(const std::string& column) const {

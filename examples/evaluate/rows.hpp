@@ -38,7 +38,7 @@ class Row {
   [[nodiscard]] std::optional<double> optional_number(const std::string& column) const;
 
  private:
-  [[nodiscard]] std::string place() const;
+  [[nodiscard]] std::string location() const;
 
   const std::filesystem::path& file_;
   int line_;

@@ -55,7 +55,7 @@ VideoFrames::Video* VideoFrames::video_of_folder(const fs::path& image_folder) {
   return video ? &*video : nullptr;
 }
 
-std::optional<VideoFrames::Place> VideoFrames::find(const fs::path& image) {
+std::optional<VideoFrames::VideoFrame> VideoFrames::find(const fs::path& image) {
   Video* video = video_of_folder(image.parent_path().lexically_normal());
   if (video == nullptr) return std::nullopt;
   if (!video->error.empty()) throw std::runtime_error(video->error);
@@ -66,7 +66,7 @@ std::optional<VideoFrames::Place> VideoFrames::find(const fs::path& image) {
                              video->file.string());
   }
   video->is_named[*number] = true;
-  return Place{*number, video->times_ns[*number]};
+  return VideoFrame{*number, video->times_ns[*number]};
 }
 
 std::shared_ptr<PictureSource> VideoFrames::pictures_of(const fs::path& image_folder) const {

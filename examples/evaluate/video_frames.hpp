@@ -17,7 +17,7 @@ namespace evaluate {
 class VideoFrames {
  public:
   /// A frame of a video.
-  struct Place {
+  struct VideoFrame {
     std::size_t number = 0;
     std::int64_t pts_ns = 0;
   };
@@ -28,7 +28,7 @@ class VideoFrames {
   /// The video frame that an image such as images/eye/frame_0012.png denotes; nullopt if the
   /// image's folder has no video. Throws std::runtime_error that names the video if it has no such
   /// frame or cannot be decoded.
-  [[nodiscard]] std::optional<Place> find(const std::filesystem::path& image);
+  [[nodiscard]] std::optional<VideoFrame> find(const std::filesystem::path& image);
 
   /// The pictures of an image's folder; nullptr if the folder has no video.
   [[nodiscard]] std::shared_ptr<PictureSource> pictures_of(

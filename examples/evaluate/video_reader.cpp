@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr GstClockTime kPatience = 20 * GST_SECOND;
+constexpr GstClockTime kTimeout = 20 * GST_SECOND;
 constexpr GstClockTime kErrorInterval =
     GST_SECOND / 10;  // an error does not end the wait for a frame
 
@@ -63,7 +63,7 @@ class VideoReader::Pipeline {
 
   /// Owned by the caller; nullptr after the last frame.
   GstSample* next() {
-    for (GstClockTime waited = 0; waited < kPatience; waited += kErrorInterval) {
+    for (GstClockTime waited = 0; waited < kTimeout; waited += kErrorInterval) {
       GstSample* sample = gst_app_sink_try_pull_sample(out_, kErrorInterval);
       if (sample != nullptr) return sample;
       throw_error();
