@@ -16,8 +16,7 @@ namespace evaluate {
 
 /// An ellipse visible in a frame.
 struct TrueEllipse {
-  ellipse::Ellipse
-      ellipse;  ///< [px]; in the ideal (undistorted) plane if a lens distorts the frame.
+  ellipse::Ellipse ellipse;  ///< [px]; in the ideal plane if a lens distorts the frame.
   /// Fraction of the perimeter inside the frame; 0 if the ellipse encloses the frame. nullopt if
   /// the data set does not specify it.
   std::optional<double> visible_fraction;

@@ -23,16 +23,16 @@ class DistortedFrame {
   [[nodiscard]] double iou(const ellipse::Ellipse& a, const ellipse::Ellipse& b) const;
 
   /// The ellipse in the ideal plane that best fits this ellipse of the distorted picture. Returns
-  /// the input if too little of it is inside the lens's field.
+  /// the input if too little of it is inside the lens's field of view.
   [[nodiscard]] ellipse::Ellipse to_ideal(const ellipse::Ellipse& in_picture) const;
 
   /// The ellipse in the distorted picture that best fits this ellipse of the ideal plane. nullopt
-  /// if too little of it is inside the lens's field.
+  /// if too little of it is inside the lens's field of view.
   [[nodiscard]] std::optional<ellipse::Ellipse> to_picture(const ellipse::Ellipse& ideal) const;
 
  private:
   ellipse::Lens lens_;
-  std::vector<Eigen::Vector2f> ideal_px_;  // of the pixels inside the lens's field
+  std::vector<Eigen::Vector2f> ideal_px_;  // of the pixels inside the lens's field of view
 };
 
 }  // namespace evaluate

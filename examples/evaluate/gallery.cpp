@@ -19,8 +19,7 @@ const cv::Scalar kAnswerColor(30, 130, 255);
 constexpr int kSubPixelBits = 4;
 
 void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) {
-  if (!(e.semi_major < 16.0 * picture.cols))
-    return;  // OpenCV's fixed-point coordinates would overflow
+  if (!(e.semi_major < 16.0 * picture.cols)) return;  // OpenCV's coordinates would overflow
   const auto fixed = [](double value) {
     return static_cast<int>(std::lround(value * (1 << kSubPixelBits)));
   };

@@ -18,7 +18,7 @@ namespace {
 
 void on_interrupt(int /*signal*/) {
   interrupt();
-  std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C terminates at once
+  std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C kills the program
 }
 
 CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* datasets) {

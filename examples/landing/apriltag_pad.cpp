@@ -126,8 +126,7 @@ class AprilTag : public Peer {
         {{-half, half, 0.0}, {half, half, 0.0}, {half, -half, 0.0}, {-half, -half, 0.0}}};
     std::array<cv::Point2d, 4> seen;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const double* corner =
-          detection.p[seen.size() - 1 - i];  // the library's first corner is bottom left
+      const double* corner = detection.p[seen.size() - 1 - i];  // its first one is bottom left
       seen[i] = {corner[0] - kPixelOrigin, corner[1] - kPixelOrigin};
     }
     const cv::Matx33d matrix(

@@ -15,7 +15,7 @@ Session::Session(const Options& options, std::function<void()> on_failure)
                      [this](const std::string& trouble) {
                        const std::string source = "source \"" + pipeline_.source().text + "\": ";
                        std::cerr << "ellipse-live: " << source
-                                 << (trouble.empty() ? "is back" : trouble) << std::endl;
+                                 << (trouble.empty() ? "recovered" : trouble) << std::endl;
                      },
                  .on_failure = std::move(on_failure)}),
       properties_(pipeline_.tracker(), CameraFolder(options.cameras)),

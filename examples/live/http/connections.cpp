@@ -54,7 +54,7 @@ bool Connections::has_room(GInetAddress* address, const std::string& name) const
          }) < kMaxPerAddress;
 }
 
-GSocket* Connections::keep(GSocketAddress* client) {
+GSocket* Connections::clear_deadline(GSocketAddress* client) {
   const auto found = client != nullptr ? open_->find(text_of(client)) : open_->end();
   if (found == open_->end()) return nullptr;
   found->second.deadline_us = 0;

@@ -25,9 +25,9 @@ class Connections {
 
   /// Removes the deadline of a client whose request is complete. @return Its socket; null if it is
   /// gone.
-  GSocket* keep(GSocketAddress* client);
+  GSocket* clear_deadline(GSocketAddress* client);
 
-  /// Disables a client's silence timeout. Must be called before a WebSocket starts to read: a
+  /// Disables a client's idle timeout. Must be called before a WebSocket starts to read: a
   /// pending read keeps the timeout that it started with.
   void disable_idle_timeout(GSocketAddress* client);
 

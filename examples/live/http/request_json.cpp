@@ -19,7 +19,7 @@ RequestJson::RequestJson(const std::string& body) : parser_(json_parser_new()) {
   json_parser_load_from_data(parser_.get(), body.c_str(), size, &problem);
   if (problem != nullptr) {
     const Ref<GError> error(problem);
-    throw std::invalid_argument(std::string("no JSON: ") + error->message);
+    throw std::invalid_argument(std::string("invalid JSON: ") + error->message);
   }
   JsonNode* root = json_parser_get_root(parser_.get());
   if (root == nullptr || !JSON_NODE_HOLDS_OBJECT(root)) {

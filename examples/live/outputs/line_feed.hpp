@@ -43,8 +43,7 @@ class LineFeed {
     virtual void tick() {}
 
     std::deque<std::string> queue;
-    gint64 moved_us =
-        g_get_monotonic_time();  ///< When it last accepted a line or had an empty queue.
+    gint64 moved_us = g_get_monotonic_time();  ///< Last accepted line or empty queue.
   };
 
  private:

@@ -189,7 +189,7 @@ export class Stages {
     return node;
   }
 
-  // How many are not listed, with the way to those that can be.
+  // The number of unlisted candidates, or a button that lists more of them.
   #rest(group, count) {
     const drawable = group.members.filter(({ ellipse }) => ellipse).length;
     if (this.#whole.has(group.reason) || drawable <= kBest) {

@@ -7,7 +7,7 @@ namespace live {
 
 FrameTap::FrameTap(GstElement* tracker, GstAppSink* sink, FrameSink on_frame)
     : on_frame_(std::move(on_frame)) {
-  // The queue holds at most one buffer, which on_sample() takes at once.
+  // The queue holds at most one buffer, which on_sample() takes immediately.
   g_object_set(sink, "max-buffers", 1, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
   GstAppSinkCallbacks callbacks{};
   callbacks.new_sample = on_sample;

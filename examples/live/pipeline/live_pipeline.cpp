@@ -309,7 +309,7 @@ gboolean LivePipeline::on_message(GstBus* /*bus*/, GstMessage* message, gpointer
 
 void LivePipeline::end_of_stream() {
   if (spec_.is_live) {
-    source_dropped("it has ended");
+    source_dropped("the stream has ended");
     return;
   }
   const bool was_playing = state_ == PlayState::kPlaying;

@@ -53,11 +53,11 @@ std::vector<double> numbers_of(const GParamSpec* spec,
   JsonArray* array = JSON_NODE_HOLDS_ARRAY(node) ? json_node_get_array(node) : nullptr;
   if (array != nullptr && json_array_get_length(array) == 0) return numbers;
   if (array == nullptr || json_array_get_length(array) != count) {
-    refuse(spec, std::string("takes ") + form);
+    refuse(spec, std::string("expected ") + form);
   }
   for (guint i = 0; i < count; ++i) {
     JsonNode* element = json_array_get_element(array, i);
-    if (!JSON_NODE_HOLDS_VALUE(element)) refuse(spec, std::string("takes ") + form);
+    if (!JSON_NODE_HOLDS_VALUE(element)) refuse(spec, std::string("expected ") + form);
     numbers[i] = number_of(spec, element);
   }
   return numbers;
@@ -66,7 +66,7 @@ std::vector<double> numbers_of(const GParamSpec* spec,
 void read_rect(const GParamSpec* spec, JsonNode* node, GValue* value) {
   for (const double number : numbers_of(spec, node, 4, "[x, y, width, height]")) {
     if (number != std::floor(number)) refuse(spec, "expected four whole numbers");
-    if (std::abs(number) > 1e6) refuse(spec, "far outside any frame");
+    if (std::abs(number) > 1e6) refuse(spec, "coordinates out of range");
     GValue each = G_VALUE_INIT;
     g_value_init(&each, G_TYPE_INT);
     g_value_set_int(&each, static_cast<gint>(number));
