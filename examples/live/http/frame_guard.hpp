@@ -31,7 +31,7 @@ class FrameGuard {
   RateLimiter frames_;
   RateLimiter controls_;
   std::uint8_t opcode_ = 0;
-  bool is_last_ = false;              // fragment of its message
+  bool is_last_ = false;              // last fragment of its message
   std::size_t header_bytes_ = 0;      // of this frame's header so far
   std::size_t length_bytes_ = 0;      // of the extended length, remaining
   std::size_t mask_bytes_ = 0;        // remaining
