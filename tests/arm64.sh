@@ -37,7 +37,7 @@ hot_loops=(filter_columns filter_rows mark_maxima gradients_along Scaler::reduce
 
 neon() {
   local library count status=0
-  library=$(find "$folder/core" -name 'libellipse-1.0.so.*.*.*')
+  library=$(find "$folder/core" -maxdepth 1 -type f -name 'libellipse-1.0.so.*.*.*')
   aarch64-linux-gnu-objdump --demangle --disassemble --no-show-raw-insn "$library" > "$folder/code"
   for loop in "${hot_loops[@]}"; do
     count=$(awk -v name="$loop(" '

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -15,7 +16,10 @@ inline bool run_own_tests(const std::string& before,
                           const std::string& tests,
                           const std::string& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  const std::string command = "GTEST_OUTPUT= " + before + " " + program +
+  // What runs programs of another processor; meson says it to the tests of a cross build.
+  const char* emulator = std::getenv("MESON_EXE_WRAPPER");
+  const std::string run = emulator != nullptr ? std::string(emulator) + " " + program : program;
+  const std::string command = "GTEST_OUTPUT= " + before + " " + run +
                               " --gtest_also_run_disabled_tests --gtest_filter='" + tests + "' > " +
                               log + " 2>&1";
   return run_shell(command).status == 0;
