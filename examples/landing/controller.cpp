@@ -11,20 +11,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMinConsecutive = 4;          // consecutive detections before the target is trusted
-constexpr double kMinVisibleToStart = 0.6;  // minimum visible fraction of the outline to start with
-constexpr double kMinVisibleToMeasure =
-    0.1;                             // visible fraction above which the reported error is reliable
-constexpr double kBlindError = 0.1;  // position error if only the inner pattern is visible [m]
-constexpr double kLost_s = 1.0;      // without detection, in phases that can wait
-constexpr double kRecent_s = 2.0;    // since the last detection; more accurate than radio
+constexpr int kMinConsecutive = 4;            // consecutive detections before the target is trusted
+constexpr double kMinVisibleToStart = 0.6;    // visible fraction of the outline
+constexpr double kMinVisibleToMeasure = 0.1;  // above it the reported error is reliable
+constexpr double kBlindError = 0.1;       // position error if only the inner pattern is visible [m]
+constexpr double kLost_s = 1.0;           // without detection, in phases that can wait
+constexpr double kRecent_s = 2.0;         // since a detection: more accurate than radio
 constexpr double kSpiralGrowth = 0.5;     // growth of the search spiral [m/s]
 constexpr double kSpiralSpeed = 1.5;      // speed along the spiral [m/s]
 constexpr double kSweepRate = 0.5;        // of the search height [rad/s]
 constexpr double kMaxSpiralRadius = 3.0;  // [m]
 constexpr double kTouchDownSpeed = 0.8;   // [m/s]
-constexpr double kMaxDrift = 1.2;  // relative horizontal speed that is safe near the ground [m/s]
-constexpr double kMinSpeedForHeading = 0.5;  // minimum speed for a defined heading [m/s]
+constexpr double kMaxDrift = 1.2;         // safe relative speed near the ground [m/s]
+constexpr double kMinSpeedForHeading = 0.5;  // slower platforms have none [m/s]
 
 }  // namespace
 

@@ -19,7 +19,7 @@ class TargetFilter {
 
   /// Updates with a detection, in order of time.
   /// @param error  Standard deviation of each coordinate [m].
-  /// @return false if it is rejected as an outlier; the state is then unchanged.
+  /// @return false if it is rejected as an outlier and ignored.
   bool see(double time_s, const Eigen::Vector3d& position, double error);
 
   /// Updates with a radio report of position and velocity. If the report contradicts the state, the
