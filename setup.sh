@@ -21,6 +21,9 @@ packages=(
   # to run pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
+# GStreamer's analytics metadata came with 1.24: Debian 13. Relatives count their releases higher.
+release=$(. /etc/os-release 2> /dev/null && echo "${VERSION_ID:-99}") || release=99
+[ "${release%%.*}" -lt 13 ] || packages+=(libgstreamer-plugins-bad1.0-dev)
 case "${1:-}" in
   "" | --without-tests) ;;
   *)
