@@ -91,7 +91,7 @@ struct Object {
   gfloat confidence = 0.0F;
 };
 
-Object read(const GstAnalyticsODMtd& mtd) {
+Object read(GstAnalyticsODMtd& mtd) {
   Object object;
   object.id = mtd.id;
   object.type = g_quark_to_string(gst_analytics_od_mtd_get_obj_type(&mtd));
