@@ -13,6 +13,7 @@ packages=(
   help2man  # the programs' manual pages
   dpkg-dev  # tells meson where Debian keeps libraries
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
+  libgstreamer-plugins-bad1.0-dev  # GStreamer's analytics metadata, from 1.24 on
   libopencv-dev libeigen3-dev
   gobject-introspection libgirepository1.0-dev
   # examples

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "gst/track/analytics_meta.hpp"
+
 namespace {
 
 // Clips a box of any position and size to a frame.
@@ -34,9 +36,9 @@ ellipse::Rect united(const ellipse::Rect& a, const ellipse::Rect& b) {
           std::max(a.y + a.height, b.y + b.height) - top};
 }
 
-// The bounding box of all regions, so that a target which passes from one region to the next stays
-// the same target. A type without a quark has no region; none is created, because quarks are never
-// freed.
+// The bounding box of all regions of interest and detected objects, so that a target which passes
+// from one to the next stays the same target. A type without a quark has no region; none is
+// created, because quarks are never freed.
 ellipse::Rect box_around_regions(GstBuffer* buffer,
                                  const std::string& type,
                                  const ellipse::Rect& frame) {
@@ -49,6 +51,10 @@ ellipse::Rect box_around_regions(GstBuffer* buffer,
     const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
     if (wanted != 0 && roi->roi_type != wanted) continue;
     box = united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
+  }
+  state = nullptr;
+  while (const auto object = next_object(buffer, &state, wanted)) {
+    box = united(box, clipped(object->x, object->y, object->width, object->height, frame));
   }
   return box;
 }

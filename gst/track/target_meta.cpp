@@ -87,28 +87,6 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   return meta;
 }
 
-static constexpr double kSameEllipsePx = 1.5;
-
-static void attach_candidate_metas(GstBuffer* buffer,
-                                   std::span<const ellipse::Detection> candidates,
-                                   const std::optional<ellipse::Target>& target,
-                                   const ellipse::LensView& lens,
-                                   const GstVideoInfo& info) {
-  for (const ellipse::Detection& candidate : candidates) {
-    // The target itself; tracking changes its ellipse slightly.
-    const bool is_target =
-        target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
-    if (is_target) continue;
-    GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
-    meta->contour_overlap = candidate.contour_overlap;
-    meta->ellipse_overlap = candidate.ellipse_overlap;
-    meta->probability = candidate.probability;
-    meta->visible_fraction = ellipse::visible_fraction(
-        lens, candidate.ellipse, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
-    write_outline(meta, lens);
-  }
-}
-
 // The bounding box in image coordinates.
 static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
   const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
@@ -122,22 +100,58 @@ static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
   return box;
 }
 
-static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+// The whole pixels of the frame that contain the outline; empty if it is outside.
+static ellipse::Rect box_in_frame(const GstEllipseMeta& meta) {
   const Eigen::AlignedBox2d box = box_of(meta);
   const auto first = [](double at, guint size) {
-    return static_cast<guint>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
+    return static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
   };
   const auto last = [](double at, guint size) {
-    return static_cast<guint>(std::clamp(std::ceil(at) + 1.0, 0.0, static_cast<double>(size)));
+    return static_cast<int>(std::clamp(std::ceil(at) + 1.0, 0.0, static_cast<double>(size)));
   };
-  const guint left = first(box.min().x(), meta.frame_width);
-  const guint top = first(box.min().y(), meta.frame_height);
-  const guint right = last(box.max().x(), meta.frame_width);
-  const guint bottom = last(box.max().y(), meta.frame_height);
-  if (left >= right || top >= bottom) return;
-  GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
-      buffer, "ellipse", left, top, right - left, bottom - top);
+  const int left = first(box.min().x(), meta.frame_width);
+  const int top = first(box.min().y(), meta.frame_height);
+  const int right = last(box.max().x(), meta.frame_width);
+  const int bottom = last(box.max().y(), meta.frame_height);
+  return {left, top, right - left, bottom - top};
+}
+
+static void attach_roi_meta(GstBuffer* buffer, const GstEllipseMeta& meta) {
+  const ellipse::Rect box = box_in_frame(meta);
+  if (box.empty()) return;
+  GstVideoRegionOfInterestMeta* roi =
+      gst_buffer_add_video_region_of_interest_meta(buffer,
+                                                   "ellipse",
+                                                   static_cast<guint>(box.x),
+                                                   static_cast<guint>(box.y),
+                                                   static_cast<guint>(box.width),
+                                                   static_cast<guint>(box.height));
   gst_video_region_of_interest_meta_add_param(roi, gst_ellipse_meta_to_structure(&meta));
+}
+
+static constexpr double kSameEllipsePx = 1.5;
+
+static void attach_candidate_metas(GstBuffer* buffer,
+                                   const std::optional<ellipse::Target>& target,
+                                   const ellipse::Tracker& tracker,
+                                   const TrackProperties& properties,
+                                   const GstVideoInfo& info) {
+  for (const ellipse::Detection& candidate : tracker.candidates()) {
+    // The target itself; tracking changes its ellipse slightly.
+    const bool is_target =
+        target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
+    if (is_target) continue;
+    GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
+    meta->contour_overlap = candidate.contour_overlap;
+    meta->ellipse_overlap = candidate.ellipse_overlap;
+    meta->probability = candidate.probability;
+    meta->visible_fraction = ellipse::visible_fraction(tracker.lens(),
+                                                       candidate.ellipse,
+                                                       GST_VIDEO_INFO_WIDTH(&info),
+                                                       GST_VIDEO_INFO_HEIGHT(&info));
+    write_outline(meta, tracker.lens());
+    if (properties.attach_analytics) attach_object(buffer, *meta, box_in_frame(*meta), {});
+  }
 }
 
 const GstEllipseMeta* attach_metas(GstBuffer* buffer,
@@ -145,6 +159,7 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
                                    const ellipse::Tracker& tracker,
                                    const TrackProperties& properties,
                                    const GstVideoInfo& info,
+                                   const Sighting& sighting,
                                    GstClockTime processing_time) {
   gst_buffer_add_ellipse_search_meta(buffer, processing_time)->tracker_state =
       in_metadata(tracker.state());
@@ -152,9 +167,10 @@ const GstEllipseMeta* attach_metas(GstBuffer* buffer,
   if (target) {
     meta = attach_target_meta(buffer, *target, tracker.lens(), info, processing_time);
     if (properties.attach_roi_meta) attach_roi_meta(buffer, *meta);
+    if (properties.attach_analytics) attach_object(buffer, *meta, box_in_frame(*meta), sighting);
   }
   if (properties.tracker.wants_candidates) {
-    attach_candidate_metas(buffer, tracker.candidates(), target, tracker.lens(), info);
+    attach_candidate_metas(buffer, target, tracker, properties, info);
   }
   return meta;
 }

@@ -58,7 +58,9 @@ GType gst_ellipse_roi_source_get_type() {
   static const GEnumValue kValues[] = {
       {ROI_SOURCE_NONE, "Whole frame", "none"},
       {ROI_SOURCE_PROPERTY, "Region in the property roi", "property"},
-      {ROI_SOURCE_META, "Bounding box of the GstVideoRegionOfInterestMeta of each buffer", "meta"},
+      {ROI_SOURCE_META,
+       "Bounding box of the regions of interest and detected objects of each buffer",
+       "meta"},
       {0, nullptr, nullptr},
   };
   static const GType kType = g_enum_register_static("GstEllipseRoiSource", kValues);

@@ -49,11 +49,14 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
                                      const TrackProperties& properties,
                                      const std::optional<ellipse::Target>& target,
                                      GstClockTime processing_time) {
+  Sighting& sighting = self->stream->sighting;
+  if (target) sighting.add(*target, times.pts);
   const GstEllipseMeta* meta = attach_metas(buffer,
                                             target,
                                             self->stream->tracker,
                                             properties,
                                             GST_VIDEO_FILTER(self)->in_info,
+                                            sighting,
                                             processing_time);
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target = target;
@@ -98,6 +101,7 @@ static void forget_target(GstEllipseTrack* self,
                           const TrackProperties& properties,
                           const FrameTimes& times = {}) {
   self->stream->tracker.reset();
+  self->stream->sighting = {};
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target.reset();
   const ellipse::TrackerState tracker_state = self->stream->tracker.state();

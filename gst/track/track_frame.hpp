@@ -10,6 +10,7 @@
 #include "core/tracking/tracker.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 #include "gst/overlay/overlay.hpp"
+#include "gst/track/analytics_meta.hpp"
 #include "gst/track/gstellipsetrack.h"
 #include "gst/track/lateness.hpp"
 #include "gst/track/load_watch.hpp"
@@ -26,6 +27,7 @@ struct TrackStream {
   LoadWatch load;
   guint64 frame = 0;
   std::optional<ellipse::Target> last_target;
+  Sighting sighting;
 };
 
 /// State that threads share under the object lock.

@@ -9,6 +9,7 @@
 #include "core/camera/camera_file.hpp"
 #include "core/detection/evidence.hpp"
 #include "core/tracking/setting_effect.hpp"
+#include "gst/track/analytics_meta.hpp"
 #include "gst/track/track_enums.hpp"
 
 namespace {
@@ -21,6 +22,7 @@ enum {
   PROP_INTERVAL,
   PROP_MESSAGES,
   PROP_ATTACH_ROI_META,
+  PROP_ATTACH_ANALYTICS,
   PROP_CANDIDATES,
   PROP_ROI_SOURCE,
   PROP_ROI,
@@ -111,6 +113,15 @@ void write_rect(const ellipse::Rect& rect, GValue* value) {
   }
 }
 
+bool analytics_from(const GValue* value) {
+  const bool is_wanted = g_value_get_boolean(value) != FALSE;
+  if (is_wanted && !has_analytics()) {
+    throw std::invalid_argument(
+        "attach-analytics needs a build with GStreamer 1.24 or later and gstreamer-analytics-1.0");
+  }
+  return is_wanted;
+}
+
 // nullptr if the property is not one of the tracker's numbers.
 const ellipse::SettingInfo* number_info(guint which) {
   const auto infos = ellipse::setting_infos();
@@ -193,6 +204,13 @@ void install_reports(const Installer& install, const TrackProperties& initial) {
                            "Also attach the target's bounding box as GstVideoRegionOfInterestMeta",
                            initial.attach_roi_meta ? TRUE : FALSE,
                            kPlaying));
+  install(PROP_ATTACH_ANALYTICS,
+          g_param_spec_boolean("attach-analytics",
+                               "Attach analytics",
+                               "Also attach each ellipse as a detected object in "
+                               "GstAnalyticsRelationMeta; needs GStreamer 1.24",
+                               initial.attach_analytics ? TRUE : FALSE,
+                               kPlaying));
   install(PROP_CANDIDATES,
           g_param_spec_boolean("candidates",
                                "Candidates",
@@ -312,6 +330,7 @@ void PropertyChange::apply_to(TrackProperties& properties) const {
   if (which_ == PROP_ATTACH_ROI_META) {
     properties.attach_roi_meta = g_value_get_boolean(value) != FALSE;
   }
+  if (which_ == PROP_ATTACH_ANALYTICS) properties.attach_analytics = analytics_from(value);
   if (which_ == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
   if (which_ == PROP_ROI_SOURCE) properties.roi_source = g_value_get_enum(value);
   if (which_ == PROP_ROI) properties.roi = rect_from(value);
@@ -351,6 +370,7 @@ void TrackProperties::get(guint which, GValue* value) const {
   if (which == PROP_INTERVAL) g_value_set_uint(value, interval);
   if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
   if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
+  if (which == PROP_ATTACH_ANALYTICS) g_value_set_boolean(value, attach_analytics ? TRUE : FALSE);
   if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
   if (which == PROP_ROI_SOURCE) g_value_set_enum(value, roi_source);
   if (which == PROP_ROI) write_rect(roi, value);

@@ -17,6 +17,7 @@ struct TrackProperties {
   guint interval = 1;
   int messages = MESSAGES_ON_CHANGE;
   bool attach_roi_meta = true;
+  bool attach_analytics = false;  ///< Only if has_analytics().
   int roi_source = ROI_SOURCE_NONE;
   ellipse::Rect roi;                     ///< [px] of the frame; clipped to it when used.
   std::string roi_type;                  ///< Type of the regions to search; empty = any.

@@ -43,10 +43,10 @@ std::vector<Frame> film(const char* scene, int frames, const IsMissing& is_missi
 }
 
 // Two seconds, rendered once.
-const std::vector<Frame>& film(const std::string& scene) {
+const std::vector<Frame>& film(const char* scene) {
   static std::map<std::string, std::vector<Frame>> films;
   std::vector<Frame>& found = films[scene];
-  if (found.empty()) found = film(scene.c_str(), 60, [](int) { return false; });
+  if (found.empty()) found = film(scene, 60, [](int) { return false; });
   return found;
 }
 

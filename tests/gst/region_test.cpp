@@ -8,6 +8,10 @@
 #include "tests/gst/support.hpp"
 #include "tests/gst/tracker_harness.hpp"
 
+#ifdef ELLIPSE_HAS_ANALYTICS
+#include <gst/analytics/analytics.h>
+#endif
+
 namespace {
 
 using support::BusTap;
@@ -180,6 +184,59 @@ TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
   EXPECT_EQ(meta->roi_width, 120U);
   EXPECT_EQ(meta->roi_height, 100U);
 }
+
+#ifdef ELLIPSE_HAS_ANALYTICS
+
+// As a detector does it.
+GstPadProbeReturn detect_objects(GstPad* /*pad*/, GstPadProbeInfo* info, gpointer /*data*/) {
+  GstBuffer* buffer = gst_buffer_make_writable(GST_PAD_PROBE_INFO_BUFFER(info));
+  info->data = buffer;
+  GstAnalyticsRelationMeta* relations = gst_buffer_add_analytics_relation_meta(buffer);
+  const auto add = [&](const char* type, const int(&box)[4]) {
+    GstAnalyticsODMtd object;
+    gst_analytics_relation_meta_add_od_mtd(
+        relations, g_quark_from_string(type), box[0], box[1], box[2], box[3], 0.9F, &object);
+  };
+  add("face", kLeftHalf);
+  add("pad", kRightHalf);
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(EllipseTrackRegion, IsThatOfDetectedObjects) {
+  const auto harness = tracker("roi-source=meta roi-type=pad");
+  const auto of_any_type = tracker("roi-source=meta");
+  for (GstHarness* each : {harness.get(), of_any_type.get()}) {
+    gst_pad_add_probe(each->srcpad, GST_PAD_PROBE_TYPE_BUFFER, detect_objects, nullptr, nullptr);
+  }
+  const auto out = push(harness, two_rings());
+  expect_at(out, kRight);
+  EXPECT_GE(target_on(out)->roi_x, 160);
+  EXPECT_EQ(target_on(push(of_any_type, two_rings()))->roi_width, 320U);
+}
+
+TEST(EllipseTrackRegion, OfObjectsReachesToThoseOfRegions) {
+  const auto harness = tracker("roi-source=meta");
+  auto buffer = gray_buffer_of(ring_picture());  // its box: 103 to 197, 71 to 149
+  add_region(buffer, "pad", {90, 60, 20, 20});
+  GstAnalyticsODMtd object;
+  gst_analytics_relation_meta_add_od_mtd(gst_buffer_add_analytics_relation_meta(buffer.get()),
+                                         g_quark_from_string("pad"),
+                                         190,
+                                         150,
+                                         1000,
+                                         10,
+                                         0.9F,
+                                         &object);
+  const auto out = push(harness, std::move(buffer));
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_EQ(meta->roi_x, 90);
+  EXPECT_EQ(meta->roi_y, 60);
+  EXPECT_EQ(meta->roi_width, 230U);
+  EXPECT_EQ(meta->roi_height, 100U);
+}
+
+#endif
 
 Owned<GstBuffer> cropped(Owned<GstBuffer> buffer, const int (&box)[4]) {
   GstVideoCropMeta* crop = gst_buffer_add_video_crop_meta(buffer.get());
