@@ -384,7 +384,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const scale = box.width / width;
     const [x, y] = [e.cx + e.semi_major * Math.cos(e.angle_rad), e.cy + e.semi_major * Math.sin(e.angle_rad)];
     await page.mouse.click(box.x + (x + 0.5) * scale, box.y + (y + 0.5) * scale);
-    await page.waitForFunction(() => /^The target/.test(document.activeElement.textContent));
+    await page.waitForFunction(() => /^Target, /.test(document.activeElement.textContent));
     await page.close();
   });
 
