@@ -8,15 +8,15 @@
 #include <optional>
 #include <stdexcept>
 
-#include "examples/live/http/json_writer.hpp"
 #include "examples/live/http/label_api.hpp"
 #include "examples/live/http/metrics.hpp"
 #include "examples/live/http/page_files.hpp"
-#include "examples/live/http/request_json.hpp"
-#include "examples/live/http/structure_json.hpp"
+#include "examples/live/json_writer.hpp"
 #include "examples/live/pipeline/analyst.hpp"
 #include "examples/live/pipeline/launch_line.hpp"
 #include "examples/live/pipeline/presets.hpp"
+#include "examples/live/request_json.hpp"
+#include "examples/live/structure_json.hpp"
 
 namespace live {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "examples/live/http/http_reply.hpp"
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 namespace live {
 

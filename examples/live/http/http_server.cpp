@@ -138,7 +138,8 @@ void HttpServer::on_request(SoupServer* /*server*/,
                             GHashTable* /*query*/,
                             gpointer data) {
   auto* self = static_cast<HttpServer*>(data);
-  GSocket* socket = self->connections_.clear_deadline(soup_server_message_get_remote_address(message));
+  GSocket* socket =
+      self->connections_.clear_deadline(soup_server_message_get_remote_address(message));
   const auto websocket = self->websockets_.find(path);
   if (websocket == self->websockets_.end()) {
     self->dispatch(message, path);

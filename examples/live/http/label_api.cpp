@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "examples/live/http/json_writer.hpp"
-#include "examples/live/http/request_json.hpp"
+#include "examples/live/json_writer.hpp"
 #include "examples/live/outputs/label_store.hpp"
+#include "examples/live/request_json.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
 
 namespace live {

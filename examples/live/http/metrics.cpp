@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 namespace live {
 namespace {

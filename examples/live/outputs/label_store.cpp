@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 namespace live {
 namespace {

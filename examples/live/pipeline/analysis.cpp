@@ -11,7 +11,7 @@
 
 #include "core/detection/evidence.hpp"
 #include "core/tracking/tracker.hpp"
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 #include "gst/track/video_view.hpp"
 
 namespace live {

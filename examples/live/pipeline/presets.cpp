@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 #include "examples/live/ref.hpp"
 
 namespace live {

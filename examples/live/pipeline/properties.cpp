@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "examples/live/http/json_writer.hpp"
-#include "examples/live/http/request_json.hpp"
+#include "examples/live/json_writer.hpp"
 #include "examples/live/pipeline/property_input.hpp"
 #include "examples/live/pipeline/property_json.hpp"
 #include "examples/live/ref.hpp"
+#include "examples/live/request_json.hpp"
 
 namespace live {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 #include "examples/live/pipeline/property_json.hpp"
 
 namespace live {

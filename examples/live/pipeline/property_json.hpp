@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/tracking/settings.hpp"
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 namespace live {
 

@@ -2,7 +2,7 @@
 
 #include <gst/gst.h>
 
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 namespace live {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "examples/live/http/request_json.hpp"
+#include "examples/live/request_json.hpp"
 
 #include <cmath>
 #include <stdexcept>

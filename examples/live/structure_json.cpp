@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "examples/live/http/structure_json.hpp"
+#include "examples/live/structure_json.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "examples/live/http/json_writer.hpp"
+#include "examples/live/json_writer.hpp"
 
 #include <glib.h>
 
