@@ -78,6 +78,11 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
   constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
   alignas(16) std::uint8_t levels[kLanes];
   crossing.read(levels);
+  // In a loop of its own: between bytes and floats the other would use vectors of two floats only.
+  alignas(32) float intensities[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    intensities[lane] = static_cast<float>(levels[lane]) - 128.0F;
+  }
   for (int lane = 0; lane < kLanes; ++lane) {
     const float t = static_cast<float>(lane - kBefore) - crossing.offset;
     const float distance = t * (crossing.slope + crossing.bend * t);
@@ -89,7 +94,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
     const float g = 35.0F / 32.0F * inverse_step * (one * rest * rest * rest);
     const float s =
         one * (0.5F + x * (35.0F + xx * (-35.0F + xx * (21.0F - 5.0F * xx))) * (1.0F / 32.0F));
-    const float i = one * (static_cast<float>(levels[lane]) - 128.0F);
+    const float i = one * intensities[lane];
     sums.of[k1][lane] += one;
     sums.of[kS][lane] += s;
     sums.of[kSS][lane] += s * s;
