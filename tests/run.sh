@@ -17,12 +17,13 @@ skipped=0
 failures=()
 werror=false
 
-# build FOLDER OPTION...: sets up what is not set up yet, and builds.
+# build FOLDER OPTION...: sets up, and builds. A folder that is set up already is set up again, because
+# packages may have been installed since: demo.sh needs fewer.
 build() {
   local folder="$project/$1"
   shift
   if [ -e "$folder/build.ninja" ]; then
-    meson configure "$folder" -Dwerror=$werror "$@" || return
+    meson setup --reconfigure "$folder" "$project" -Dwerror=$werror "$@" || return
   else
     meson setup "$folder" "$project" -Dwerror=$werror "$@" || return
   fi

@@ -54,7 +54,7 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
                                                const std::optional<Ellipse>& last_target) {
   const LensView lens = frame.lens.part(Eigen::Vector2d(region.x, region.y)).reduced(scale);
   const auto detections =
-      detector_->detect({scaler_.reduce(read(frame, region), scale), lens}, thresholds);
+      detector_->detect({scaler_.reduce(read(region), scale), lens}, thresholds);
   candidates_.assign(detections.begin(), detections.end());
   for (Detection& candidate : candidates_) {
     candidate.ellipse = to_frame(candidate.ellipse, region, scale);
@@ -79,14 +79,15 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
   return target;
 }
 
-ImageView FrameSearch::read(const ScopedFrame& frame, const Rect& region) {
-  region_ = region;
-  return luma_reader_.read(frame.pixels, region);
-}
-
-void FrameSearch::clear() {
+void FrameSearch::begin(const PixelView& pixels) {
+  luma_reader_.begin(pixels);
   region_ = {};
   candidates_.clear();
+}
+
+ImageView FrameSearch::read(const Rect& region) {
+  region_ = region;
+  return luma_reader_.read(region);
 }
 
 }  // namespace ellipse

@@ -53,11 +53,11 @@ class FrameSearch {
                                                   const Thresholds& thresholds,
                                                   const std::optional<Ellipse>& last_target = {});
 
-  /// The luma of a region. Valid until the next call of this or of find_target().
-  [[nodiscard]] ImageView read(const ScopedFrame& frame, const Rect& region);
+  /// Begins a frame: clears the region and the candidates. Borrows the pixels until the next one.
+  void begin(const PixelView& pixels);
 
-  /// Clears the region and the candidates.
-  void clear();
+  /// The luma of a region of the frame. Valid until the next call of this or of find_target().
+  [[nodiscard]] ImageView read(const Rect& region);
 
   /// Region that was read last [px].
   [[nodiscard]] const Rect& region() const { return region_; }

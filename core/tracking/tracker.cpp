@@ -79,7 +79,7 @@ ScopedFrame Tracker::take_in(const PixelView& frame, const SearchScope& scope) {
   if (is_other_size || searchable.empty()) reset();
   frame_bounds_ = frame.bounds();
   if (is_other_size || is_lens_stale_) make_lens();
-  search_->clear();
+  search_->begin(frame);
   int finest_scale = scope.finest_scale;
   while (finest_scale > settings_.max_scale) finest_scale /= 2;
   return {frame, searchable, finest_scale, lens()};
@@ -224,7 +224,7 @@ Target Tracker::acquire(const ScopedFrame& frame, Target target) {
 }
 
 LumaWindow Tracker::window_on(const ScopedFrame& frame, const Rect& region) {
-  return {search_->read(frame, region),
+  return {search_->read(region),
           Eigen::Vector2d(region.x, region.y),
           Eigen::Vector2d(frame.pixels.width, frame.pixels.height),
           frame.lens,
@@ -288,7 +288,7 @@ void Tracker::reset() {
   hypothesis_.reset();
   absence_s_ = std::numeric_limits<double>::infinity();
   clock_ = {};
-  search_->clear();
+  search_->begin({});
   *redetect_tracker_ = {};
   pad_tracker_->release();
   pose_estimator_.forget();

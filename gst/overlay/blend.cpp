@@ -58,15 +58,29 @@ struct Sum {
   }
 };
 
-guint8 mixed(guint8 sample, const Mix& mix, const Sum& sum, int pixels) {
-  const auto under = static_cast<float>(sample);
+float mixed(float under, const Mix& mix, const Sum& sum, int pixels) {
   const float alpha = static_cast<float>(sum.alpha) * (1.0F / 255.0F);
   const float over = mix.red * static_cast<float>(sum.red) +
                      mix.green * static_cast<float>(sum.green) +
                      mix.blue * static_cast<float>(sum.blue);
-  const float level = under + (over + (mix.offset - under) * alpha) / static_cast<float>(pixels);
-  // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-  return static_cast<guint8>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
+  return under + (over + (mix.offset - under) * alpha) / static_cast<float>(pixels);
+}
+
+// How the samples of a component are stored: a byte each, two bytes, or three in 32 bits.
+enum class Storage { kByte, kLittleEndian, kBigEndian, kPacked };
+
+Storage storage_of(const GstVideoFormatInfo* format) {
+  if (GST_VIDEO_FORMAT_INFO_FORMAT(format) == GST_VIDEO_FORMAT_GRAY10_LE32) return Storage::kPacked;
+  if (GST_VIDEO_FORMAT_INFO_DEPTH(format, 0) == 8) return Storage::kByte;
+  return GST_VIDEO_FORMAT_INFO_IS_LE(format) ? Storage::kLittleEndian : Storage::kBigEndian;
+}
+
+// GStreamer 1.22 puts V of P010 at byte 1, in the middle of U: samples of two bytes are aligned.
+guint8* first_sample(GstVideoFrame& frame, guint component) {
+  const GstVideoFormatInfo* format = frame.info.finfo;
+  const int offset = GST_VIDEO_FORMAT_INFO_POFFSET(format, component);
+  const int misplaced = GST_VIDEO_FORMAT_INFO_DEPTH(format, component) > 8 ? offset % 2 : 0;
+  return static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, component)) + misplaced;
 }
 
 // The samples of one component; each is shared by a block of pixels.
@@ -75,9 +89,12 @@ class Plane {
   Plane(GstVideoFrame& frame, guint component)
       : x_shift_(GST_VIDEO_FORMAT_INFO_W_SUB(frame.info.finfo, component)),
         y_shift_(GST_VIDEO_FORMAT_INFO_H_SUB(frame.info.finfo, component)),
-        data_(static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, component))),
+        data_(first_sample(frame, component)),
         stride_(GST_VIDEO_FRAME_COMP_STRIDE(&frame, component)),
-        pixel_stride_(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component)) {}
+        pixel_stride_(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component)),
+        storage_(storage_of(frame.info.finfo)),
+        unused_bits_(GST_VIDEO_FORMAT_INFO_SHIFT(frame.info.finfo, component)),
+        max_((1U << GST_VIDEO_FORMAT_INFO_DEPTH(frame.info.finfo, component)) - 1U) {}
 
   void blend(const Canvas& canvas, const Mix& mix) const {
     for (const auto& tile : canvas.tiles()) {
@@ -103,8 +120,51 @@ class Plane {
         }
       }
       if (sum.alpha == 0) continue;
-      guint8& sample = samples[std::ptrdiff_t{(tile.x + left) >> x_shift_} * pixel_stride_];
-      sample = mixed(sample, mix, sum, (bottom - top) * (right - left));
+      blend_sample(samples, (tile.x + left) >> x_shift_, mix, sum, (bottom - top) * (right - left));
+    }
+  }
+
+  void blend_sample(guint8* row, int column, const Mix& mix, const Sum& sum, int pixels) const {
+    const bool is_packed = storage_ == Storage::kPacked;
+    guint8* at =
+        row + (is_packed ? std::ptrdiff_t{column / 3} * 4 : std::ptrdiff_t{column} * pixel_stride_);
+    const guint shift = is_packed ? static_cast<guint>(column % 3) * 10U : unused_bits_;
+    const guint32 word = load(at);
+    const auto under = static_cast<float>(word >> shift & max_);
+    const float level = std::clamp(mixed(under, mix, sum, pixels), 0.0F, static_cast<float>(max_));
+    // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+    const auto sample = static_cast<guint32>(level + 0.5F);
+    store(at, (word & ~(max_ << shift)) | sample << shift);
+  }
+
+  [[nodiscard]] guint32 load(const guint8* at) const {
+    switch (storage_) {
+      case Storage::kByte:
+        return *at;
+      case Storage::kLittleEndian:
+        return GST_READ_UINT16_LE(at);
+      case Storage::kBigEndian:
+        return GST_READ_UINT16_BE(at);
+      case Storage::kPacked:
+        return GST_READ_UINT32_LE(at);
+    }
+    return 0;
+  }
+
+  void store(guint8* at, guint32 word) const {
+    switch (storage_) {
+      case Storage::kByte:
+        *at = static_cast<guint8>(word);
+        break;
+      case Storage::kLittleEndian:
+        GST_WRITE_UINT16_LE(at, static_cast<guint16>(word));
+        break;
+      case Storage::kBigEndian:
+        GST_WRITE_UINT16_BE(at, static_cast<guint16>(word));
+        break;
+      case Storage::kPacked:
+        GST_WRITE_UINT32_LE(at, word);
+        break;
     }
   }
 
@@ -113,6 +173,9 @@ class Plane {
   guint8* data_;
   std::ptrdiff_t stride_;
   std::ptrdiff_t pixel_stride_;
+  Storage storage_;
+  guint unused_bits_;  // below a sample
+  guint32 max_;
 };
 
 }  // namespace

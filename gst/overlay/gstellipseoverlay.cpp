@@ -222,6 +222,15 @@ static GstFlowReturn gst_ellipse_overlay_transform_ip(GstBaseTransform* base, Gs
   return GST_FLOW_OK;
 }
 
+static gboolean gst_ellipse_overlay_accept_caps(GstBaseTransform* base,
+                                                GstPadDirection direction,
+                                                GstCaps* caps) {
+  const gboolean is_accepted = GST_BASE_TRANSFORM_CLASS(gst_ellipse_overlay_parent_class)
+                                   ->accept_caps(base, direction, caps);
+  if (!is_accepted && direction == GST_PAD_SINK) explain_refusal(base, caps);
+  return is_accepted;
+}
+
 static gboolean gst_ellipse_overlay_propose_allocation(GstBaseTransform* base,
                                                        GstQuery* decide_query,
                                                        GstQuery* query) {
@@ -272,5 +281,6 @@ static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
   base_class->transform_ip = gst_ellipse_overlay_transform_ip;
   base_class->transform_caps = gst_ellipse_overlay_transform_caps;
   base_class->fixate_caps = gst_ellipse_overlay_fixate_caps;
+  base_class->accept_caps = gst_ellipse_overlay_accept_caps;
   base_class->propose_allocation = gst_ellipse_overlay_propose_allocation;
 }

@@ -337,6 +337,9 @@ static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
 static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
                                                      GstQuery* decide_query,
                                                      GstQuery* query) {
+  GstCaps* caps = nullptr;
+  gst_query_parse_allocation(query, &caps, nullptr);
+  if (caps != nullptr && is_mosaic(caps)) return TRUE;  // no video metadata describe one
   gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
   return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)
       ->propose_allocation(base, decide_query, query);
@@ -370,6 +373,41 @@ static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
                         ("put deinterlace upstream"));
   }
   return TRUE;
+}
+
+// The base class knows raw video only.
+static gboolean gst_ellipse_track_set_caps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
+  auto* filter = GST_VIDEO_FILTER(base);
+  auto* self = GST_ELLIPSE_TRACK(base);
+  self->stream->is_mosaic = is_mosaic(in);
+  if (!self->stream->is_mosaic) {
+    return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->set_caps(base, in, out);
+  }
+  filter->negotiated = set_mosaic_info(&filter->in_info, in);
+  filter->out_info = filter->in_info;
+  return filter->negotiated;
+}
+
+static gboolean gst_ellipse_track_get_unit_size(GstBaseTransform* base,
+                                                GstCaps* caps,
+                                                gsize* size) {
+  if (!is_mosaic(caps)) {
+    return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)
+        ->get_unit_size(base, caps, size);
+  }
+  GstVideoInfo info;
+  if (!set_mosaic_info(&info, caps)) return FALSE;
+  *size = GST_VIDEO_INFO_SIZE(&info);
+  return TRUE;
+}
+
+static gboolean gst_ellipse_track_accept_caps(GstBaseTransform* base,
+                                              GstPadDirection direction,
+                                              GstCaps* caps) {
+  const gboolean is_accepted =
+      GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->accept_caps(base, direction, caps);
+  if (!is_accepted && direction == GST_PAD_SINK) explain_refusal(base, caps);
+  return is_accepted;
 }
 
 static void gst_ellipse_track_reset(GstEllipseTrack* self) {
@@ -443,6 +481,9 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
   base_class->start = gst_ellipse_track_start;
   base_class->stop = gst_ellipse_track_stop;
   base_class->query = gst_ellipse_track_query;
+  base_class->set_caps = gst_ellipse_track_set_caps;
+  base_class->get_unit_size = gst_ellipse_track_get_unit_size;
+  base_class->accept_caps = gst_ellipse_track_accept_caps;
   base_class->propose_allocation = gst_ellipse_track_propose_allocation;
   base_class->filter_meta = gst_ellipse_track_filter_meta;
   GST_VIDEO_FILTER_CLASS(klass)->set_info = gst_ellipse_track_set_info;

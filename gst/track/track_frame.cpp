@@ -212,7 +212,7 @@ static void analyse(GstEllipseTrack* self,
   const GstClockTime start = gst_util_get_timestamp();
   ellipse::Tracker& tracker = self->stream->tracker;
   tracker.configure(properties.tracker);
-  const auto target = tracker.process(pixel_view_of(mapped.frame()),
+  const auto target = tracker.process(pixel_view_of(mapped.frame(), self->stream->is_mosaic),
                                       static_cast<gint64>(times.pts),
                                       {bounds, self->stream->load.scale()});
   const GstClockTime processing_time = gst_util_get_timestamp() - start;

@@ -26,6 +26,7 @@ struct TrackStream {
   Overlay overlay;
   LoadWatch load;
   guint64 frame = 0;
+  bool is_mosaic = false;  ///< Of a Bayer sensor; the frames' info is that of GRAY8.
   std::optional<ellipse::Target> last_target;
   Sighting sighting;
 };

@@ -1,19 +1,27 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <gst/base/gstbasetransform.h>
 #include <gst/video/video.h>
 
 #include "core/image/luma.hpp"
 
-/// Raw formats whose luma is read in place or computed from 8-bit red, green and blue.
-#define GST_ELLIPSE_VIDEO_FORMATS                                                               \
-  "{ GRAY8, I420, YV12, NV12, NV21, NV16, Y41B, Y42B, Y444, YUY2, UYVY, YVYU, RGB, BGR, RGBx, " \
-  "BGRx, xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }"
-
-/// Adds sink and source pad templates for these formats to an element class.
+/// Adds sink and source pad templates for the formats whose luma can be read to an element class:
+/// raw video, and the mosaics of Bayer sensors.
 void add_video_pad_templates(GstElementClass* element_class);
 
-/// Adds pad templates that also accept the caps feature meta:GstVideoOverlayComposition.
+/// Adds pad templates for raw video that also accept the caps feature
+/// meta:GstVideoOverlayComposition.
 void add_composing_pad_templates(GstElementClass* element_class);
+
+/// If these caps are those of the stream that upstream begins, not of a query: posts an error with
+/// the formats of the sink pad, which do not include them.
+void explain_refusal(GstBaseTransform* element, GstCaps* caps);
+
+/// Whether these are the caps of a Bayer mosaic of 8 bits.
+[[nodiscard]] bool is_mosaic(const GstCaps* caps);
+
+/// Describes a mosaic as the GRAY8 frame that has its bytes. @return False if the caps lack a size.
+[[nodiscard]] bool set_mosaic_info(GstVideoInfo* info, const GstCaps* caps);
 
 /// Maps a video buffer for its lifetime. Takes no reference, so that metadata can be attached to
 /// the mapped buffer.
@@ -33,5 +41,6 @@ class MappedFrame {
   bool is_mapped_;
 };
 
-/// A view of a mapped frame in one of these formats. Copies no pixel; valid while it is mapped.
-[[nodiscard]] ellipse::PixelView pixel_view_of(const GstVideoFrame& frame);
+/// A view of a mapped frame in one of these formats. Copies no pixel; valid while it is mapped. All
+/// memory but the system's counts as slow to read.
+[[nodiscard]] ellipse::PixelView pixel_view_of(const GstVideoFrame& frame, bool is_mosaic = false);

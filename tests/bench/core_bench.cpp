@@ -66,7 +66,8 @@ void read_luma(State& state, const Frames& frames, const PackedFormat& format) {
       const auto stride = static_cast<std::ptrdiff_t>(picture.step);
       const ellipse::PixelView view(
           picture.data, picture.cols, picture.rows, stride, format.layout);
-      DoNotOptimize(reader->read(view, view.bounds()));
+      reader->begin(view);
+      DoNotOptimize(reader->read(view.bounds()));
     };
   });
 }

@@ -120,7 +120,8 @@ TEST_F(Allocations, NoneInLumaOfARegionThatMoves) {
   LumaReader reader;
   int x = 0;
   const auto read = [&] {
-    return reader.read(bgr_view(bytes, 320, 240), {x += 10, 20, 100 - x, 80}).width;
+    reader.begin(bgr_view(bytes, 320, 240));
+    return reader.read({x += 10, 20, 100 - x, 80}).width;
   };
   EXPECT_EQ(steady_allocations_of(read), 0);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The small stages around the detector: luma, overlap, thresholds, settings, scale, roi.
+// The small stages around the detector: overlap, thresholds, settings, scale, roi.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,6 @@
 
 #include "core/detection/contours/overlap.hpp"
 #include "core/detection/detectors.hpp"
-#include "core/image/luma.hpp"
 #include "core/image/scale.hpp"
 #include "core/tracking/roi.hpp"
 #include "core/tracking/settings.hpp"
@@ -38,45 +37,6 @@ TEST(ImageView, RegionIsClipped) {
   EXPECT_EQ(part.height, 3);
   EXPECT_EQ(part.data, picture.pixels.data() + 6);
   EXPECT_TRUE(picture.view().region({10, 0, 5, 5}).empty());
-}
-
-TEST(LumaReader, ReadsPlainLumaWhereItLies) {
-  const support::Picture picture(10, 8, 7);
-  LumaReader reader;
-  const ImageView region = reader.read(picture.view(), {2, 3, 4, 4});
-  EXPECT_EQ(region.data, picture.pixels.data() + 32);
-  EXPECT_EQ(region.stride, 10);
-}
-
-TEST(LumaReader, WeighsColoursInAnyOrder) {
-  // One pixel, red 200, green 100, blue 50: luma 0.299 R + 0.587 G + 0.114 B = 124.2.
-  const std::array<std::uint8_t, 4> xrgb = {9, 200, 100, 50};
-  const std::array<std::uint8_t, 4> bgr = {50, 100, 200, 9};
-  using Kind = PixelLayout::Kind;
-  LumaReader reader;
-  EXPECT_EQ(*reader.read({xrgb.data(), 1, 1, 4, {Kind::kRgb, 4, 0, 1, 2, 3}}, {0, 0, 1, 1}).data,
-            124);
-  EXPECT_EQ(*reader.read({bgr.data(), 1, 1, 3, {Kind::kRgb, 3, 0, 2, 1, 0}}, {0, 0, 1, 1}).data,
-            124);
-}
-
-TEST(LumaReader, ConvertsOnlyTheRegion) {
-  const std::array<std::uint8_t, 8> yuy2 = {10, 128, 20, 128, 30, 128, 40, 128};
-  LumaReader reader;
-  const ImageView luma =
-      reader.read({yuy2.data(), 4, 1, 8, {PixelLayout::Kind::kLuma, 2}}, {1, 0, 2, 1});
-  ASSERT_EQ(luma.width, 2);
-  EXPECT_EQ(luma.data[0], 20);
-  EXPECT_EQ(luma.data[1], 30);
-}
-
-TEST(LumaReader, TurnsPicturesThatLieUpsideDown) {
-  const std::array<std::uint8_t, 4> rows = {1, 2, 3, 4};
-  LumaReader reader;
-  const ImageView luma = reader.read(ImageView{rows.data() + 2, 2, 2, -2}, {0, 0, 2, 2});
-  EXPECT_GE(luma.stride, 0);
-  EXPECT_EQ(luma.row(0)[0], 3);
-  EXPECT_EQ(luma.row(1)[1], 2);
 }
 
 TEST(ContourOverlap, IsShareOfPixelsNearTheEllipse) {

@@ -37,12 +37,9 @@ void paint(GstBuffer* buffer, const GstVideoInfo& info, const Picture& picture, 
   ASSERT_TRUE(gst_video_frame_map(&frame, &info, buffer, GST_MAP_WRITE));
   const guint components = GST_VIDEO_FORMAT_INFO_IS_RGB(info.finfo) ? 3 : 1;
   for (guint c = 0; c < components; ++c) {
-    const std::ptrdiff_t step = GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, c);
     for (int row = 0; row < picture.height; ++row) {
-      auto* out = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, c)) +
-                  std::ptrdiff_t{y + row} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, c) + x * step;
       for (int column = 0; column < picture.width; ++column) {
-        out[column * step] = picture.view().row(row)[column];
+        support::set_sample(frame, c, x + column, y + row, picture.view().row(row)[column]);
       }
     }
   }
@@ -159,6 +156,60 @@ TEST(EllipseTrackFrames, InterlacedOnesAreWarnedOf) {
     const std::string caps = caps_of("GRAY8", 320, 240) + ",interlace-mode=" + mode;
     gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
     EXPECT_EQ(static_cast<bool>(bus.pop(GST_MESSAGE_WARNING)), std::string(mode) != "progressive");
+  }
+}
+
+TEST(EllipseTrackFrames, OtherFormatsEndWithTheListOfThoseServed) {
+  for (const char* element : {"ellipsetrack", "ellipseoverlay"}) {
+    support::Pipeline pipeline(
+        std::string("filesrc location=/dev/zero num-buffers=100 ! rawvideoparse format=v210 "
+                    "width=48 height=32 ! ") +
+        element + " ! fakesink");
+    ASSERT_EQ(pipeline.failure(), "");
+    pipeline.play();
+    const std::string words = pipeline.wait_for_end();
+    EXPECT_NE(words.find("v210"), std::string::npos) << words;
+    EXPECT_NE(words.find("GRAY8, I420"), std::string::npos) << words;
+    EXPECT_NE(words.find("P010_10LE"), std::string::npos) << words;
+    EXPECT_EQ(words.find("rggb") != std::string::npos, std::string(element) == "ellipsetrack");
+  }
+}
+
+// A query is no stream.
+TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
+  const auto harness = tracker();
+  BusTap bus(element_of(harness));
+  GstCaps* caps = gst_caps_from_string(caps_of("v210", 48, 32).c_str());
+  EXPECT_FALSE(gst_pad_peer_query_accept_caps(harness->srcpad, caps));
+  gst_caps_unref(caps);
+  EXPECT_FALSE(bus.pop(GST_MESSAGE_ERROR));
+}
+
+// As from a camera: GStreamer's own converter makes the mosaic.
+TEST(EllipseTrackFrames, MosaicsAndTenBitsGiveTheEllipseOfGrey) {
+  const auto centre_in = [](const std::string& format) {
+    support::Pipeline pipeline("ellipsetestsrc num-buffers=5 ! videoconvert ! " + format +
+                               " ! ellipsetrack name=t ! fakesink");
+    if (pipeline.failure().starts_with(support::Pipeline::kNotInstalled)) return 0.0;
+    EXPECT_EQ(pipeline.failure(), "");
+    pipeline.play();
+    EXPECT_EQ(pipeline.wait_for_end(), "") << format;
+    const Owned<GstStructure> target(
+        support::structure_property(pipeline.element("t").get(), "target"));
+    double cx = 0.0;
+    EXPECT_TRUE(target && gst_structure_get_double(target.get(), "cx", &cx)) << format;
+    return cx;
+  };
+  const double grey = centre_in("video/x-raw,format=GRAY8");
+  for (const char* format : {"P010_10LE", "I420_10LE", "GRAY16_LE", "GRAY10_LE32"}) {
+    EXPECT_NEAR(centre_in(std::string("video/x-raw,format=") + format), grey, 0.02) << format;
+  }
+  for (const char* arrangement : support::kMosaics) {
+    const double cx = centre_in(std::string("video/x-raw,format=ARGB ! rgb2bayer ! "
+                                            "video/x-bayer,format=") +
+                                arrangement);
+    if (cx == 0.0) GTEST_SKIP() << "no rgb2bayer";
+    EXPECT_NEAR(cx, grey, 0.05) << arrangement;
   }
 }
 

@@ -10,13 +10,15 @@
 #include <vector>
 
 #include "core/geometry/ellipse.hpp"
+#include "core/image/luma.hpp"
+#include "gst/track/video_view.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
 
 using ellipse::Ellipse;
 using support::add_circle;
-using support::all_formats;
+using support::byte_formats;
 using support::caps_of;
 using support::harness_of;
 using support::info_of;
@@ -119,7 +121,7 @@ bool is_near(const Ellipse& e, const ellipse::Rect& block, double reach_px) {
 
 TEST(EllipseOverlay, ChangesNoByteAwayFromTheLine) {
   const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
-  for (const char* format : all_formats()) {
+  for (const char* format : byte_formats()) {
     for (const int line_width : {1, 2, 5, 8}) {
       const GstVideoInfo info = info_of(format, 161, 121);
       const std::string caps = caps_of(format, 161, 121);
@@ -145,7 +147,7 @@ TEST(EllipseOverlay, ChangesNoByteAwayFromTheLine) {
 
 TEST(EllipseOverlay, CoversTheWholeLineInEachFormat) {
   const Ellipse circle{80.5, 60.5, 30.0, 30.0, 0.0};
-  for (const char* format : all_formats()) {
+  for (const char* format : byte_formats()) {
     const auto buffer = drawn("overlay=ellipse overlay-color=0xffffffff", format, 161, 121, circle);
     const Bytes bytes = bytes_of(buffer.get());
     int on_line = 0;
@@ -169,7 +171,7 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
                              {"bt709", {63, 102, 240}},
                              {"1:4:5:1", {76, 85, 255}},
                              {"1:3:5:1", {54, 99, 255}}};
-  for (const char* format : all_formats()) {
+  for (const char* format : byte_formats()) {
     for (const Case& of : kCases) {
       const GstVideoInfo info = info_of(format, 97, 97);
       if (!GST_VIDEO_INFO_IS_YUV(&info)) continue;
@@ -188,9 +190,70 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
   }
 }
 
+// The luma or grey of a frame, its 8 highest bits, as ellipsetrack reads them.
+std::vector<int> levels_of(GstBuffer* buffer, const GstVideoInfo& info) {
+  GstVideoFrame frame;
+  EXPECT_TRUE(gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ));
+  ellipse::LumaReader reader;
+  reader.begin(pixel_view_of(frame));
+  const ellipse::ImageView luma = reader.read({0, 0, frame.info.width, frame.info.height});
+  std::vector<int> levels;
+  for (int y = 0; y < luma.height; ++y) {
+    levels.insert(levels.end(), luma.row(y), luma.row(y) + luma.width);
+  }
+  gst_video_frame_unmap(&frame);
+  return levels;
+}
+
+TEST(EllipseOverlay, DrawsTheSameWithMoreBits) {
+  const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
+  const std::string settings = std::string(kAllParts) + " overlay-color=0xff40f010";
+  for (const char* format : support::kDeepFormats) {
+    if (gst_video_format_from_string(format) == GST_VIDEO_FORMAT_UNKNOWN) continue;
+    const GstVideoInfo info = info_of(format, 161, 121);
+    const char* of_bytes = GST_VIDEO_INFO_IS_GRAY(&info) ? "GRAY8" : "I420";
+    const auto deep = drawn(settings, format, 161, 121, e);
+    const auto shallow = drawn(settings, of_bytes, 161, 121, e);
+    const auto levels = levels_of(deep.get(), info);
+    const auto expected = levels_of(shallow.get(), info_of(of_bytes, 161, 121));
+    ASSERT_EQ(levels.size(), expected.size());
+    int drawn_px = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      ASSERT_NEAR(levels[i], expected[i], 1) << format << ' ' << i % 161 << ' ' << i / 161;
+      drawn_px += levels[i] != 128 ? 1 : 0;
+    }
+    EXPECT_GT(drawn_px, 500) << format;
+  }
+}
+
+TEST(EllipseOverlay, HasItsColourInChromaOfMoreBits) {
+  // A red line that covers all: Y 81, U 90, V 240 by [BT601], four times as much with 10 bits.
+  constexpr int kRed[] = {81 * 4, 90 * 4, 240 * 4};
+  for (const char* format : {"I420_10LE", "P010_10LE"}) {
+    const GstVideoInfo info = info_of(format, 96, 96);
+    const auto buffer = drawn("overlay=ellipse line-width=20 overlay-color=0xffff0000",
+                              format,
+                              96,
+                              96,
+                              {48.0, 48.0, 30.0, 30.0, 0.0});
+    GstVideoFrame frame;
+    ASSERT_TRUE(gst_video_frame_map(&frame, &info, buffer.get(), GST_MAP_READ));
+    for (guint c = 0; c < 3; ++c) {
+      const int column = c == 0 ? 78 : 39;
+      const int row = c == 0 ? 48 : 24;
+      const guint8* at = support::samples_of(frame, c) +
+                         std::ptrdiff_t{row} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, c) +
+                         std::ptrdiff_t{column} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, c);
+      const int level = GST_READ_UINT16_LE(at) >> GST_VIDEO_FORMAT_INFO_SHIFT(info.finfo, c);
+      EXPECT_NEAR(level, kRed[c], 4) << format << ' ' << c;
+    }
+    gst_video_frame_unmap(&frame);
+  }
+}
+
 TEST(EllipseOverlay, HasItsColourInRgb) {
   constexpr int kRed[] = {0xf0, 0x40, 0x10, 0xff};
-  for (const char* format : all_formats()) {
+  for (const char* format : byte_formats()) {
     const GstVideoInfo info = info_of(format, 96, 96);
     if (!GST_VIDEO_INFO_IS_RGB(&info)) continue;
     const auto buffer = drawn("overlay=ellipse line-width=8 overlay-color=0xfff04010",
@@ -287,7 +350,7 @@ TEST(EllipseOverlay, BorderCutsAndChangesNothingElse) {
 }
 
 TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
-  for (const char* format : all_formats()) {
+  for (const char* format : byte_formats()) {
     for (const int size : {1, 2, 3, 5}) {
       const auto buffer = drawn(kAllParts, format, size, size, {0.0, 0.0, 2.0, 0.5, 0.3});
       EXPECT_NE(bytes_of(buffer.get()), bytes_of(even_buffer(format, size, size).get()))

@@ -131,9 +131,7 @@ ellipse::Ellipse ring_of(int width, int height) {
 }
 
 TEST(Stress, CapsChangeAtEachBuffer) {
-  const std::array formats{"GRAY8", "I420", "YV12", "NV12", "NV21", "NV16", "Y41B", "Y42B",
-                           "Y444",  "YUY2", "UYVY", "YVYU", "RGB",  "BGR",  "RGBx", "BGRx",
-                           "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+  const std::vector<const char*> formats = support::raw_formats();
   const auto harness = tracker("! ellipseoverlay");
   ellipse::Random random(3);
   for (int i = 0; i < 400; ++i) {

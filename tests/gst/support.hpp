@@ -5,6 +5,7 @@
 #include <gst/video/video.h>
 #include <json-glib/json-glib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -51,26 +52,85 @@ inline constexpr std::array kPackedFormats{"YUY2",
                                            "BGRA",
                                            "ARGB",
                                            "ABGR"};
-inline std::vector<const char*> all_formats() {
+/// With more than 8 bits.
+inline constexpr std::array kDeepFormats{
+    "GRAY16_LE", "GRAY16_BE", "GRAY10_LE16", "GRAY10_LE32", "I420_10LE", "P010_10LE"};
+/// Bayer mosaics, which ellipsetrack alone reads.
+inline constexpr std::array kMosaics{"bggr", "gbrg", "grbg", "rggb"};
+
+/// Formats with a byte for each sample.
+inline std::vector<const char*> byte_formats() {
   std::vector<const char*> all(kPlanarFormats.begin(), kPlanarFormats.end());
   all.insert(all.end(), kPackedFormats.begin(), kPackedFormats.end());
   return all;
 }
-
-inline std::string caps_of(const std::string& format, int width, int height) {
-  return "video/x-raw,format=" + format + ",width=" + std::to_string(width) +
-         ",height=" + std::to_string(height) + ",framerate=30/1";
+/// Raw formats that this GStreamer knows.
+inline std::vector<const char*> raw_formats() {
+  std::vector<const char*> all = byte_formats();
+  for (const char* format : kDeepFormats) {
+    if (gst_video_format_from_string(format) != GST_VIDEO_FORMAT_UNKNOWN) all.push_back(format);
+  }
+  return all;
+}
+inline std::vector<const char*> all_formats() {
+  std::vector<const char*> all = raw_formats();
+  all.insert(all.end(), kMosaics.begin(), kMosaics.end());
+  return all;
 }
 
+inline bool is_mosaic(const std::string& format) {
+  return std::find(kMosaics.begin(), kMosaics.end(), format) != kMosaics.end();
+}
+
+inline std::string caps_of(const std::string& format, int width, int height) {
+  return (is_mosaic(format) ? "video/x-bayer,format=" : "video/x-raw,format=") + format +
+         ",width=" + std::to_string(width) + ",height=" + std::to_string(height) +
+         ",framerate=30/1";
+}
+
+/// Of a mosaic: that of GRAY8, which has the same bytes.
 inline GstVideoInfo info_of(const std::string& format, int width, int height) {
   GstVideoInfo info;
-  GstCaps* caps = gst_caps_from_string(caps_of(format, width, height).c_str());
+  const std::string caps_text = caps_of(is_mosaic(format) ? "GRAY8" : format, width, height);
+  GstCaps* caps = gst_caps_from_string(caps_text.c_str());
   gst_video_info_from_caps(&info, caps);
   gst_caps_unref(caps);
   return info;
 }
 
-/// A buffer of any 8-bit format that shows a grey picture.
+/// Where a component begins. GStreamer 1.22 is a byte off for V of P010.
+inline guint8* samples_of(GstVideoFrame& frame, guint component) {
+  auto* plane = static_cast<guint8*>(
+      GST_VIDEO_FRAME_PLANE_DATA(&frame, GST_VIDEO_FORMAT_INFO_PLANE(frame.info.finfo, component)));
+  const int offset = GST_VIDEO_FORMAT_INFO_POFFSET(frame.info.finfo, component);
+  const bool is_deep = GST_VIDEO_FORMAT_INFO_DEPTH(frame.info.finfo, component) > 8;
+  return plane + (is_deep ? (offset + 1) / 2 * 2 : offset);
+}
+
+/// Sets a sample of a frame of any depth, of which a level has the 8 highest bits.
+inline void set_sample(GstVideoFrame& frame, guint component, int x, int y, guint8 level) {
+  const GstVideoFormatInfo* format = frame.info.finfo;
+  guint8* row = samples_of(frame, component) +
+                std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, component);
+  guint8* at = row + std::ptrdiff_t{x} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component);
+  const guint depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
+  const guint value = (guint{level} << (depth - 8U))
+                      << GST_VIDEO_FORMAT_INFO_SHIFT(format, component);
+  if (GST_VIDEO_FORMAT_INFO_FORMAT(format) == GST_VIDEO_FORMAT_GRAY10_LE32) {
+    at = row + std::ptrdiff_t{x / 3} * 4;
+    const guint shift = static_cast<guint>(x % 3) * 10U;
+    const guint32 others = GST_READ_UINT32_LE(at) & ~(1023U << shift);
+    GST_WRITE_UINT32_LE(at, others | guint{level} << (shift + 2U));
+  } else if (depth == 8) {
+    *at = level;
+  } else if (GST_VIDEO_FORMAT_INFO_IS_LE(format)) {
+    GST_WRITE_UINT16_LE(at, static_cast<guint16>(value));
+  } else {
+    GST_WRITE_UINT16_BE(at, static_cast<guint16>(value));
+  }
+}
+
+/// A buffer of any format that shows a grey picture.
 inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& info) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
   const guint8 neutral = GST_VIDEO_INFO_IS_RGB(&info) ? 255 : 128;  // opacity, or chroma
@@ -80,10 +140,16 @@ inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& in
   const guint components = GST_VIDEO_FORMAT_INFO_IS_RGB(info.finfo) ? 3 : 1;
   for (guint c = 0; c < components; ++c) {
     for (int y = 0; y < picture.height; ++y) {
-      auto* row = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, c)) +
-                  std::ptrdiff_t{y} * GST_VIDEO_FRAME_COMP_STRIDE(&frame, c);
       for (int x = 0; x < picture.width; ++x) {
-        row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, c)] = picture.view().row(y)[x];
+        set_sample(frame, c, x, y, picture.view().row(y)[x]);
+      }
+    }
+  }
+  for (guint c = components; c < GST_VIDEO_INFO_N_COMPONENTS(&info); ++c) {
+    if (GST_VIDEO_INFO_COMP_DEPTH(&info, c) == 8) continue;
+    for (int y = 0; y < GST_VIDEO_FRAME_COMP_HEIGHT(&frame, c); ++y) {
+      for (int x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH(&frame, c); ++x) {
+        set_sample(frame, c, x, y, neutral);
       }
     }
   }
