@@ -20,6 +20,7 @@ class ScriptedFrameSearch : public testing::Test {
   void SetUp() override {
     script_.region = [this] { return search_.region(); };
     search_.configure({});
+    search_.begin(picture_.view());
   }
   [[nodiscard]] ScopedFrame frame() const {
     return {picture_.view(), picture_.view().bounds(), 1, {}};

@@ -28,6 +28,7 @@ class ScriptedRedetectTracker : public testing::Test {
   }
   std::optional<Target> track() { return track(picture_.view().bounds(), 1); }
   std::optional<Target> track(const Rect& searchable, int finest_scale) {
+    search_.begin(picture_.view());
     return tracker_.track_target(
         {picture_.view(), searchable, finest_scale, {}}, search_, settings_);
   }
@@ -160,6 +161,7 @@ TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
     RedetectTracker tracker;
     for (int step = 0; step < 3; ++step) {
       const ScopedFrame frame{picture.view(), picture.view().bounds(), 1, {}};
+      search.begin(frame.pixels);
       const Target target = tracker.track_target(frame, search, {}).value();
       EXPECT_EQ(target.scale, 1 << step);
       mean_error[static_cast<std::size_t>(step)] +=
