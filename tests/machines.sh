@@ -62,7 +62,7 @@ base() {
   local root=$folder/$1
   [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase "$2" "$root" ${MIRROR:+"$MIRROR"}
   mkdir -p "$root/root/gst-ellipse"
-  "$project/examples/packaging/list_files.sh" | tar -C "$project" --null -T - -c | tar -C "$root/root/gst-ellipse" -x
+  "$project/examples/packaging/list_files.sh" | tar -C "$project" --null -T - -c | tar -C "$root/root/gst-ellipse" -x --touch
   echo "Debian $(cat "$root/etc/debian_version")"
 }
 

@@ -232,6 +232,59 @@ TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
   EXPECT_EQ(value_of<guint>(element, "min-contour-size"), 50U);
 }
 
+// A preset after another one leaves nothing of the first.
+TEST(EllipseTrackPreset, EachSetsAllThatTheOthersSet) {
+  const auto settings_after = [](const std::vector<const char*>& presets) {
+    const auto harness = tracker();
+    GstElement* element = element_of(harness);
+    for (const char* preset : presets) {
+      EXPECT_TRUE(gst_preset_load_preset(GST_PRESET(element), preset)) << preset;
+    }
+    std::map<std::string, double> values;
+    for (const char* name : {"max-axis", "max-axis-ratio", "min-probability"}) {
+      values[name] = value_of<double>(element, name);
+    }
+    values["detector"] = value_of<int>(element, "detector");
+    values["tracking"] = value_of<int>(element, "tracking");
+    values["refine"] = value_of<int>(element, "refine");
+    values["min-contour-size"] = value_of<guint>(element, "min-contour-size");
+    values["max-processing-time"] =
+        static_cast<double>(value_of<guint64>(element, "max-processing-time"));
+    values["detect-contour-overlap"] = value_of<double>(element, "detect-contour-overlap");
+    return values;
+  };
+  const std::vector<const char*> ours = {
+      "Landing pad", "Pupil", "Small and far", "High frame rate"};
+  for (const char* preset : ours) {
+    const auto alone = settings_after({preset});
+    for (const char* before : ours) EXPECT_EQ(settings_after({before, preset}), alone) << before;
+    EXPECT_EQ(settings_after({"Keipour 2021", preset}), alone) << preset;
+  }
+}
+
+// Whether a ring is found in a picture of 1280 x 1000 that shows nothing else.
+bool finds(const char* preset, const ellipse::Ellipse& ring) {
+  const auto harness = tracker("", support::caps_of("GRAY8", 1280, 1000));
+  if (preset != nullptr) {
+    EXPECT_TRUE(gst_preset_load_preset(GST_PRESET(element_of(harness)), preset));
+  }
+  const auto picture = support::rendered(support::plain_ring(), ring, 1280, 1000);
+  return target_on(push(harness, support::gray_buffer_of(picture))) != nullptr;
+}
+
+TEST(EllipseTrackPreset, EachFindsWhatItIsFor) {
+  const ellipse::Ellipse near{640.3, 500.2, 450.0, 400.0, 0.4};
+  const ellipse::Ellipse far{640.3, 500.2, 7.5, 6.5, 0.4};
+  const ellipse::Ellipse flat{640.3, 500.2, 120.0, 45.0, 0.4};
+  EXPECT_TRUE(finds("Landing pad", near));
+  EXPECT_FALSE(finds(nullptr, near));
+  EXPECT_TRUE(finds("Small and far", far));
+  EXPECT_FALSE(finds(nullptr, far));
+  EXPECT_TRUE(finds(nullptr, flat));
+  EXPECT_FALSE(finds("Pupil", flat));
+  EXPECT_TRUE(finds("High frame rate", flat));
+}
+
 TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
