@@ -1,0 +1,57 @@
+#pragma once  // SPDX-License-Identifier: MIT
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "examples/live/pipeline/frame.hpp"
+
+namespace live {
+
+/// The last frames of the source, for a client that compares settings on them. Bounded in number
+/// and memory: the oldest are dropped. Stores nothing until a client asks for it, and discards all
+/// frames when no client has used them for ten minutes.
+class FrameHistory {
+ public:
+  static constexpr std::size_t kMaxFrames = 200;
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+
+  FrameHistory();
+  ~FrameHistory();
+  FrameHistory(const FrameHistory&) = delete;
+  FrameHistory& operator=(const FrameHistory&) = delete;
+
+  /// Copies the frame while storing. Thread-safe; call it from the streaming thread.
+  void put(const Frame& frame);
+
+  /* Main loop only. */
+  /// Discards the stored frames and stores the following ones.
+  void begin();
+  /// Stores no further frames.
+  void end() { is_storing_ = false; }
+  /// Stores no further frames and discards the stored ones.
+  void clear();
+  /// Tells that a client still uses the frames.
+  void touch() { used_us_ = g_get_monotonic_time(); }
+
+  [[nodiscard]] bool is_storing() const { return is_storing_; }
+  /// Oldest first.
+  [[nodiscard]] std::vector<FramePtr> frames() const;
+  /// @param index  Frame::index. @return nullptr if it is not stored.
+  [[nodiscard]] FramePtr find(guint64 index) const;
+
+ private:
+  static gboolean on_tick(gpointer data);
+  [[nodiscard]] std::deque<FramePtr> take_all();
+
+  std::atomic<bool> is_storing_{false};
+  mutable std::mutex mutex_;
+  std::deque<FramePtr> frames_;
+  std::size_t bytes_ = 0;
+  gint64 used_us_ = 0;
+  guint tick_;
+};
+
+}  // namespace live
