@@ -44,14 +44,25 @@ void reply_with(Analyst& analyst, const Request& request, Analyst::Work work) {
   if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
 }
 
+// The stored frame "frame", or the shown one.
+FramePtr frame_in(const RequestJson& json, Session& session) {
+  if (!json.has("frame")) return session.store().newest();
+  session.history().touch();
+  return session.history().find(json.whole("frame"));
+}
+
 void add_analyze(HttpServer& server, Session& session, const std::shared_ptr<Analyst>& analyst) {
   server.route_open("POST", "/api/analyze", [&session, analyst](const Request& request) {
     const RequestJson json(request.body);
     const AnalysisRequest wanted{
-        .frame = session.store().newest(),
+        .frame = frame_in(json, session),
         .settings = session.properties().settings_with(text_of(json.node("properties"))),
         .stage = stage_in(json)};
-    if (!wanted.frame) return answer(request.message, error_reply(409, "no frame yet"));
+    if (!wanted.frame) {
+      return answer(request.message,
+                    json.has("frame") ? error_reply(410, "the frame is no longer stored")
+                                      : error_reply(409, "no frame yet"));
+    }
     reply_with(*analyst, request, [wanted](const auto&) { return analysis_json(wanted); });
   });
 }
@@ -93,7 +104,7 @@ void add_replay(HttpServer& server, Session& session, const std::shared_ptr<Anal
                                .region = session.properties().region_with(changes),
                                .is_single = json.has("frames")};
     if (wanted.frames.empty()) {
-      return answer(request.message, error_reply(409, "the frames are no longer stored"));
+      return answer(request.message, error_reply(410, "the frames are no longer stored"));
     }
     reply_with(*analyst, request, [wanted](const auto& stop) { return replay_json(wanted, stop); });
   });

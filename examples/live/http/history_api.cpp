@@ -17,6 +17,7 @@ std::string history_json(const FrameHistory& history) {
   JsonWriter json;
   json.begin_object()
       .member("storing", history.is_storing())
+      .member("full", history.is_full())
       .member("max_frames", FrameHistory::kMaxFrames)
       .key("frames")
       .begin_array();
@@ -56,7 +57,7 @@ void add_history(HttpServer& server, Session& session) {
   server.route("POST", "/api/history/show", [&session](const Request& request) {
     session.history().touch();
     const FramePtr frame = session.history().find(RequestJson(request.body).whole("frame"));
-    if (!frame) return error_reply(409, "the frame is no longer stored");
+    if (!frame) return error_reply(410, "the frame is no longer stored");
     session.show(frame);
     return Reply{.body = "{}\n"};
   });

@@ -34,24 +34,32 @@ void FrameHistory::put(const Frame& frame) {
     bytes_ -= bytes_of(*frames_.front());
     dropped.push_back(std::move(frames_.front()));
     frames_.pop_front();
+    has_dropped_ = true;
   }
 }
 
 std::deque<FramePtr> FrameHistory::take_all() {
   const std::lock_guard lock(mutex_);
   bytes_ = 0;
+  has_dropped_ = false;
   return std::exchange(frames_, {});
 }
 
 void FrameHistory::begin() {
-  (void)take_all();
   touch();
+  if (is_storing_) return;
+  (void)take_all();
   is_storing_ = true;
 }
 
 void FrameHistory::clear() {
   is_storing_ = false;
   (void)take_all();
+}
+
+bool FrameHistory::is_full() const {
+  const std::lock_guard lock(mutex_);
+  return has_dropped_;
 }
 
 std::vector<FramePtr> FrameHistory::frames() const {

@@ -27,7 +27,7 @@ class FrameHistory {
   void put(const Frame& frame);
 
   /* Main loop only. */
-  /// Discards the stored frames and stores the following ones.
+  /// Discards the stored frames and stores the following ones. No effect while storing.
   void begin();
   /// Stores no further frames.
   void end() { is_storing_ = false; }
@@ -37,6 +37,8 @@ class FrameHistory {
   void touch() { used_us_ = g_get_monotonic_time(); }
 
   [[nodiscard]] bool is_storing() const { return is_storing_; }
+  /// Whether frames have been dropped for newer ones.
+  [[nodiscard]] bool is_full() const;
   /// Oldest first.
   [[nodiscard]] std::vector<FramePtr> frames() const;
   /// @param index  Frame::index. @return nullptr if it is not stored.
@@ -50,6 +52,7 @@ class FrameHistory {
   mutable std::mutex mutex_;
   std::deque<FramePtr> frames_;
   std::size_t bytes_ = 0;
+  bool has_dropped_ = false;
   gint64 used_us_ = 0;
   guint tick_;
 };
