@@ -37,10 +37,9 @@ std::string text_of(JsonNode* node) {
 // Answers with the result of the work, later.
 void reply_with(Analyst& analyst, const Request& request, Analyst::Work work) {
   const auto reply = std::make_shared<LaterReply>(request.message);
-  const bool is_taken =
-      analyst.ask(std::move(work), [reply](const auto& text, const auto& error) {
-        reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));
-      });
+  const bool is_taken = analyst.ask(std::move(work), [reply](const auto& text, const auto& error) {
+    reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));
+  });
   if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
 }
 
@@ -81,9 +80,9 @@ std::vector<FramePtr> frames_in(const RequestJson& json, const FrameHistory& his
   if (!json.has("frames")) return history.frames();
   JsonNode* node = json.node("frames");
   JsonArray* numbers = JSON_NODE_HOLDS_ARRAY(node) ? json_node_get_array(node) : nullptr;
-  if (numbers == nullptr || json_array_get_length(numbers) > FrameHistory::kMaxFrames) {
+  if (numbers == nullptr || json_array_get_length(numbers) > history.limits().frames) {
     throw std::invalid_argument("frames: expected an array of at most " +
-                                std::to_string(FrameHistory::kMaxFrames) + " numbers");
+                                std::to_string(history.limits().frames) + " numbers");
   }
   std::vector<FramePtr> frames;
   for (guint i = 0; i < json_array_get_length(numbers); ++i) {

@@ -18,7 +18,7 @@ std::string history_json(const FrameHistory& history) {
   json.begin_object()
       .member("storing", history.is_storing())
       .member("full", history.is_full())
-      .member("max_frames", FrameHistory::kMaxFrames)
+      .member("max_frames", history.limits().frames)
       .key("frames")
       .begin_array();
   for (const FramePtr& frame : history.frames()) {

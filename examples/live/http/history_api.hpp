@@ -5,8 +5,8 @@
 
 namespace live {
 
-/// Adds /api/history: stores, lists and shows the last frames. Borrows the session, which must exist
-/// while the main loop runs.
+/// Adds /api/history: stores, lists and shows the last frames. Borrows the session, which must
+/// exist while the main loop runs.
 void add_history(HttpServer& server, Session& session);
 
 }  // namespace live

@@ -134,17 +134,20 @@ export class TargetChoice {
     }
   }
 
-  // Draws the choice's number at the right end of its ellipse.
+  // Draws the choice's number beside its ellipse, on alternating sides because rings are concentric.
   #number(context, e, i, isChosen) {
     const unit = context.lineWidth * (isChosen ? 1 / 1.5 : 1 / 0.7) / 2;
-    const x = e.cx + Math.hypot(e.semi_major * Math.cos(e.angle_rad), e.semi_minor * Math.sin(e.angle_rad));
+    const wide = Math.hypot(e.semi_major * Math.cos(e.angle_rad), e.semi_minor * Math.sin(e.angle_rad));
+    const isLeft = i % 2 === 1;
+    const x = isLeft ? e.cx - wide - 6 * unit : e.cx + wide + 6 * unit;
+    context.textAlign = isLeft ? "right" : "left";
     context.font = `600 ${13 * unit}px system-ui, "DejaVu Sans", sans-serif`;
     context.lineWidth = 3 * unit;
     context.setLineDash([]);
     context.strokeStyle = "rgb(0 0 0 / .8)";
     context.fillStyle = isChosen ? "#4ade9c" : "#ffc85c";
-    context.strokeText(i + 1, x + 6 * unit, e.cy + 4 * unit);
-    context.fillText(i + 1, x + 6 * unit, e.cy + 4 * unit);
+    context.strokeText(i + 1, x, e.cy + 4 * unit);
+    context.fillText(i + 1, x, e.cy + 4 * unit);
   }
 }
 

@@ -28,7 +28,7 @@ const kWideSearches = [
   { ...kWide, detector: "arcs", "min-probability": 0.05 },
   { ...kWide, detector: "contours", "detect-contour-overlap": 0.8, "detect-ellipse-overlap": 0.7 },
 ];
-const kLooks = { mark: "truth", before: "candidate", after: "tracked" };
+const kLooks = { before: "candidate", after: "tracked", mark: "truth" };
 const at = (id) => document.getElementById(id);
 
 /** Whether the page is visited for the first time; false from the second call on. */
@@ -57,6 +57,7 @@ export class Guide {
   #proposal = null;
   #wasPlaying = false;
   #timer = 0;
+  #isShowing = false;  // a frame is being requested
   #retry = () => {};
   #choice;
 
@@ -73,7 +74,7 @@ export class Guide {
     at("guide-apply").onclick = () => this.#attempt(() => this.#apply());
     at("guide-again").onclick = () => this.#retry();
     screen.canvas.addEventListener("click", (event) => {
-      if (this.#isOn && this.#step === "mark") this.#choice.pick(event);
+      if (this.#isOn && this.#step === "mark" && this.#isShown) this.#choice.pick(event);
     });
     document.addEventListener("keydown", ({ key }) => {
       if (key === "Escape" && this.#isOn && !document.querySelector("dialog[open]")) onClose();
@@ -111,6 +112,16 @@ export class Guide {
     this.#step = step;
     this.#wanted = null;
     at("guide-trouble").hidden = true;
+    at("guide-skip").textContent = step === "result" ? "Close" : "Skip";
+    this.#showSteps(step);
+    // Playing on would replace the frame that is marked.
+    at("frame").closest("main").classList.toggle("marks", step !== "see");
+    this.screen.canvas.parentElement.classList.toggle("picks", step === "mark");
+    this.screen.view = step === "see" ? null : (context, frame) => this.#draw(context, frame);
+    this.screen.draw();
+  }
+
+  #showSteps(step) {
     let isDone = true;
     for (const item of at("guide-steps").children) {
       const isCurrent = item.dataset.step === step;
@@ -119,10 +130,19 @@ export class Guide {
       if (isCurrent) item.setAttribute("aria-current", "step");
       else item.removeAttribute("aria-current");
     }
-    for (const part of at("guide").querySelectorAll("[data-part]")) part.hidden = part.dataset.part !== step;
-    this.screen.canvas.parentElement.classList.toggle("picks", step === "mark");
-    this.screen.view = step === "see" ? null : (context, frame) => this.#draw(context, frame);
-    this.screen.draw();
+    const guide = at("guide");
+    const hadFocus = guide.contains(document.activeElement);
+    for (const part of guide.querySelectorAll("[data-part]")) part.hidden = part.dataset.part !== step;
+    if (hadFocus) guide.focus({ preventScroll: true });
+    this.#showStart();
+  }
+
+  // On a phone the video covers what is scrolled below it.
+  #showStart() {
+    const guide = at("guide");
+    guide.scrollTop = 0;
+    const covered = at("frame").getBoundingClientRect().bottom - guide.getBoundingClientRect().top;
+    if (covered > 1) scrollBy(0, -covered);
   }
 
   // Runs a task and shows its error with a button that repeats it, or begins anew if frames are gone.
@@ -133,11 +153,17 @@ export class Guide {
     } catch (error) {
       if (!this.#isOn) return;
       const isGone = error.status === kGone;
-      at("guide-trouble").hidden = false;
-      at("guide-trouble").firstElementChild.textContent = troubleText(error, isGone);
-      at("guide-again").textContent = isGone ? "Store new frames" : "Try again";
-      this.#retry = isGone ? () => this.#playOn() : () => this.#attempt(task);
+      const retry = isGone ? () => this.#playOn() : () => this.#attempt(task);
+      this.#raise(troubleText(error, isGone), isGone ? "Store new frames" : "Try again", retry);
     }
+  }
+
+  // Shows a problem and a button that solves it.
+  #raise(text, solution, retry) {
+    at("guide-trouble").firstElementChild.textContent = text;
+    at("guide-again").textContent = solution;
+    at("guide-trouble").hidden = false;
+    this.#retry = retry;
   }
 
   async #playOn() {
@@ -200,8 +226,13 @@ export class Guide {
 
   async #show(position) {
     this.#wanted = { ...this.#stored[position], position };
-    await showStored(this.#wanted.frame);
-    await this.playback.refresh();
+    this.#isShowing = true;
+    try {
+      await showStored(this.#wanted.frame);
+      await this.playback.refresh();
+    } finally {
+      this.#isShowing = false;
+    }
     await this.refresh();
   }
 
@@ -211,7 +242,12 @@ export class Guide {
 
   /** Offers the candidates of a frame when it is on the screen. */
   refresh = newestOnly(async () => {
-    if (!this.#isOn || this.#step !== "mark" || !this.#isShown || !this.#choice.isWaiting) return;
+    if (!this.#isOn || !this.#wanted || this.#isShowing) return;
+    const { position } = this.#wanted;
+    if (this.playback.isPlaying) return this.#raise("The source plays on.", "Show the frame", () => {
+      this.#attempt(() => this.#show(position));
+    });
+    if (this.#step !== "mark" || !this.#isShown || !this.#choice.isWaiting) return;
     await this.#attempt(async () => {
       const { frame, pts_ns: pts } = this.#wanted;
       const now = await analyze({ frame });
@@ -257,6 +293,7 @@ export class Guide {
       values: this.settings.values(),
       onShow: (position) => this.#attempt(() => this.#show(position)),
     }));
+    at("announcer").textContent = at("guide-result").querySelector("h3").textContent;
     at("guide-apply").hidden = !hasChanges;
     at("guide-discard").textContent = hasChanges ? "Discard" : "Done";
   }
@@ -271,7 +308,7 @@ export class Guide {
   }
 
   #draw(context, frame) {
-    if (this.#step === "mark") return this.#choice.draw(context, frame);
+    if (this.#step === "mark" && this.#isShown) return this.#choice.draw(context, frame);
     const { bitmap } = frame;
     drawPicture(context, bitmap, bitmap.width, bitmap.height);
     if (!this.#proposal || !this.#isShown) return;

@@ -50,6 +50,7 @@ function titleOf({ changes, before, after }, marks) {
   const { right } = before.verdict;
   if (!isEmpty(changes)) return "Proposed settings";
   if (right === marks.length) return `The settings that you have are right on your ${count}.`;
+  if (marks.every(({ truth }) => truth === null)) return "Mark the target in at least one frame to get a proposal.";
   return `No setting that was tried is right on more than ${after.verdict.right} of your ${count}.`;
 }
 
@@ -109,7 +110,6 @@ function differences({ changes, before, after }, onShow) {
   return [
     ...frameList(count === 1 ? "1 frame differs" : `${count} frames differ`, rows, onShow),
     ...(rest > 0 ? [make("p", { className: "help" }, `and ${rest} more groups`)] : []),
-    make("p", { className: "help" }, "In the picture: dotted white, your mark; amber, now; green, proposed."),
   ];
 }
 
@@ -129,14 +129,15 @@ function reasonsOf({ reasons }) {
  * @param onShow  Called with the position of the stored frame to show.
  */
 export function showProposal({ proposal, marks, values, onShow }) {
-  const isAnySeen = marks.some(({ truth }) => truth);
   return [
     make("h3", {}, titleOf(proposal, marks)),
-    ...(isAnySeen ? [] : [make("p", {}, "Mark the target in at least one frame to get a proposal.")]),
     ...(isEmpty(proposal.changes) ? [] : [changesOf(proposal, values)]),
     ...reasonsOf(proposal),
     effectTable(proposal, marks),
     ...frameList("Marked frames", markRows(proposal, marks), onShow),
     ...differences(proposal, onShow),
+    make("p", { className: "help" }, isEmpty(proposal.changes)
+      ? "In the picture: dotted white, your mark; green, what is found while tracking."
+      : "In the picture: dotted white, your mark; amber, found now; green, found with the proposed settings."),
   ];
 }

@@ -16,7 +16,8 @@ std::size_t bytes_of(const Frame& frame) {
 
 }  // namespace
 
-FrameHistory::FrameHistory() : tick_(g_timeout_add_seconds(kTickSeconds, on_tick, this)) {}
+FrameHistory::FrameHistory(const Limits& limits)
+    : limits_(limits), tick_(g_timeout_add_seconds(kTickSeconds, on_tick, this)) {}
 
 FrameHistory::~FrameHistory() {
   g_source_remove(tick_);
@@ -30,7 +31,7 @@ void FrameHistory::put(const Frame& frame) {
   if (!is_storing_) return;
   bytes_ += bytes_of(*copy);
   frames_.push_back(std::move(copy));
-  while (frames_.size() > kMaxFrames || (bytes_ > kMaxBytes && frames_.size() > 1)) {
+  while (frames_.size() > limits_.frames || (bytes_ > limits_.bytes && frames_.size() > 1)) {
     bytes_ -= bytes_of(*frames_.front());
     dropped.push_back(std::move(frames_.front()));
     frames_.pop_front();

@@ -15,10 +15,13 @@ namespace live {
 /// frames when no client has used them for ten minutes.
 class FrameHistory {
  public:
-  static constexpr std::size_t kMaxFrames = 200;
-  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+  struct Limits {
+    std::size_t frames = 200;
+    std::size_t bytes = std::size_t{256} << 20;  ///< Of their pixels.
+  };
 
-  FrameHistory();
+  FrameHistory() : FrameHistory(Limits()) {}
+  explicit FrameHistory(const Limits& limits);
   ~FrameHistory();
   FrameHistory(const FrameHistory&) = delete;
   FrameHistory& operator=(const FrameHistory&) = delete;
@@ -36,6 +39,7 @@ class FrameHistory {
   /// Tells that a client still uses the frames.
   void touch() { used_us_ = g_get_monotonic_time(); }
 
+  [[nodiscard]] const Limits& limits() const { return limits_; }
   [[nodiscard]] bool is_storing() const { return is_storing_; }
   /// Whether frames have been dropped for newer ones.
   [[nodiscard]] bool is_full() const;
@@ -48,6 +52,7 @@ class FrameHistory {
   static gboolean on_tick(gpointer data);
   [[nodiscard]] std::deque<FramePtr> take_all();
 
+  Limits limits_;
   std::atomic<bool> is_storing_{false};
   mutable std::mutex mutex_;
   std::deque<FramePtr> frames_;
