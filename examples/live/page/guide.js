@@ -43,8 +43,9 @@ export function isFirstVisit() {
 }
 
 // Best first. Scores are comparable within one search only.
-function foundIn(candidates) {
-  return candidates.filter(({ found, ellipse }) => found && ellipse).sort((a, b) => b.score - a.score);
+function foundIn({ candidates, detector }) {
+  return candidates.filter(({ found, ellipse }) => found && ellipse).sort((a, b) => b.score - a.score)
+    .map(({ ellipse, probability }) => ({ ellipse, probability, detector }));
 }
 
 export class Guide {
@@ -251,10 +252,10 @@ export class Guide {
     await this.#attempt(async () => {
       const { frame, pts_ns: pts } = this.#wanted;
       const now = await analyze({ frame });
-      const wide = [];
-      for (const properties of kWideSearches) wide.push((await analyze({ frame, properties })).candidates);
+      const searches = [now];
+      for (const properties of kWideSearches) searches.push(await analyze({ frame, properties }));
       if (!this.#isOn || this.#wanted?.frame !== frame) return;
-      this.#candidates = [now.candidates, ...wide].flatMap((each) => foundIn(each));
+      this.#candidates = searches.flatMap((each) => foundIn(each));
       const others = this.#candidates.map(({ ellipse }) => ellipse);
       const target = now.candidates.find((each) => each.is_target)?.ellipse;
       this.#choice.offer({ pts, target, others, keepsDrawn: false });

@@ -23,8 +23,14 @@ async function judge(marks, changes) {
     const { truth } = marks[i];
     return found.filter((e) => !truth || !isPartOf(e, truth));
   });
-  const right = outcomes.filter((each) => each === "right").length;
-  return { outcomes, right, wrong, targets: frames.map(({ target }) => target) };
+  const targets = frames.map(({ target }) => target);
+  return {
+    outcomes,
+    right: outcomes.filter((each) => each === "right").length,
+    wrong,
+    targets,
+    rivals: targets.filter((_, i) => outcomes[i] === "wrong" || outcomes[i] === "false"),
+  };
 }
 
 const isBetter = (a, b) => a.right > b.right || (a.right === b.right && a.wrong.length < b.wrong.length);
@@ -35,7 +41,11 @@ async function attempt(marks, best, trial) {
   const changes = { ...best.changes, ...trial.changes };
   try {
     const verdict = await judge(marks, changes);
-    return isBetter(verdict, best.verdict) ? { changes, why: { ...best.why, ...trial.why }, verdict } : best;
+    if (!isBetter(verdict, best.verdict)) return best;
+    const sentences = Object.entries(trial.why).map(([name, sentence]) => {
+      return [name, sentence instanceof Function ? sentence(verdict.right, best.verdict.right) : sentence];
+    });
+    return { changes, why: { ...best.why, ...Object.fromEntries(sentences) }, verdict };
   } catch (error) {
     if (error.status === kBadRequest) return best;  // invalid together
     throw error;
@@ -49,6 +59,7 @@ async function search(marks, values, start) {
       marks,
       values: { ...values, ...best.changes },
       wrong: best.verdict.wrong,
+      rivals: best.verdict.rivals,
       isRight: best.verdict.right === marks.length,
     });
     for (const trial of trials) best = await attempt(marks, best, trial);

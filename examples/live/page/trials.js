@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Changes of settings that may make marked frames right, each with the figures that suggest it.
 //
-// A trial is {changes: {name: value}, why: {name: sentence}}. Whether it helps is not judged here.
+// A trial is {changes: {name: value}, why: {name: sentence}}. A sentence can be a function of the
+// numbers of right marks with and without the trial, which is judged elsewhere.
 
 const kGrid = 48;            // samples across both ellipses
 const kConcentric = 0.25;    // distance of concentric centres in minor semi-axes
 const kRelaxMargin = 1.4;    // between a mark and a limit that admits it
-const kKeepOutFactor = 2;    // between marks and what a limit keeps out
+const kClearFactor = 2;      // between marks and ellipses that a limit keeps out
+const kRivalFactor = 1.1;    // the same for ellipses that are taken for the target
+const kUsualProbability = 0.5;
 const kMaxRegionShare = 0.5; // of the frame; a larger region hardly helps
 const kFaintEdges = { "edge-low": 1, "edge-high": 2 };
 const kDetectors = ["arcs", "contours"];
@@ -131,44 +134,47 @@ function adaptedEdges({ "edge-low": low, "edge-high": high }) {
 
 function faintEdges({ "edge-low": low, "edge-high": high }) {
   if (low !== 0 || high !== 0) return [];
-  const why = "The outline may be fainter than the thresholds that the whole frame suggests; 1 and 2 grey levels " +
-    "per px admit faint edges.";
+  const why = (right, before) => `Fainter edges than the whole frame suggests: ${right} instead of ${before} marks ` +
+    "are right.";
   return [{ changes: kFaintEdges, why: { "edge-low": why } }];
 }
 
 function otherDetector(values) {
   const other = kDetectors.find((each) => each !== values.detector);
-  return [{ changes: { detector: other }, why: { detector: `Your target is a candidate of ${other}.` } }];
+  const why = (right, before) => `${right} marks are right with ${other}, ${before} with ${values.detector}.`;
+  return [{ changes: { detector: other }, why: { detector: why } }];
 }
 
 const logOdds = (p) => Math.log(p / (1 - p));
 const inOdds = (p) => Math.min(1 - 1e-6, Math.max(1e-6, p));
 
-// Half way between the marked ellipses and all others, if they separate.
+// Between the marked ellipses and all others, if they separate: the default, or half way.
 function separatingProbability(marks, values) {
   if (values.detector !== "arcs") return [];
-  const ofMarks = marks.filter(({ truth }) => truth).map(({ truth, candidates }) => Math.max(0,
-    ...candidates.filter((each) => isSame(each.ellipse, truth)).map(({ probability }) => probability)));
-  const ofOthers = marks.flatMap(({ truth, candidates }) => candidates
-    .filter(({ ellipse }) => !truth || !isPartOf(ellipse, truth)).map(({ probability }) => probability));
+  const probabilities = ({ candidates }, isWanted) => candidates
+    .filter(({ ellipse, detector }) => detector === "arcs" && isWanted(ellipse)).map(({ probability }) => probability);
+  const ofMarks = marks.filter(({ truth }) => truth)
+    .map((mark) => Math.max(0, ...probabilities(mark, (e) => isSame(e, mark.truth))));
+  const ofOthers = marks.flatMap((mark) => probabilities(mark, (e) => !mark.truth || !isPartOf(e, mark.truth)));
   const low = Math.min(...ofMarks);
   const high = Math.max(0, ...ofOthers);
   if (!(low > high) || low === 1) return [];
   const middle = (logOdds(inOdds(low)) + logOdds(inOdds(Math.max(high, low / 4)))) / 2;
-  const to = Math.floor(100 / (1 + Math.exp(-middle))) / 100;
+  const isUsual = low >= kUsualProbability && high < kUsualProbability;
+  const to = isUsual ? kUsualProbability : Math.floor(100 / (1 + Math.exp(-middle))) / 100;
   if (to <= high || to > low || to === values["min-probability"]) return [];
   const why = `Probability of your marks: at least ${low.toFixed(2)}; of other ellipses: ` +
     `${high > 0 ? `at most ${high.toFixed(2)}` : "none found"}.`;
   return [{ changes: { "min-probability": to }, why: { "min-probability": why } }];
 }
 
-// Limits between the marked ellipses and wrong ones that are clearly smaller, larger or flatter.
-function tightLimits(truths, wrong) {
+// Limits between the marked ellipses and wrong ones that are smaller, larger or flatter by a factor.
+function tightLimits(truths, wrong, factor) {
   return kLimits.flatMap(({ name, what, unit, isMin, of, round }) => {
     const sizes = truths.map(of);
     const bound = isMin ? Math.min(...sizes) : Math.max(...sizes);
     const apart = wrong.map(of).filter((size) => {
-      return isMin ? size * kKeepOutFactor < bound : size > bound * kKeepOutFactor;
+      return isMin ? size * factor < bound : size > bound * factor;
     });
     if (apart.length === 0) return [];
     const nearest = isMin ? Math.max(...apart) : Math.min(...apart);
@@ -204,15 +210,21 @@ export function admittingTrial(marks, values) {
 
 /**
  * The trials for marked frames, the most likely one first.
- * @param marks   [{truth, candidates: [{ellipse, probability}], width, height}]; a null truth = no target.
+ * @param marks   [{truth, candidates: [{ellipse, probability, detector}], width, height}]; a null truth
+ *                = no target.
  * @param values  All settings by name.
  * @param wrong   Ellipses that these settings find in the marked frames and that are not marked.
+ * @param rivals  Ellipses that these settings take for the target instead.
  * @param isRight Whether these settings are right on all marked frames.
  */
-export function trialsFor({ marks, values, wrong, isRight }) {
+export function trialsFor({ marks, values, wrong, rivals, isRight }) {
   const truths = truthsOf(marks);
   if (truths.length === 0) return [];
-  const keepOut = [...tightLimits(truths, wrong), ...regionOfMarks(truths, wrong, marks[0], values)];
+  const keepOut = [
+    ...tightLimits(truths, rivals, kRivalFactor),
+    ...tightLimits(truths, wrong, kClearFactor),
+    ...regionOfMarks(truths, [...rivals, ...wrong], marks[0], values),
+  ];
   if (isRight) return keepOut;
   const admit = admittingTrial(marks, values);
   const others = [

@@ -10,7 +10,7 @@ import { openPage, startBrowser, startProgram } from "./program.mjs";
 
 const kPhone = { width: 390, height: 844 };
 const kTooStrict = { "min-axis": 300, "max-axis": 600, "max-axis-ratio": 1.02 };
-const kStart = { "min-axis": 5, "max-axis": 700, "max-axis-ratio": 5 };
+const kStart = { "min-axis": 5, "max-axis": 700, "max-axis-ratio": 5, "min-probability": 0.5 };
 const kPoints = 10;
 
 const textOf = (page, id) => page.textContent(`#guide-${id}`);
@@ -78,7 +78,10 @@ async function resultOf(page) {
   return page.innerText("#guide-result");
 }
 
-const cellOf = (page, row, column) => page.locator("#guide-result tr", { hasText: row }).locator("td").nth(column).textContent();
+/** A figure of the table of effects. @param column  0 = now, 1 = proposed. */
+function cellOf(page, row, column) {
+  return page.locator("#guide-result tr", { hasText: row }).locator("td").nth(column).textContent();
+}
 
 describe("the guide", () => {
   const labels = mkdtempSync(join(tmpdir(), "ellipse-guide-"));
@@ -165,6 +168,40 @@ describe("the guide", () => {
     await page.waitForSelector("#state[data-state=tracked]");
     assert.ok(await page.locator("[data-setting=min-axis].changed").count() === 1);
     assert.deepEqual(page.troubles, []);
+    await page.close();
+  });
+
+  it("proposes a limit that keeps out what is taken for the target", async () => {
+    const page = await openGuide(browser, program);
+    await beginMarks(page);
+    for (let i = 1; i <= 3; ++i) {
+      await choicesOf(page, i);
+      // The inner edge of the ring.
+      const e = await targetOf(program);
+      const limits = { "max-axis": 1.8 * e.semi_major };
+      const { candidates } = await program.ask("POST", "/api/analyze", { properties: limits });
+      const inner = candidates.find((each) => each.is_target).ellipse;
+      await clickOutline(page, { ...e, ...inner }, Math.PI / 2);
+      await page.click("#guide-mark:enabled");
+    }
+    const text = await resultOf(page);
+    assert.match(text, /max-axis: 700 → \d+/);
+    assert.match(text, /Major axis of your marks: .* px; of 3 wrong ellipses: .* px/);
+    assert.equal(await cellOf(page, "Marks right, frame by itself", 0), "0 of 3");
+    assert.equal(await cellOf(page, "Marks right, frame by itself", 1), "3 of 3");
+    await page.close();
+  });
+
+  it("proposes a probability between the marks and all else", async () => {
+    await program.ask("PUT", "/api/properties", { "min-probability": 0.999999 });
+    const page = await openGuide(browser, program);
+    await beginMarks(page);
+    for (let i = 1; i <= 3; ++i) await markByClick(page, program, i);
+    const text = await resultOf(page);
+    assert.match(text, /min-probability: 0.999999 → 0.5/);
+    assert.match(text, /Probability of your marks: at least \d\.\d\d; of other ellipses: (none found|at most)/);
+    await page.click("#guide-apply");
+    await page.getByText("Applied.").waitFor();
     await page.close();
   });
 
