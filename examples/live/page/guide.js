@@ -227,6 +227,9 @@ export class Guide {
 
   async #show(position) {
     this.#wanted = { ...this.#stored[position], position };
+    for (const button of at("guide-result").querySelectorAll("[data-position]")) {
+      button.setAttribute("aria-pressed", button.dataset.position === String(position));
+    }
     this.#isShowing = true;
     try {
       await showStored(this.#wanted.frame);
@@ -264,7 +267,9 @@ export class Guide {
 
   async #mark() {
     const { frame, pts_ns: pts, position } = this.#wanted;
+    if (!this.#isShown) return this.#show(position);  // another client shows another frame
     const truth = this.#choice.answer();
+    at("guide-mark").disabled = true;
     const { width, height } = this.screen.frame.bitmap;
     const label = this.playback.source?.can_label ? `Saved as ${await saveLabel(truth, pts)}.`
       : "Marks are not saved: start ellipse-live with --labels FOLDER to keep them.";

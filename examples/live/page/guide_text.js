@@ -79,10 +79,7 @@ function frameList(title, rows, onShow) {
   for (const { position, name, text } of rows) {
     const button = make("button", { "aria-pressed": "false" }, make("span", {}, name), make("span", {}, text));
     button.dataset.position = position;
-    button.onclick = () => {
-      for (const each of list.querySelectorAll("button")) each.setAttribute("aria-pressed", each === button);
-      onShow(position);
-    };
+    button.onclick = () => onShow(position);
     list.append(make("li", {}, button));
   }
   return [make("h4", {}, title), list];

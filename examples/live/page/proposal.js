@@ -110,21 +110,35 @@ async function withRingRatio(marks, values, best, stream) {
   return { best: { ...best, changes, why: { ...best.why, "ring-ratio": why } }, stream: other };
 }
 
-// Why the mark is not right. Limits that were in its way are lifted, because that did not suffice.
-async function reasonFor(mark, outcome, target, { changes, admitted }) {
-  if (outcome === "false") return `An ellipse of ${ellipseText(target)} is reported where no target is.`;
-  const { candidates } = await analyze({ frame: mark.frame, properties: { ...changes, ...admitted } });
-  const even = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
-  const near = candidates.filter(({ ellipse }) => ellipse)
+// The candidate that lies on a mark, or undefined.
+async function candidateAt(mark, properties) {
+  const { candidates } = await analyze({ frame: mark.frame, properties });
+  return candidates.filter(({ ellipse }) => ellipse)
     .map((each) => ({ ...each, overlap: overlapOf(each.ellipse, mark.truth) }))
     .filter(({ overlap }) => overlap >= kNearOverlap)
     .sort((a, b) => b.overlap - a.overlap)[0];
+}
+
+// What the edges of an unlikely candidate lack. Its evidence is complete only if it is accepted.
+async function lackOf(mark, properties) {
+  const { evidence } = await candidateAt(mark, { ...properties, "min-probability": 0 }) ?? {};
+  if (!evidence) return "";
+  const support = evidence.find(({ name }) => name === "turn-support").value;
+  const [worst] = evidence.sort((a, b) => a.contribution - b.contribution);
+  return `; ${Math.round(100 * support)} % of its outline has edges; most against it: ${worst.description}`;
+}
+
+// Why the mark is not right. Limits that were in its way are lifted, because that did not suffice.
+async function reasonFor(mark, outcome, target, { changes, admitted }) {
+  if (outcome === "false") return `An ellipse of ${ellipseText(target)} is reported where no target is.`;
+  const properties = { ...changes, ...admitted };
+  const near = await candidateAt(mark, properties);
+  const even = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
   const taken = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is taken.` : "";
   if (!near) return `No candidate lies on your mark: its edges are too faint or too short.${taken}`;
   const text = even ? `Even with ${even}: ${near.text}` : near.text[0].toUpperCase() + near.text.slice(1);
-  const coverage = near.evidence?.find(({ name }) => name === "coverage");
-  const edges = coverage ? `; ${Math.round(100 * coverage.value)} % of its outline has edges` : "";
-  return `${text}${edges}.${taken}`;
+  const lack = near.reason === "unlikely" ? await lackOf(mark, properties) : "";
+  return `${text}${lack}.${taken}`;
 }
 
 /**
