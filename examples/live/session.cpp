@@ -71,9 +71,9 @@ void Session::step() {
 }
 
 bool Session::seek(GstClockTime position) {
-  if (!pipeline_.seek(position)) return false;
+  if (!pipeline_.is_seekable()) return false;
   store_.release();  // from a frame of the history
-  return true;
+  return pipeline_.seek(position);
 }
 
 void Session::show(FramePtr frame) {

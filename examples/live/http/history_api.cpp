@@ -32,7 +32,8 @@ std::string history_json(const FrameHistory& history) {
 
 bool is_storing_wanted(const RequestJson& json) {
   JsonNode* node = json.node("storing");
-  if (node == nullptr || json_node_get_value_type(node) != G_TYPE_BOOLEAN) {
+  if (node == nullptr || !JSON_NODE_HOLDS_VALUE(node) ||
+      json_node_get_value_type(node) != G_TYPE_BOOLEAN) {
     throw std::invalid_argument("storing: expected true or false");
   }
   return json_node_get_boolean(node) != FALSE;
