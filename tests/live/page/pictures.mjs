@@ -45,7 +45,7 @@ await picture("live-compare.jpg", kWide, async (page) => {
   await page.waitForFunction(() => /detector/.test(document.querySelector("#compare-result").textContent));
 });
 await picture("live-guide.jpg", kWide, async (page) => {
-  await program.ask("PUT", "/api/properties", { "min-axis": 200 });
+  await program.ask("PUT", "/api/properties", { "min-axis": 300 });
   await page.click("#guide-button");
   await page.waitForTimeout(7000);
   await page.click("#guide-begin:enabled");
@@ -54,7 +54,11 @@ await picture("live-guide.jpg", kWide, async (page) => {
       const { pts } = document.querySelector("#guide-choices").dataset;
       return pts && document.querySelector("#guide-frame").textContent.startsWith(`Frame ${n} of`);
     }, i);
-    await page.check("#guide-choices input[value='0']");
+    // The outer edge of the pad's ring: the largest ellipse.
+    const sizes = await page.locator("#guide-choices label").allTextContents();
+    const area = (text) => (/: (\d+) × (\d+) px/.exec(text) ?? [0, 0, 0]).slice(1).reduce((a, b) => a * b);
+    const largest = sizes.map(area).indexOf(Math.max(...sizes.map(area)));
+    await page.check(`#guide-choices input[value="${largest}"]`);
     await page.click("#guide-mark");
   }
   await page.waitForSelector("#guide-result h3");
