@@ -4,6 +4,7 @@ import { analyze } from "./analysis.js";
 import { TargetChoice } from "./choice.js";
 import { newestOnly } from "./connection.js";
 import { drawEllipse, drawPicture } from "./drawing.js";
+import { hideTrouble, showStep, showTrouble } from "./guide_panel.js";
 import { showProposal, sourceText, storedText, troubleText } from "./guide_text.js";
 import { discardFrames, showStored, storedFrames, storeFrames } from "./history.js";
 import { saveLabel } from "./labels.js";
@@ -59,7 +60,6 @@ export class Guide {
   #wasPlaying = false;
   #timer = 0;
   #isShowing = false;  // a frame is being requested
-  #retry = () => {};
   #choice;
 
   /** @param onClose  Called when the user leaves the guide. */
@@ -73,7 +73,6 @@ export class Guide {
     at("guide-begin").onclick = () => this.#attempt(() => this.#beginMarks());
     at("guide-mark").onclick = () => this.#attempt(() => this.#mark());
     at("guide-apply").onclick = () => this.#attempt(() => this.#apply());
-    at("guide-again").onclick = () => this.#retry();
     screen.canvas.addEventListener("click", (event) => {
       if (this.#isOn && this.#step === "mark" && this.#isShown) this.#choice.pick(event);
     });
@@ -112,9 +111,7 @@ export class Guide {
   #setStep(step) {
     this.#step = step;
     this.#wanted = null;
-    at("guide-trouble").hidden = true;
-    at("guide-skip").textContent = step === "result" ? "Close" : "Skip";
-    this.#showSteps(step);
+    showStep(step);
     // Playing on would replace the frame that is marked.
     at("frame").closest("main").classList.toggle("marks", step !== "see");
     this.screen.canvas.parentElement.classList.toggle("picks", step === "mark");
@@ -122,49 +119,17 @@ export class Guide {
     this.screen.draw();
   }
 
-  #showSteps(step) {
-    let isDone = true;
-    for (const item of at("guide-steps").children) {
-      const isCurrent = item.dataset.step === step;
-      isDone &&= !isCurrent;
-      item.classList.toggle("done", isDone);
-      if (isCurrent) item.setAttribute("aria-current", "step");
-      else item.removeAttribute("aria-current");
-    }
-    const guide = at("guide");
-    const hadFocus = guide.contains(document.activeElement);
-    for (const part of guide.querySelectorAll("[data-part]")) part.hidden = part.dataset.part !== step;
-    if (hadFocus) guide.focus({ preventScroll: true });
-    this.#showStart();
-  }
-
-  // On a phone the video covers what is scrolled below it.
-  #showStart() {
-    const guide = at("guide");
-    guide.scrollTop = 0;
-    const covered = at("frame").getBoundingClientRect().bottom - guide.getBoundingClientRect().top;
-    if (covered > 1) scrollBy(0, -covered);
-  }
-
   // Runs a task and shows its error with a button that repeats it, or begins anew if frames are gone.
   async #attempt(task) {
-    at("guide-trouble").hidden = true;
+    hideTrouble();
     try {
       await task();
     } catch (error) {
       if (!this.#isOn) return;
       const isGone = error.status === kGone;
       const retry = isGone ? () => this.#playOn() : () => this.#attempt(task);
-      this.#raise(troubleText(error, isGone), isGone ? "Store new frames" : "Try again", retry);
+      showTrouble(troubleText(error, isGone), isGone ? "Store new frames" : "Try again", retry);
     }
-  }
-
-  // Shows a problem and a button that solves it.
-  #raise(text, solution, retry) {
-    at("guide-trouble").firstElementChild.textContent = text;
-    at("guide-again").textContent = solution;
-    at("guide-trouble").hidden = false;
-    this.#retry = retry;
   }
 
   async #playOn() {
@@ -248,9 +213,10 @@ export class Guide {
   refresh = newestOnly(async () => {
     if (!this.#isOn || !this.#wanted || this.#isShowing) return;
     const { position } = this.#wanted;
-    if (this.playback.isPlaying) return this.#raise("The source plays on.", "Show the frame", () => {
-      this.#attempt(() => this.#show(position));
-    });
+    if (this.playback.isPlaying) {
+      showTrouble("The source plays on.", "Show the frame", () => this.#attempt(() => this.#show(position)));
+      return;
+    }
     if (this.#step !== "mark" || !this.#isShown || !this.#choice.isWaiting) return;
     await this.#attempt(async () => {
       const { frame, pts_ns: pts } = this.#wanted;
