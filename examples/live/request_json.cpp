@@ -56,6 +56,15 @@ double RequestJson::number(const char* name) const {
   throw std::invalid_argument(std::string(name) + ": the number is too large");
 }
 
+guint64 RequestJson::whole(const char* name) const {
+  constexpr double kMax = 9007199254740992.0;
+  const double value = number(name);
+  if (value >= 0.0 && value <= kMax && value == std::floor(value)) {
+    return static_cast<guint64>(value);
+  }
+  throw std::invalid_argument(std::string(name) + ": expected a whole number");
+}
+
 GstClockTime RequestJson::time(const char* name) const {
   constexpr double kLatest = 9e18;
   if (has(name) && is_text(node(name))) {

@@ -34,6 +34,7 @@ Session::Session(const Options& options, std::function<void()> on_failure)
 void Session::on_frame(FramePtr frame) {
   if (rtsp_) rtsp_->put(frame);
   if (recorder_) recorder_->put(frame);
+  history_.put(*frame);
   store_.put(std::move(frame));
 }
 
@@ -41,7 +42,9 @@ void Session::open(const std::string& source, const std::string& fps) {
   SourceSpec spec =
       parse_source(source, fps.empty() ? std::nullopt : std::optional(parse_rate(fps)));
   pipeline_.close();
-  store_.clear();  // the old source's frame can no longer be held, analysed or labelled
+  // The old source's frames can no longer be held, analysed or labelled.
+  store_.clear();
+  history_.clear();
   pipeline_.open(std::move(spec), loops_);
 }
 
@@ -62,12 +65,20 @@ void Session::step() {
   if (pipeline_.source().is_live) {
     store_.step();
   } else {
+    store_.release();  // from a frame of the history
     pipeline_.step();
   }
 }
 
 bool Session::seek(GstClockTime position) {
+  if (!pipeline_.is_seekable()) return false;
+  store_.release();  // from a frame of the history
   return pipeline_.seek(position);
+}
+
+void Session::show(FramePtr frame) {
+  pause();
+  store_.show(std::move(frame));
 }
 
 bool Session::is_playing() const {

@@ -9,6 +9,7 @@
 #include "examples/live/outputs/recorder.hpp"
 #include "examples/live/outputs/rtsp_output.hpp"
 #include "examples/live/outputs/video_feed.hpp"
+#include "examples/live/pipeline/frame_history.hpp"
 #include "examples/live/pipeline/frame_review.hpp"
 #include "examples/live/pipeline/frame_store.hpp"
 #include "examples/live/pipeline/live_pipeline.hpp"
@@ -36,11 +37,14 @@ class Session {
   /// @return false if the source cannot seek.
   bool seek(GstClockTime position);
   [[nodiscard]] bool is_playing() const;
+  /// Pauses and shows a frame of the history.
+  void show(FramePtr frame);
   /// Call after settings have changed. Analyses a paused or held frame again with them and replaces
   /// it.
   void review();
 
   [[nodiscard]] FrameStore& store() { return store_; }
+  [[nodiscard]] FrameHistory& history() { return history_; }
   [[nodiscard]] LivePipeline& pipeline() { return pipeline_; }
   [[nodiscard]] VideoFeed& video() { return video_; }
   [[nodiscard]] LineFeed& lines() { return lines_; }
@@ -54,6 +58,7 @@ class Session {
 
   bool loops_;
   FrameStore store_;
+  FrameHistory history_;
   VideoFeed video_;
   LineFeed lines_;
   std::optional<RtspOutput> rtsp_;

@@ -3,16 +3,14 @@
 
 #include <json-glib/json-glib.h>
 
-#include <algorithm>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 
+#include "examples/live/http/analysis_api.hpp"
+#include "examples/live/http/history_api.hpp"
 #include "examples/live/http/label_api.hpp"
 #include "examples/live/http/metrics.hpp"
 #include "examples/live/http/page_files.hpp"
 #include "examples/live/json_writer.hpp"
-#include "examples/live/pipeline/analyst.hpp"
 #include "examples/live/pipeline/launch_line.hpp"
 #include "examples/live/pipeline/presets.hpp"
 #include "examples/live/request_json.hpp"
@@ -202,41 +200,6 @@ void add_playback(HttpServer& server, Session& session, const Options& options) 
   });
 }
 
-/* Analysis */
-
-std::optional<ellipse::Stage> stage_in(const RequestJson& json) {
-  if (!json.has("stage")) return std::nullopt;
-  const std::string nick = json.text("stage");
-  const auto nicks = ellipse::stage_nicks();
-  const auto found = std::find(nicks.begin(), nicks.end(), nick);
-  if (found != nicks.end()) return static_cast<ellipse::Stage>(found - nicks.begin());
-  throw std::invalid_argument("stage: unknown stage \"" + nick + "\"");
-}
-
-std::string text_of(JsonNode* node) {
-  if (node == nullptr) return "";
-  const Ref<gchar> text(json_to_string(node, FALSE));
-  return text.get();
-}
-
-void add_analysis(HttpServer& server, Session& session) {
-  const auto analyst = std::make_shared<Analyst>();
-  server.route_open("POST", "/api/analyze", [&session, analyst](const Request& request) {
-    const RequestJson json(request.body);
-    AnalysisRequest wanted{
-        .frame = session.store().newest(),
-        .settings = session.properties().settings_with(text_of(json.node("properties"))),
-        .stage = stage_in(json)};
-    const auto reply = std::make_shared<LaterReply>(request.message);
-    if (!wanted.frame) return reply->send(error_reply(409, "no frame yet"));
-    const bool is_taken =
-        analyst->ask(std::move(wanted), [reply](const auto& text, const auto& error) {
-          reply->send(error.empty() ? Reply{.body = text} : error_reply(500, error));
-        });
-    if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
-  });
-}
-
 }  // namespace
 
 void add_api(HttpServer& server, Session& session, const Options& options) {
@@ -245,6 +208,7 @@ void add_api(HttpServer& server, Session& session, const Options& options) {
   add_settings(server, session);
   add_playback(server, session, options);
   add_analysis(server, session);
+  add_history(server, session);
   add_labels(server, session, options);
   add_page(server, options);
 }

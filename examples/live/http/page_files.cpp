@@ -29,6 +29,7 @@ constexpr std::array kTypes = {
     Type{".png", "image/png"},
     Type{".json", "application/json"},
     Type{".txt", "text/plain; charset=utf-8"},
+    Type{".md", "text/plain; charset=utf-8"},
 };
 
 const char* type_of(std::string_view name) {

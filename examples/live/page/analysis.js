@@ -8,12 +8,13 @@ export const kBest = 8;
 /**
  * @param properties  {name: value} that replace current settings, or undefined.
  * @param stage       The stage to draw, or undefined.
+ * @param frame       Number of a stored frame; undefined = the shown one.
  * @returns the program's reply with three additions. `image`: the stage's picture (ImageBitmap or
  *          null). `groups`: the candidates by reason, found ones first, then by decreasing count.
  *          `best`: a Set of the numbers of the kBest rejected candidates closest to their limits.
  */
-export async function analyze({ properties, stage } = {}) {
-  const result = await ask("POST", "api/analyze", { properties, stage });
+export async function analyze({ properties, stage, frame } = {}) {
+  const result = await ask("POST", "api/analyze", { properties, stage, frame });
   result.image = result.picture ? await bitmapOf(result.picture) : null;
   result.groups = groupsOf(result);
   result.best = bestOf(result.groups);

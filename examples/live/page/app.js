@@ -2,6 +2,7 @@
 // Entry point of the page: connects its parts. Start reading here.
 import { Compare } from "./compare.js";
 import { watchFrames } from "./frames.js";
+import { Guide, isFirstVisit } from "./guide.js";
 import { Labels } from "./labels.js";
 import { Playback } from "./playback.js";
 import { Plots } from "./plots.js";
@@ -28,16 +29,27 @@ const views = {
 };
 let view = null;
 
-const openTab = setUpTabs((name) => {
-  // The comparison stays visible in Tune, so that its settings can be changed.
-  const stays = name === "tune" && view === views.compare && view.isKept;
-  if (stays || views[name] === view) return;
+function openView(next) {
   view?.stop();
-  view = views[name] ?? null;
+  view = next;
   at("layers").hidden = view !== null;
   region.isOn = view === null;
   view?.start();
+}
+const openTab = setUpTabs((name) => {
+  // The comparison stays visible in Tune, so that its settings can be changed.
+  const stays = name === "tune" && view === views.compare && view.isKept;
+  if (!stays && views[name] !== view) openView(views[name] ?? null);
 });
+const guide = new Guide(screen, playback, settings, () => {
+  openTab("tune");
+  at("guide-button").focus();
+});
+at("guide-button").onclick = () => {
+  if (view === guide) return openTab("tune");
+  openView(guide);
+  at("guide").focus();
+};
 
 let plotted = null;  // timestamp of the last plotted line
 watchFrames({
@@ -81,3 +93,4 @@ at("help-button").onclick = () => at("help-dialog").showModal();
 
 settings.refresh();
 playback.refresh();
+if (isFirstVisit()) openView(guide);

@@ -119,8 +119,9 @@ export class Compare {
   }
 }
 
-function tableOf(title, rows) {
-  const head = make("tr", {}, ...["", "A", "B"].map((text) => make("th", { scope: "col" }, text)));
+/** A table with a row per entry: [name, ...cells]. */
+export function tableOf(title, rows, columns = ["A", "B"]) {
+  const head = make("tr", {}, ...["", ...columns].map((text) => make("th", { scope: "col" }, text)));
   return make("table", {},
     make("caption", {}, title),
     make("thead", {}, head),

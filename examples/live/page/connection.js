@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Communication with the program: HTTP requests, and WebSockets that reconnect.
 
-/** Sends a request. Throws an Error with the program's message if it fails. */
+/** Sends a request. Throws an Error with the program's message and the `status` if it fails. */
 export async function ask(method, path, body) {
   const wants = body === undefined ? {} : {
     body: JSON.stringify(body),
@@ -11,7 +11,10 @@ export async function ask(method, path, body) {
   const text = await answer.text();
   const isJson = answer.headers.get("Content-Type")?.startsWith("application/json");
   const value = isJson && text ? JSON.parse(text) : text;
-  if (!answer.ok) throw new Error(value?.error || `${answer.status} ${answer.statusText}`);
+  if (!answer.ok) {
+    const message = value?.error || `${answer.status} ${answer.statusText}`;
+    throw Object.assign(new Error(message), { status: answer.status });
+  }
   return value;
 }
 

@@ -27,6 +27,9 @@ export function contextOf(canvas, width, height) {
   }
   const context = canvas.getContext("2d");
   const scale = canvas.width / width;
+  // The picture may not cover the last row of the canvas.
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.clearRect(0, 0, wide, high);
   context.setTransform(scale, 0, 0, scale, 0.5 * scale, 0.5 * scale);
   context.lineWidth = 2 * devicePixelRatio / scale;
   return context;

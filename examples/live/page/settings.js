@@ -85,22 +85,27 @@ export class Settings {
     if (hasChanged) this.onChange();
   }
 
-  /** Sets {name: value, ...}. Values set during a request are sent together in the next one. */
+  /**
+   * Sets {name: value, ...}. Values set during a request are sent together in the next one.
+   * @returns the program's message if it rejected them, else "".
+   */
   async set(values) {
     Object.assign(this.#pending, values);
     for (const [name, value] of Object.entries(values)) this.#show(this.#controls.get(name), value);
     this.#count();
     this.#showEffects();
-    if (this.#isSending) return;
+    if (this.#isSending) return "";
     this.#isSending = true;
+    let trouble = "";
     while (Object.keys(this.#pending).length > 0) {
       const sent = this.#pending;
       this.#pending = {};
-      await this.#send(sent);
+      trouble = await this.#send(sent);
     }
     this.#isSending = false;
     await this.refresh();
     this.onChange();
+    return trouble;
   }
 
   /** Scrolls to a setting and focuses it. */
@@ -122,6 +127,7 @@ export class Settings {
       trouble = error.message;
     }
     for (const name of Object.keys(values)) this.#controls.get(name).error.textContent = trouble;
+    return trouble;
   }
 
   #build(properties) {

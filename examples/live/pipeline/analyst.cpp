@@ -11,41 +11,41 @@ constexpr std::size_t kMaxWaiting = 8;
 
 }  // namespace
 
-Analyst::Analyst() : wakeup_([this] { deliver(); }), thread_([this] { work(); }) {}
+Analyst::Analyst() : wakeup_([this] { deliver(); }), thread_([this] { run(); }) {}
 
 Analyst::~Analyst() {
   {
     const std::lock_guard lock(mutex_);
-    is_ending_ = true;
+    ending_.request_stop();
   }
   changed_.notify_one();
   thread_.join();
 }
 
-bool Analyst::ask(AnalysisRequest request, Answer answer) {
+bool Analyst::ask(Work work, Answer answer) {
   {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() >= kMaxWaiting) return false;
-    waiting_.push_back({std::move(request), std::move(answer)});
+    waiting_.push_back({std::move(work), std::move(answer)});
   }
   changed_.notify_one();
   return true;
 }
 
-void Analyst::work() {
+void Analyst::run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
-    if (is_ending_) return;
+    changed_.wait(lock, [this] { return ending_.stop_requested() || !waiting_.empty(); });
+    if (ending_.stop_requested()) return;
     Task task = std::move(waiting_.front());
     waiting_.pop_front();
     lock.unlock();
     try {
-      task.json = analysis_json(task.request);
+      task.json = task.work(ending_.get_token());
     } catch (const std::exception& error) {
       task.error = error.what();
     }
-    task.request.frame.reset();
+    task.work = nullptr;  // releases its frames
     lock.lock();
     done_.push_back(std::move(task));
     wakeup_.raise();

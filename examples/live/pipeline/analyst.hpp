@@ -4,10 +4,10 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
-#include "examples/live/pipeline/analysis.hpp"
 #include "examples/live/pipeline/wakeup.hpp"
 
 namespace live {
@@ -24,25 +24,29 @@ class Analyst {
   Analyst(const Analyst&) = delete;
   Analyst& operator=(const Analyst&) = delete;
 
+  /// Returns JSON or throws. Called in the analyst's thread; a long one ends early if it is asked
+  /// to stop.
+  using Work = std::function<std::string(const std::stop_token& stop)>;
+
   /// Main loop only. @return false if too many requests are waiting.
-  [[nodiscard]] bool ask(AnalysisRequest request, Answer answer);
+  [[nodiscard]] bool ask(Work work, Answer answer);
 
  private:
   struct Task {
-    AnalysisRequest request;
+    Work work;
     Answer answer;
     std::string json = {};
     std::string error = {};
   };
 
-  void work();
+  void run();
   void deliver();
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Task> waiting_;
   std::deque<Task> done_;
-  bool is_ending_ = false;
+  std::stop_source ending_;
   Wakeup wakeup_;
   std::thread thread_;
 };

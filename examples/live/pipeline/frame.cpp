@@ -40,4 +40,26 @@ FramePtr make_frame(GstSample* sample, Ref<GstBuffer> input, guint64 index, gint
   return frame;
 }
 
+FramePtr detached_copy(const Frame& frame) {
+  auto copy = std::make_shared<Frame>();
+  copy->input.reset(gst_buffer_copy_deep(frame.input.get()));
+  Ref<GstBuffer> output(gst_buffer_new());
+  gst_buffer_copy_into(output.get(), copy->input.get(), GST_BUFFER_COPY_MEMORY, 0, -1);
+  constexpr auto kAllButPixels = static_cast<GstBufferCopyFlags>(
+      GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_META);
+  gst_buffer_copy_into(
+      output.get(), gst_sample_get_buffer(frame.sample.get()), kAllButPixels, 0, -1);
+  copy->sample.reset(
+      gst_sample_new(output.get(), gst_sample_get_caps(frame.sample.get()), nullptr, nullptr));
+  copy->number = next_number++;
+  copy->index = frame.index;
+  copy->arrived_us = frame.arrived_us;
+  copy->pts = frame.pts;
+  copy->width = frame.width;
+  copy->height = frame.height;
+  copy->rate = frame.rate;
+  copy->line = frame.line;
+  return copy;
+}
+
 }  // namespace live

@@ -62,6 +62,17 @@ void FrameStore::release() {
   is_held_ = false;
 }
 
+void FrameStore::show(FramePtr frame) {
+  FramePtr old;
+  {
+    const std::lock_guard lock(mutex_);
+    is_held_ = true;
+    steps_ = 0;
+    old = take(std::move(frame));
+  }
+  wakeup_.raise();
+}
+
 void FrameStore::clear() {
   FramePtr old;  // released after the lock
   const std::lock_guard lock(mutex_);

@@ -36,6 +36,8 @@ class FrameStore {
   /// Holds the view. If there is no frame yet, the first one is still accepted.
   void hold();
   void release();
+  /// Holds the view at another frame.
+  void show(FramePtr frame);
   /// Discards the newest frame and releases the view.
   void clear();
   /// Accepts one more frame while the view is held.

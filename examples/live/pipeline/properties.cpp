@@ -128,6 +128,17 @@ ellipse::TrackerSettings settings_after(GstElement* tracker, const std::vector<C
   return settings;
 }
 
+// A property's value after the changes.
+Change value_after(GstElement* tracker, std::vector<Change>& changes, const char* name) {
+  for (Change& change : changes) {
+    if (g_str_equal(change.spec->name, name)) return std::move(change);
+  }
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(tracker), name);
+  Change now{spec, std::make_unique<Value>(spec)};
+  g_object_get_property(G_OBJECT(tracker), name, now.value->get());
+  return now;
+}
+
 // Whether a change widens a pair of minimum and maximum. Widening changes are set before narrowing
 // ones, so that no minimum ever exceeds its maximum.
 bool widens(const GParamSpec* spec, const GValue* from, const GValue* to) {
@@ -195,6 +206,18 @@ bool Properties::set(const std::string& json) {
 
 ellipse::TrackerSettings Properties::settings_with(const std::string& json) const {
   return settings_after(tracker_, parse_changes(tracker_, cameras_, json));
+}
+
+std::optional<ellipse::Rect> Properties::region_with(const std::string& json) const {
+  std::vector<Change> changes = parse_changes(tracker_, cameras_, json);
+  const Change source = value_after(tracker_, changes, "roi-source");
+  const Change roi = value_after(tracker_, changes, "roi");
+  if (word_of(source.spec, source.value->get()) != "property") return std::nullopt;
+  if (is_unset(roi.spec, roi.value->get())) return std::nullopt;
+  const auto part = [&](guint i) {
+    return g_value_get_int(gst_value_array_get_value(roi.value->get(), i));
+  };
+  return ellipse::Rect{part(0), part(1), part(2), part(3)};
 }
 
 void Properties::copy_to(GstElement* other) const {

@@ -2,6 +2,7 @@
 
 #include <gst/gst.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,6 +31,10 @@ class Properties {
   /// The current settings with the changes in such an object, or without changes if the text is
   /// empty. Throws as set().
   [[nodiscard]] ellipse::TrackerSettings settings_with(const std::string& json) const;
+
+  /// The search region with such changes: `roi` where `roi-source` selects it; nullopt = the whole
+  /// frame. Throws as set().
+  [[nodiscard]] std::optional<ellipse::Rect> region_with(const std::string& json) const;
 
   /// Copies all settings to another tracker.
   void copy_to(GstElement* other) const;

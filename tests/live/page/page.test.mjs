@@ -9,6 +9,7 @@ import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { kMostMs, openPage, shownBy, startBrowser, startProgram } from "./program.mjs";
+import "./guide.test.mjs";
 import "./layout.test.mjs";
 import { largestDistance } from "./ring.mjs";
 

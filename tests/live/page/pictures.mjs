@@ -44,6 +44,26 @@ await picture("live-compare.jpg", kWide, async (page) => {
   await page.click("#tab-compare");
   await page.waitForFunction(() => /detector/.test(document.querySelector("#compare-result").textContent));
 });
+await picture("live-guide.jpg", kWide, async (page) => {
+  await program.ask("PUT", "/api/properties", { "min-axis": 300 });
+  await page.click("#guide-button");
+  await page.waitForTimeout(7000);
+  await page.click("#guide-begin:enabled");
+  for (let i = 1; i <= 3; ++i) {
+    await page.waitForFunction((n) => {
+      const { pts } = document.querySelector("#guide-choices").dataset;
+      return pts && document.querySelector("#guide-frame").textContent.startsWith(`Frame ${n} of`);
+    }, i);
+    // The outer edge of the pad's ring: the largest ellipse.
+    const sizes = await page.locator("#guide-choices label").allTextContents();
+    const area = (text) => (/: (\d+) × (\d+) px/.exec(text) ?? [0, 0, 0]).slice(1).reduce((a, b) => a * b);
+    const largest = sizes.map(area).indexOf(Math.max(...sizes.map(area)));
+    await page.check(`#guide-choices input[value="${largest}"]`);
+    await page.click("#guide-mark");
+  }
+  await page.waitForSelector("#guide-result h3");
+});
+await program.ask("PUT", "/api/properties", { "min-axis": 5 });
 await picture("live-phone.jpg", kPhone, async (page) => {
   await page.mouse.wheel(0, 420);
 });
