@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What each named constant of core/ is worth: builds a copy in which constants come from the
+environment, changes one at a time by 30 % (a count by at least 1), and judges data sets with
+ellipse-evaluate.
+
+    tests/sensitivity.py [--names REGEX] [--methods arcs+none,arcs+edges] [--out FILE] DATASET...
+
+Prints a Markdown table: file, constant, value, and the largest change of F1 (or of the share of
+frames without a false target) at -30 % and at +30 %. Constants that array sizes, templates and
+other constant expressions need are not varied. The copy is kept in build-sensitivity.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROJECT = pathlib.Path(__file__).resolve().parent.parent
+FOLDER = PROJECT / "build-sensitivity"
+SOURCE = FOLDER / "source"
+BUILD = FOLDER / "build"
+MAX_ROUNDS = 30
+
+DEFINITION = re.compile(
+    r"^(?P<indent> *)(?P<static>(?:inline |static )?)constexpr "
+    r"(?P<type>double|float|int|unsigned|std::size_t|std::ptrdiff_t|std::int64_t) "
+    r"(?P<name>k\w+) = (?P<value>[^;{]+);", re.MULTILINE)
+
+KNOB = """#pragma once
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <type_traits>
+namespace ellipse {
+// The value, changed by a factor if the environment has ELLIPSE_KNOB=NAME=FACTOR.
+template <class T>
+T knob(const char* name, T value) {
+  const char* setting = std::getenv("ELLIPSE_KNOB");
+  const char* equals = setting != nullptr ? std::strchr(setting, '=') : nullptr;
+  if (equals == nullptr || std::strlen(name) != static_cast<std::size_t>(equals - setting) ||
+      std::strncmp(setting, name, std::strlen(name)) != 0) {
+    return value;
+  }
+  const double factor = std::atof(equals + 1);
+  const double changed = static_cast<double>(value) * factor;
+  if constexpr (std::is_integral_v<T>) {
+    const double rounded = std::round(changed);
+    if (rounded == static_cast<double>(value)) return static_cast<T>(value + (factor > 1.0 ? 1 : -1));
+    return static_cast<T>(rounded);
+  }
+  return static_cast<T>(changed);
+}
+}  // namespace ellipse
+"""
+
+
+class Constant:
+    def __init__(self, file, match):
+        self.file = file
+        self.name = match["name"]
+        self.value = " ".join(match["value"].split())
+        self.is_fixed = False
+
+    @property
+    def key(self):
+        return f"{self.file}:{self.name}"
+
+
+def core_files():
+    names = subprocess.run(["git", "-C", PROJECT, "ls-files", "core"], check=True,
+                           capture_output=True, text=True).stdout.split()
+    return [name for name in names
+            if name.endswith((".cpp", ".hpp")) and not name.startswith("core/scene/")]
+
+
+def find_constants(files):
+    return [Constant(file, match) for file in files
+            for match in DEFINITION.finditer((PROJECT / file).read_text())]
+
+
+def transformed(file, constants):
+    """The text of a file whose constants that are not fixed are read at the start."""
+    varied = {c.name for c in constants if c.file == file and not c.is_fixed}
+    if not varied:
+        return (PROJECT / file).read_text()
+
+    def replace(match):
+        if match["name"] not in varied:
+            return match[0]
+        kind = {"": "const", "inline ": "inline const", "static ": "static inline const"}
+        return (f"{match['indent']}{kind[match['static']]} {match['type']} {match['name']} = "
+                f"ellipse::knob<{match['type']}>(\"{file}:{match['name']}\", {match['value']});")
+
+    text = DEFINITION.sub(replace, (PROJECT / file).read_text())
+    first, rest = text.split("\n", 1)
+    return f'{first}\n#include "core/knob.hpp"\n{rest}'
+
+
+def write(files, constants):
+    for file in files:
+        text = transformed(file, constants)
+        target = SOURCE / file
+        if not target.exists() or target.read_text() != text:
+            target.write_text(text)
+
+
+def fix_what_fails(output, constants):
+    """Fixes the constants on lines that do not compile. @return how many."""
+    count = 0
+    for file, line in set(re.findall(r"(core/[\w/]+\.[ch]pp):(\d+):\d+: error", output)):
+        text = (SOURCE / file).read_text().split("\n")[int(line) - 1]
+        names = set(re.findall(r"\bk\w+", text))
+        for name in re.findall(r"value of ‘(?:\w+::|\(anonymous namespace\)::)*(k\w+)’", output):
+            names.add(name)
+        for constant in constants:
+            if constant.name in names and not constant.is_fixed:
+                constant.is_fixed = True
+                count += 1
+    return count
+
+
+def build(files, constants):
+    tracked = subprocess.run([PROJECT / "examples/packaging/list_files.sh"], check=True,
+                             capture_output=True).stdout
+    SOURCE.mkdir(parents=True, exist_ok=True)
+    for name in tracked.decode().split("\0"):
+        if name and name not in files:
+            (SOURCE / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(PROJECT / name, SOURCE / name)
+    (SOURCE / "core/knob.hpp").write_text(KNOB)
+    for file in files:
+        (SOURCE / file).parent.mkdir(parents=True, exist_ok=True)
+    for _ in range(MAX_ROUNDS):
+        write(files, constants)
+        if not (BUILD / "build.ninja").exists():
+            subprocess.run(["meson", "setup", BUILD, SOURCE, "-Dplugin=disabled", "-Dtests=disabled"],
+                           check=True, stdout=subprocess.DEVNULL)
+        result = subprocess.run(["ninja", "-C", BUILD, "-k", "0", "examples/ellipse-evaluate"],
+                                capture_output=True, text=True)
+        if result.returncode == 0:
+            return
+        if fix_what_fails(result.stdout, constants) == 0:
+            sys.exit("sensitivity.py: the copy does not compile:\n" + result.stdout[-3000:])
+    sys.exit("sensitivity.py: the copy does not compile after many attempts")
+
+
+def grades(arguments, knob=None):
+    """F1, or the share of frames without a false target, by data set and method."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as out:
+        environment = dict(os.environ, LD_LIBRARY_PATH=str(BUILD / "core"))
+        if knob:
+            environment["ELLIPSE_KNOB"] = knob
+        result = subprocess.run(
+            [BUILD / "examples/ellipse-evaluate", *arguments.dataset, "--methods", arguments.methods,
+             "--json", out.name], env=environment, capture_output=True, text=True)
+        if result.returncode != 0:
+            return None
+        return {(row["dataset"], row["method"]): row["grade"] for row in json.load(out)["sources"]}
+
+
+def largest_change(before, after):
+    if after is None:
+        return "fails"
+    changes = {key: after[key] - before[key] for key in before if after.get(key) is not None}
+    key = max(changes, key=lambda k: abs(changes[k]))
+    if abs(changes[key]) < 0.0005:
+        return "-"
+    return f"{changes[key]:+.3f} {key[0]} {key[1]}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("dataset", nargs="+", metavar="DATASET")
+    parser.add_argument("--names", default="", help="only constants FILE:NAME that match")
+    parser.add_argument("--methods", default="arcs+none,arcs+edges")
+    parser.add_argument("--out", type=argparse.FileType("w"), default=sys.stdout)
+    arguments = parser.parse_args()
+
+    files = core_files()
+    constants = find_constants(files)
+    build(files, constants)
+    before = grades(arguments)
+    if before is None:
+        sys.exit("sensitivity.py: ellipse-evaluate fails without any change")
+    chosen = [c for c in constants if re.search(arguments.names, c.key)]
+
+    def row(constant):
+        if constant.is_fixed:
+            return [constant.file, constant.name, constant.value, "not varied", ""]
+        changes = [largest_change(before, grades(arguments, f"{constant.key}={factor}"))
+                   for factor in (0.7, 1.3)]
+        return [constant.file, constant.name, constant.value, *changes]
+
+    print("| file | constant | value | -30 % | +30 % |\n|---|---|---|---|---|", file=arguments.out)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for cells in pool.map(row, chosen):
+            print("| " + " | ".join(cells) + " |", file=arguments.out, flush=True)
+
+
+if __name__ == "__main__":
+    main()
