@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "core/geometry/homography.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 namespace ellipse {
 namespace {
@@ -82,6 +84,29 @@ RingMatrix ring_changes(const Matrix3d& from_view, const Matrix3d& to_view) {
     changes.col(i) = change_of(between * generator_of(HomographyChange::Unit(i)) * back).head<5>();
   }
   return changes;
+}
+
+// With image = c + M (I + [S+E1, E2; E2, S-E1]) (x + T), M = R diag(a, b): dc = M T, da = a (S +
+// E1), db = b (S - E1), and the axes turn by 2 a b E2 / (a^2 - b^2).
+RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge) {
+  constexpr double kUnknownAngle = std::numbers::pi * std::numbers::pi / 12.0;
+  const double a = e.semi_major;
+  const double b = e.semi_minor;
+  const Matrix3d view = image_from_pad(e);
+  RingMatrix parameters = RingMatrix::Zero();
+  parameters.topLeftCorner<2, 2>() = view.topLeftCorner<2, 2>();
+  parameters.row(2) << 0.0, 0.0, a, a, 0.0;
+  parameters.row(3) << 0.0, 0.0, b, -b, 0.0;
+  parameters(4, 4) = 1.0;
+  const RingMatrix jacobian = parameters * ring_changes(edge.view, view);
+  const RingMatrix changes = edge.information.ldlt().solve(RingMatrix::Identity());
+  RingMatrix covariance = jacobian * changes * jacobian.transpose();
+  const double difference = a * a - b * b;
+  const double most = std::sqrt(kUnknownAngle / covariance(4, 4));
+  const double turn = 2.0 * a * b < most * difference ? 2.0 * a * b / difference : most;
+  covariance.row(4) *= turn;
+  covariance.col(4) *= turn;
+  return covariance;
 }
 
 // With H = K [r1 r2 t], G = K^-1 H: a motion of the camera changes G to (I + [w]x) G + v e3^T.

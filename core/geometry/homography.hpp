@@ -45,6 +45,12 @@ struct RingUncertainty {
   RingMatrix information;  ///< Inverse covariance of T, S and E in this view.
 };
 
+/// Covariance of an ellipse's parameters: x and y of its centre, semi-major and semi-minor axis [px],
+/// angle [rad], in this order; to first order. The angle's variance is at most pi^2 / 12, that of an
+/// unknown angle, as for a circle.
+/// @param edge  Uncertainty of this ellipse as the image of an outer circle.
+[[nodiscard]] RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge);
+
 /// Transforms T, S and E from one view to another with the same image of the outer circle.
 [[nodiscard]] RingMatrix ring_changes(const Eigen::Matrix3d& from_view,
                                       const Eigen::Matrix3d& to_view);

@@ -32,7 +32,9 @@ struct Target {
   int scale = 1;                                    ///< Frame scale of the detection.
   Rect search_region;                               ///< Region that was searched [px].
   std::int64_t pts_ns = 0;                          ///< Time stamp of the frame.
-  std::optional<RingUncertainty> uncertainty = {};  ///< Of the ellipse; only if a camera is known.
+  RingUncertainty uncertainty = {};                 ///< Of the ellipse.
+  /// Of centre x and y, semi-major and semi-minor axis [px], angle [rad]: parameter_covariance().
+  RingMatrix covariance = RingMatrix::Zero();
   std::optional<TargetPose> pose = {};              ///< Only if a camera is known.
 };
 

@@ -67,9 +67,12 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   const double elapsed_s = clock_.advance_to(pts_ns) * kFrame_s;
   if (scoped.searchable.empty()) return std::nullopt;
   std::optional<Target> target = track(scoped, elapsed_s);
-  if (target) target->pts_ns = pts_ns;
   remember(target);
-  if (target && lens_) locate(*target);
+  if (!target) return std::nullopt;
+  target->pts_ns = pts_ns;
+  target->uncertainty = uncertainty_of(*target);
+  target->covariance = parameter_covariance(target->ellipse, target->uncertainty);
+  if (lens_) locate(*target);
   return target;
 }
 
@@ -167,7 +170,6 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   target.ellipse_overlap = track->outline;
   target.visible_fraction = visible;
   target.search_region = region;
-  if (lens_) target.uncertainty = pad_tracker_->uncertainty();
   // A frame has one of the two, the periodic evaluation or the periodic detection.
   const bool is_put_off = judge_->is_sure() && is_look_due() && !settings_.wants_candidates;
   if (track->is_visible && !is_put_off) {
@@ -238,21 +240,21 @@ void Tracker::remember(const std::optional<Target>& target) {
   last_ellipse_ = target->ellipse;
 }
 
-// Adds the uncertainty and the pose, which need a camera.
+RingUncertainty Tracker::uncertainty_of(const Target& target) const {
+  if (pad_tracker_->is_locked()) return pad_tracker_->uncertainty();
+  return expected_uncertainty(
+      target.ellipse, frame_bounds_.width, frame_bounds_.height, kDetectedSigmaPx);
+}
+
+// Adds the pose, which needs a camera.
 void Tracker::locate(Target& target) {
-  const Camera& camera = lens_->camera();
   const bool is_followed = pad_tracker_->is_locked();
-  if (!target.uncertainty && is_followed) target.uncertainty = pad_tracker_->uncertainty();
-  if (!target.uncertainty) {
-    target.uncertainty =
-        expected_uncertainty(target.ellipse, camera.width, camera.height, kDetectedSigmaPx);
-  }
   if (target.id != located_id_) pose_estimator_.forget();
   located_id_ = target.id;
   target.pose = pose_estimator_.estimate(
       *lens_,
       target.ellipse,
-      *target.uncertainty,
+      target.uncertainty,
       is_followed ? pad_tracker_->inner_edges() : std::span<const FittedEllipse>(),
       0.5 * settings_.target_diameter_m,
       Eigen::Vector3d::Map(settings_.gravity.data()));

@@ -87,6 +87,7 @@ class Tracker {
   [[nodiscard]] std::optional<Target> track(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> detect(const ScopedFrame& frame);
   void remember(const std::optional<Target>& target);
+  [[nodiscard]] RingUncertainty uncertainty_of(const Target& target) const;
   void locate(Target& target);
 
   [[nodiscard]] std::optional<Target> follow(const ScopedFrame& frame, double elapsed_s);

@@ -105,6 +105,47 @@ static void scale_span(gint& begin, guint& length, double factor, gint offset) {
   length = static_cast<guint>(std::max(0.0, end - first));
 }
 
+using Parameters = Eigen::Matrix<double, 5, 1>;
+
+static Parameters parameters_of(const ellipse::Ellipse& e) {
+  return {e.cx, e.cy, e.semi_major, e.semi_minor, e.angle_rad};
+}
+
+// Scales the covariance to first order, by differences of the parameters.
+static void scale_covariance(GstEllipseMeta* meta,
+                             const ellipse::Ellipse& before,
+                             const Eigen::Vector2d& factors,
+                             const Eigen::Vector2d& shift) {
+  constexpr double kStep = 1e-4;
+  Eigen::Matrix<double, 5, 5> jacobian;
+  for (int i = 0; i < 5; ++i) {
+    const auto after = [&](double step) {
+      Parameters p = parameters_of(before);
+      p(i) += step;
+      return ellipse::transformed({p(0), p(1), p(2), p(3), p(4)}, factors.asDiagonal(), shift);
+    };
+    const auto more = after(kStep);
+    const auto less = after(-kStep);
+    if (!more || !less) return;
+    Parameters change = parameters_of(*more) - parameters_of(*less);
+    change(4) = std::remainder(change(4), G_PI);
+    jacobian.col(i) = change / (2.0 * kStep);
+  }
+  Eigen::Matrix<double, 5, 5> covariance;
+  const gdouble* from = meta->covariance;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = i; k < 5; ++k) covariance(i, k) = covariance(k, i) = *from++;
+  }
+  covariance = jacobian * covariance * jacobian.transpose();
+  gdouble* to = meta->covariance;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = i; k < 5; ++k) *to++ = covariance(i, k);
+  }
+  const double half_sum = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  const double half_difference = 0.5 * (covariance(0, 0) - covariance(1, 1));
+  meta->sigma_px = std::sqrt(half_sum + std::hypot(half_difference, covariance(0, 1)));
+}
+
 // Maps x to (x + 0.5) s - 0.5 in each direction: integer coordinates are pixel centres.
 static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* scale) {
   const ellipse::Rect inside = picture_inside(*scale->in_info, *scale->out_info);
@@ -118,6 +159,7 @@ static gboolean scale_fields(GstEllipseMeta* meta, const GstVideoMetaTransform* 
   const std::optional<ellipse::Ellipse> after =
       ellipse::transformed(before, factors.asDiagonal(), shift);
   if (!after) return FALSE;
+  if (meta->sigma_px > 0.0) scale_covariance(meta, before, factors, shift);
   meta->cx = after->cx;
   meta->cy = after->cy;
   meta->semi_major = after->semi_major;

@@ -96,6 +96,10 @@ GType gst_ellipse_state_get_type(void);
  * @probability: probability that it is a target, 0 to 1: with tracking=edges from all frames so
  *   far, otherwise from the detector in this frame; 1 if the detector gives none; 0 for the truth.
  *   Since: 0.2
+ * @sigma_px: standard deviation of the target's centre in the direction in which it is largest, in
+ *   px; 0 = unknown, as for candidates and the truth. Since: 0.2
+ * @covariance: covariance of cx, cy, semi_major, semi_minor [px] and angle_rad: the upper triangle
+ *   by rows, beginning with cx cx, cx cy. Valid if @sigma_px is not 0. Since: 0.2
  *
  * One ellipse on a video buffer; a buffer may have several. Copying keeps it and scaling transforms
  * it, also if the scale differs in x and y.
@@ -156,6 +160,8 @@ struct _GstEllipseMeta {
   guint n_outline;
   gfloat outline[128];
   gdouble probability;
+  gdouble sigma_px;
+  gdouble covariance[15];
 };
 
 #define GST_ELLIPSE_META_API_TYPE (gst_ellipse_meta_api_get_type())

@@ -72,6 +72,27 @@ static void add_ellipse(GstStructure* structure, const GstEllipseMeta* meta) {
   for (const Field& field : kFields) field.set(structure, meta);
 }
 
+static void set_numbers(GstStructure* structure,
+                        const gchar* name,
+                        const gdouble* numbers,
+                        guint count) {
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, GST_TYPE_ARRAY);
+  for (guint i = 0; i < count; ++i) {
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, G_TYPE_DOUBLE);
+    g_value_set_double(&number, numbers[i]);
+    gst_value_array_append_and_take_value(&list, &number);
+  }
+  gst_structure_take_value(structure, name, &list);
+}
+
+static void add_covariance(GstStructure* structure, const GstEllipseMeta* meta) {
+  static const Field kSigma = FIELD(sigma_px);
+  kSigma.set(structure, meta);
+  set_numbers(structure, "covariance", meta->covariance, G_N_ELEMENTS(meta->covariance));
+}
+
 static void add_pose(GstStructure* structure, const GstEllipseMeta* meta) {
   static const Field kFields[] = {FIELD(bearing_x),
                                   FIELD(bearing_y),
@@ -98,21 +119,6 @@ static void set_name(GstStructure* structure, GQuark field, const gchar* name) {
   gst_structure_id_take_value(structure, field, &value);
 }
 
-static void set_numbers(GstStructure* structure,
-                        const gchar* name,
-                        const gdouble* numbers,
-                        guint count) {
-  GValue list = G_VALUE_INIT;
-  g_value_init(&list, GST_TYPE_ARRAY);
-  for (guint i = 0; i < count; ++i) {
-    GValue number = G_VALUE_INIT;
-    g_value_init(&number, G_TYPE_DOUBLE);
-    g_value_set_double(&number, numbers[i]);
-    gst_value_array_append_and_take_value(&list, &number);
-  }
-  gst_structure_take_value(structure, name, &list);
-}
-
 static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
   static const Field kFields[] = {FIELD(position_x),
                                   FIELD(position_y),
@@ -131,9 +137,9 @@ static void add_position(GstStructure* structure, const GstEllipseMeta* meta) {
  * gst_ellipse_meta_to_structure:
  * @meta: an ellipse
  *
- * Copies all fields by name into a structure named "ellipse": role and state as nicks, covariance
- * and outline as arrays; pose, position and outline only if known. Use it for data that outlives
- * the buffer.
+ * Copies all fields by name into a structure named "ellipse": role and state as nicks, covariances
+ * and outline as arrays; covariance, pose, position and outline only if known. Use it for data that
+ * outlives the buffer.
  *
  * Returns: (transfer full): a new structure
  *
@@ -148,6 +154,7 @@ GstStructure* gst_ellipse_meta_to_structure(const GstEllipseMeta* meta) {
   set_name(structure, kRole, gst_ellipse_meta_get_role_name(meta));
   set_name(structure, kState, gst_ellipse_meta_get_state_name(meta));
   add_ellipse(structure, meta);
+  if (meta->sigma_px > 0.0) add_covariance(structure, meta);
   if (meta->has_pose) add_pose(structure, meta);
   if (meta->has_position) add_position(structure, meta);
   const guint points = std::min<guint>(meta->n_outline, G_N_ELEMENTS(meta->outline) / 2);
@@ -225,10 +232,10 @@ static void append_position(GString* json, const GstEllipseMeta* meta) {
  *
  * Writes the ellipse as a JSON object on one line: role, id, state, cx, cy, semi_major, semi_minor,
  * angle_rad, contour_overlap, ellipse_overlap, probability, visible, scale, in pixels and radians;
- * and, if known, the search region roi as x, y, width and height. With a camera also bearing,
- * angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter position,
- * other_position, position_covariance in metres. The truth has no state, overlaps, probability or
- * scale. A number that is not finite is null.
+ * and, if known, sigma_px and the search region roi as x, y, width and height. With a camera also
+ * bearing, angle_x, angle_y, centre, normal, other_normal, certainty; with the target's diameter
+ * position, other_position, position_covariance in metres. The truth has no state, overlaps,
+ * probability or scale. A number that is not finite is null.
  *
  * Returns: (transfer full): a new string; free it with `g_free()`
  *
@@ -255,6 +262,7 @@ gchar* gst_ellipse_meta_to_json(const GstEllipseMeta* meta) {
     append_number(json, "ellipse_overlap", "%.4f", meta->ellipse_overlap);
     append_number(json, "probability", "%.4f", meta->probability);
   }
+  if (meta->sigma_px > 0.0) append_number(json, "sigma_px", "%.4f", meta->sigma_px);
   append_number(json, "visible", "%.4f", meta->visible_fraction);
   if (was_found) g_string_append_printf(json, ",\"scale\":%u", meta->scale);
   if (meta->roi_width > 0 && meta->roi_height > 0) {

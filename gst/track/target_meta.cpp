@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track/target_meta.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -64,6 +65,16 @@ static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
   }
 }
 
+static void write_covariance(GstEllipseMeta* meta, const ellipse::RingMatrix& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> centre(covariance.topLeftCorner<2, 2>(),
+                                                              Eigen::EigenvaluesOnly);
+  meta->sigma_px = std::sqrt(centre.eigenvalues().maxCoeff());
+  gdouble* to = meta->covariance;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = i; k < 5; ++k) *to++ = covariance(i, k);
+  }
+}
+
 static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
                                                 const ellipse::Target& target,
                                                 const ellipse::LensView& lens,
@@ -82,6 +93,7 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->roi_width = static_cast<guint>(target.search_region.width);
   meta->roi_height = static_cast<guint>(target.search_region.height);
   meta->processing_time = processing_time;
+  write_covariance(meta, target.covariance);
   if (target.pose) write_pose(meta, *target.pose);
   write_outline(meta, lens);
   return meta;

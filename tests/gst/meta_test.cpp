@@ -120,6 +120,30 @@ TEST(EllipseMeta, FollowsAScaler) {
   EXPECT_EQ(meta->id, 7U);
 }
 
+TEST(EllipseMeta, CovarianceFollowsAScaler) {
+  const auto from = empty_buffer();
+  GstEllipseMeta* before = add_example(from.get());
+  before->sigma_px = 0.3;
+  gdouble* to = before->covariance;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = i; k < 5; ++k) *to++ = i == k ? 0.09 : 0.01;
+  }
+  const auto doubled = empty_buffer();
+  const GstEllipseMeta* meta = scaled_to(from.get(), doubled.get(), 640, 480);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_NEAR(meta->covariance[0], 0.36, 1e-6);
+  EXPECT_NEAR(meta->covariance[1], 0.04, 1e-6);
+  EXPECT_NEAR(meta->covariance[4], 0.02, 1e-6);   // of cx and the angle
+  EXPECT_NEAR(meta->covariance[14], 0.09, 1e-6);  // of the angle
+  EXPECT_NEAR(meta->sigma_px, 2.0 * std::sqrt(0.1), 1e-6);
+  // Twice as wide: the centre's errors along x alone double.
+  const auto wide = empty_buffer();
+  const GstEllipseMeta* stretched = scaled_to(from.get(), wide.get(), 640, 240, 1, 2);
+  ASSERT_NE(stretched, nullptr);
+  EXPECT_NEAR(stretched->covariance[0], 0.36, 1e-6);
+  EXPECT_NEAR(stretched->covariance[5], 0.09, 1e-6);
+}
+
 TEST(EllipseMeta, TurnsUnderANonUniformScale) {
   const auto from = empty_buffer();
   const auto to = empty_buffer();

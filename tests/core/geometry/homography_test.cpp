@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 namespace ellipse {
 namespace {
@@ -117,6 +118,43 @@ TEST(Homography, FollowsTheCamera) {
       EXPECT_LT((seen(told, place) - seen(expected, place)).norm(), 1e-3 * motion.norm() + 1e-9);
     }
   }
+}
+
+TEST(ParameterCovariance, IsWhatSmallChangesOfTheViewScatterBy) {
+  const Matrix3d view = tilted_view();
+  const Ellipse e = project_circle(view, 1.0).value();
+  const RingMatrix root = RingMatrix::NullaryExpr([](Eigen::Index i, Eigen::Index k) {
+    const double any = std::sin(1.0 + 3.0 * static_cast<double>(i) + 5.0 * static_cast<double>(k));
+    return 1e-4 * (i == k ? 1.0 : 0.3 * any);
+  });
+  RingMatrix expected = RingMatrix::Zero();
+  for (int i = 0; i < 5; ++i) {
+    HomographyChange change = HomographyChange::Zero();
+    change.head<5>() = root.col(i);
+    const Ellipse after = project_circle(moved(view, change), 1.0).value();
+    const Eigen::Matrix<double, 5, 1> difference{after.cx - e.cx,
+                                                 after.cy - e.cy,
+                                                 after.semi_major - e.semi_major,
+                                                 after.semi_minor - e.semi_minor,
+                                                 after.angle_rad - e.angle_rad};
+    expected += difference * difference.transpose();
+  }
+  const RingMatrix information = (root * root.transpose()).inverse();
+  const RingMatrix covariance = parameter_covariance(e, {view, information});
+  for (int i = 0; i < 5; ++i) {
+    for (int k = 0; k < 5; ++k) {
+      const double scale = std::sqrt(expected(i, i) * expected(k, k));
+      EXPECT_NEAR(covariance(i, k), expected(i, k), 0.01 * scale) << i << ' ' << k;
+    }
+  }
+}
+
+TEST(ParameterCovariance, TheAngleOfACircleIsUnknown) {
+  const Ellipse circle{100.0, 80.0, 30.0, 30.0, 0.0};
+  const RingMatrix covariance =
+      parameter_covariance(circle, {image_from_pad(circle), 1e6 * RingMatrix::Identity()});
+  EXPECT_NEAR(covariance(4, 4), std::numbers::pi * std::numbers::pi / 12.0, 1e-9);
+  EXPECT_NEAR(covariance(0, 0), 9e-4, 1e-9);  // (30 px / 1000)^2
 }
 
 TEST(Homography, SeesNothingBehindTheCamera) {

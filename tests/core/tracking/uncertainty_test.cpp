@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// How often the truth lies inside what a tracker tells of its errors.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+#include "core/geometry/homography.hpp"
+#include "core/scene/catalog.hpp"
+#include "core/scene/renderer.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/support/picture.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr double kChiSquare5 = 11.0705;  // 95 % of a chi-square distribution of 5 degrees
+
+struct Shares {
+  int frames = 0;
+  int inside = 0;
+};
+
+// The normalised squared error of an ellipse whose outline is that of `truth`.
+double squared_error(const Target& target, const Ellipse& truth) {
+  const auto view = with_outer_edge(target.uncertainty.view, truth);
+  if (!view) return 1e9;
+  Eigen::Matrix3d change = target.uncertainty.view.inverse() * *view;
+  change = change / change(2, 2) - Eigen::Matrix3d::Identity();
+  const Eigen::Matrix<double, 5, 1> error{change(0, 2),
+                                          change(1, 2),
+                                          0.5 * (change(0, 0) + change(1, 1)),
+                                          0.5 * (change(0, 0) - change(1, 1)),
+                                          0.5 * (change(0, 1) + change(1, 0))};
+  return error.dot(target.uncertainty.information * error);
+}
+
+// Of the frames in which the target is tracked.
+Shares shares_in(const char* name, int frames) {
+  SceneRenderer renderer(scene_by_name(name, 31));
+  support::Picture picture(640, 360);
+  Tracker tracker;
+  Shares shares;
+  for (int i = 0; i < frames; ++i) {
+    const Truth truth =
+        renderer.render(i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    const auto target = tracker.process(picture.view(), i * 1'000'000'000LL / 30);
+    if (!target || target->state != TargetState::kTracked || !truth.outer_edge) continue;
+    ++shares.frames;
+    shares.inside += squared_error(*target, *truth.outer_edge) <= kChiSquare5 ? 1 : 0;
+  }
+  return shares;
+}
+
+// Without motion blur: 95 % of independent frames, but errors of neighbouring frames are alike.
+TEST(Uncertainty, HoldsTheTruthInMostFrames) {
+  for (const char* name : {"approach", "glare", "noise"}) {
+    const Shares shares = shares_in(name, 150);
+    EXPECT_GT(shares.frames, 140) << name;
+    EXPECT_GT(shares.inside, 0.88 * shares.frames) << name;
+  }
+}
+
+// It is not simply large: doubled errors are outside.
+TEST(Uncertainty, IsNoLargerThanTheErrors) {
+  SceneRenderer renderer(scene_by_name("oblique", 31));
+  support::Picture picture(640, 360);
+  Tracker tracker;
+  double sum = 0.0;
+  int frames = 0;
+  for (int i = 0; i < 150; ++i) {
+    const Truth truth =
+        renderer.render(i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
+    const auto target = tracker.process(picture.view(), i * 1'000'000'000LL / 30);
+    if (!target || target->state != TargetState::kTracked) continue;
+    sum += squared_error(*target, truth.outer_edge.value());
+    ++frames;
+  }
+  EXPECT_NEAR(sum / frames, 5.0, 2.0);  // the mean of the distribution
+}
+
+}  // namespace
+}  // namespace ellipse
