@@ -149,10 +149,10 @@ void Camera::validate() const {
   const auto is_place = [](double v) { return std::abs(v) <= kLargest; };
   check(width > 0 && width <= kLargest, "width is not between 1 and 1e6 px");
   check(height > 0 && height <= kLargest, "height is not between 1 and 1e6 px");
-  check(is_length(fx), "fx is not above 0 and at most 1e6 px");
-  check(is_length(fy), "fy is not above 0 and at most 1e6 px");
-  check(is_place(cx), "cx is no place in a picture");
-  check(is_place(cy), "cy is no place in a picture");
+  check(is_length(fx), "fx is not in (0, 1e6] px");
+  check(is_length(fy), "fy is not in (0, 1e6] px");
+  check(is_place(cx), "cx is not between -1e6 and 1e6 px");
+  check(is_place(cy), "cy is not between -1e6 and 1e6 px");
   for (const double k : distortion) check(std::isfinite(k), "distortion is not finite");
 }
 

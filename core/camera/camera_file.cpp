@@ -51,7 +51,7 @@ class File {
     text_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
     if (text_.size() > kMaxFile) throw std::invalid_argument(path + ": is larger than 1 MB");
     if (text_.find('\0') != std::string::npos) {
-      throw std::invalid_argument(path + ": is no text");
+      throw std::invalid_argument(path + ": is not a text file");
     }
     if (text_.rfind(kByteOrderMark, 0) == 0) text_.erase(0, kByteOrderMark.size());
     parse();
@@ -80,7 +80,7 @@ class File {
     const std::size_t first = text_.find_first_not_of(" \t\r\n");
     if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
     if (is_cut_off(text_[first])) {
-      throw std::invalid_argument(path_ + ": is no calibration: it ends too early");
+      throw std::invalid_argument(path_ + ": is not a calibration: it is truncated");
     }
     // OpenCV requires its own first line in YAML, which ROS files lack.
     const bool is_bare = text_[first] != '<' && text_[first] != '{' && text_[first] != '%';
@@ -91,13 +91,13 @@ class File {
     } catch (const cv::Exception& error) {
       const std::string& told = error.func;  // OpenCV's parsers put their message here
       throw std::invalid_argument(path_ + line_in(told, added) +
-                                  ": is no calibration: " + reason_in(error));
+                                  ": is not a calibration: " + reason_in(error));
     } catch (const std::exception&) {  // std::length_error for an empty key
-      throw std::invalid_argument(path_ + ": is no calibration");
+      throw std::invalid_argument(path_ + ": is not a calibration");
     }
-    if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is no calibration");
+    if (!storage_.isOpened()) throw std::invalid_argument(path_ + ": is not a calibration");
     if (!storage_.root().isMap()) {
-      throw std::invalid_argument(path_ + ": is no calibration: it has no keys");
+      throw std::invalid_argument(path_ + ": is not a calibration: it has no keys");
     }
   }
 
@@ -187,7 +187,7 @@ std::vector<double> numbers(const File& file, const char* key, const cv::FileNod
     const double rows = number(file, key, node["rows"]);
     const double cols = number(file, key, node["cols"]);
     if (rows * cols != static_cast<double>(values.size())) {
-      file.refuse(key, "has not rows x cols numbers");
+      file.refuse(key, "does not have rows x cols numbers");
     }
   }
   return values;
@@ -204,7 +204,7 @@ void read_matrix(const File& file, Camera& camera) {
     file.refuse(key, "is not of the form [fx 0 cx; 0 fy cy; 0 0 1]");
   }
   if (!(k[0] >= kMinFocal && k[4] >= kMinFocal)) {
-    file.refuse(key, "has a focal length that is not at least 1 px");
+    file.refuse(key, "has a focal length below 1 px");
   }
   camera.fx = k[0];
   camera.fy = k[4];
@@ -260,20 +260,20 @@ void read_distortion(const File& file, Camera& camera) {
   }
   const std::vector<double> k = numbers(file, key, node);
   const bool is_fisheye = camera.lens == LensModel::kFisheye;
-  if (is_fisheye && k.size() != 4) file.refuse(key, "of a fisheye has not 4 numbers");
+  if (is_fisheye && k.size() != 4) file.refuse(key, "does not have the 4 numbers of a fisheye");
   if (!is_fisheye && k.size() != 0 && k.size() != 4 && k.size() != 5 && k.size() != 8 &&
       k.size() != 12 && k.size() != 14) {
-    file.refuse(key, "has not 4, 5 or 8 numbers");
+    file.refuse(key, "does not have 4, 5 or 8 numbers");
   }
   const std::size_t known = camera.distortion.size();
   if (std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(known, k.size())),
                   k.end(),
                   [](double v) { return v != 0.0; })) {
-    file.refuse(key, "has a thin prism or a tilted sensor, which are not modelled");
+    file.refuse(key, "has a thin prism or a tilted sensor, which are not supported");
   }
   std::copy_n(k.begin(), std::min(known, k.size()), camera.distortion.begin());
   if (camera.is_distorted() && !is_one_to_one(camera)) {
-    file.refuse(key, "is of no lens: the picture turns back within the middle half of it");
+    file.refuse(key, "is not one to one over the middle half of the picture");
   }
 }
 

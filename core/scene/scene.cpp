@@ -21,7 +21,7 @@ double border_place(const Distortion& distortion, double hfov_rad) {
   const auto left = lens.picture_from_ideal({-ideal, 0.0});
   const auto right = lens.picture_from_ideal({ideal, 0.0});
   if (!(hfov_rad > 0.0) || !left || !right) {
-    throw std::invalid_argument("hfov_rad: the lens does not show as much");
+    throw std::invalid_argument("hfov_rad: the lens does not cover this field of view");
   }
   return 0.5 * (right->picture_px.x() - left->picture_px.x());
 }
@@ -60,7 +60,7 @@ class BentOutline {
     return {anomaly_rad, end_towards(ideal), false};
   }
 
-  // The limit of the lens's range on the way to a point.
+  // Image of the last point inside the lens's range, on the line from the middle to this point.
   [[nodiscard]] Vector2d end_towards(const Vector2d& ideal) const {
     constexpr int kHalvings = 30;
     double shown = 0.0;

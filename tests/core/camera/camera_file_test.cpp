@@ -119,23 +119,23 @@ TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsWrong) {
   EXPECT_EQ(refusal("b.yaml", with("image_height: 480", "image_height: -3")),
             "b.yaml:2: image_height is not a whole number from 1 to 65536");
   EXPECT_EQ(refusal("c.yaml", with("0., 0., 1. ]\ndist", "0., 1. ]\ndist")),
-            "c.yaml:5: camera_matrix has not rows x cols numbers");
+            "c.yaml:5: camera_matrix does not have rows x cols numbers");
   EXPECT_EQ(refusal("d.yaml", with("430.5, 0.,", "430.5, 2.,")),
             "d.yaml:5: camera_matrix has a skew");
   EXPECT_EQ(refusal("e.yaml", with("430.5", "-430.5")),
-            "e.yaml:5: camera_matrix has a focal length that is not at least 1 px");
+            "e.yaml:5: camera_matrix has a focal length below 1 px");
   EXPECT_EQ(refusal("f.yaml", with("plumb_bob", "spherical")),
             "f.yaml:9: distortion_model is none of: plumb_bob, rational_polynomial, equidistant, "
             "fisheye, none");
   EXPECT_EQ(refusal("g.yaml", with("plumb_bob", "equidistant")),
-            "g.yaml:10: distortion_coefficients of a fisheye has not 4 numbers");
+            "g.yaml:10: distortion_coefficients does not have the 4 numbers of a fisheye");
   EXPECT_EQ(refusal("h.yaml", with("0.111344", "many")),
             "h.yaml:10: distortion_coefficients is not a number");
 }
 
 TEST_F(CameraFile, RefusesWhatIsNoCalibration) {
   EXPECT_EQ(refusal("empty.yaml", ""), "empty.yaml: is empty");
-  EXPECT_EQ(refusal("zeros.yaml", std::string(64, '\0')), "zeros.yaml: is no text");
+  EXPECT_EQ(refusal("zeros.yaml", std::string(64, '\0')), "zeros.yaml: is not a text file");
   EXPECT_NE(refusal("prose.txt", "Call me Ishmael.\nSome years ago\n"), "accepted");
   EXPECT_NE(refusal("half.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera"), "accepted");
   EXPECT_NE(refusal("half.json", "{\"camera_matrix\": [1, 2"), "accepted");
@@ -191,16 +191,16 @@ TEST_F(CameraFile, ReadsWhatBeginsWithAByteOrderMark) {
 
 TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsOutOfRange) {
   EXPECT_EQ(refusal("a.yaml", with("319.25", "1.0e7")),
-            "a.yaml:5: camera_matrix is out of range: cx is no place in a picture");
+            "a.yaml:5: camera_matrix is out of range: cx is not between -1e6 and 1e6 px");
   EXPECT_EQ(refusal("b.yaml", with("431.25", "1.0e7")),
-            "b.yaml:5: camera_matrix is out of range: fy is not above 0 and at most 1e6 px");
+            "b.yaml:5: camera_matrix is out of range: fy is not in (0, 1e6] px");
   EXPECT_EQ(refusal("c.yaml", with("430.5", "1.0e-300")),
-            "c.yaml:5: camera_matrix has a focal length that is not at least 1 px");
+            "c.yaml:5: camera_matrix has a focal length below 1 px");
 }
 
 TEST_F(CameraFile, RefusesALensThatIsNotOneToOne) {
   const std::string expected =
-      "distortion_coefficients is of no lens: the picture turns back within the middle half of it";
+      "distortion_coefficients is not one to one over the middle half of the picture";
   for (const char* each : {"1e300, 1e300, 0., 0., 0.",
                            "-50., 0., 0., 0., 0.",
                            "0., 0., 50., 50., 0.",
@@ -231,26 +231,26 @@ TEST_F(CameraFile, TakesRegularFilesOnly) {
 }
 
 TEST_F(CameraFile, RefusesAFileWithoutKeys) {
-  EXPECT_EQ(refusal("a.yaml", "[1, 2]\n"), "a.yaml: is no calibration: it has no keys");
-  EXPECT_EQ(refusal("b.yaml", "- 1\n- 2\n"), "b.yaml: is no calibration: it has no keys");
+  EXPECT_EQ(refusal("a.yaml", "[1, 2]\n"), "a.yaml: is not a calibration: it has no keys");
+  EXPECT_EQ(refusal("b.yaml", "- 1\n- 2\n"), "b.yaml: is not a calibration: it has no keys");
 }
 
 TEST_F(CameraFile, RefusesAKeyWithoutLetters) {
-  EXPECT_EQ(refusal("a.yaml", "header:\n  sec: 17\n  :\n"), "a.yaml: is no calibration");
+  EXPECT_EQ(refusal("a.yaml", "header:\n  sec: 17\n  :\n"), "a.yaml: is not a calibration");
 }
 
 // OpenCV's parser would read past the end.
 TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
   for (const char* text : {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=",
                            "{\"camera_matrix\": [1, 2"}) {
-    EXPECT_EQ(refusal("a", text), "a: is no calibration: it ends too early");
+    EXPECT_EQ(refusal("a", text), "a: is not a calibration: it is truncated");
   }
 }
 
 // The error names the line number of broken YAML.
 TEST_F(CameraFile, NamesTheLineOfBrokenYaml) {
   const std::string message = refusal("broken.yaml", with("data: [ 430.5", "data: [ 430.5 }"));
-  EXPECT_EQ(message.rfind("broken.yaml:8: is no calibration", 0), 0U) << message;
+  EXPECT_EQ(message.rfind("broken.yaml:8: is not a calibration", 0), 0U) << message;
 }
 
 }  // namespace
