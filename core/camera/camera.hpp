@@ -105,9 +105,10 @@ class Lens {
   Eigen::Vector2d focal_;
   Eigen::Vector2d inverse_focal_;
   Eigen::Vector2d middle_;
-  double largest_squared_ = 0.0;  // max one-to-one radius in the ideal plane, squared; focal
-  double largest_picture_ = 0.0;  // length 1. And that radius in the picture.
-  double table_scale_ = 0.0;      // table index per squared radius in the picture
+  // Max one-to-one radius at focal length 1: squared in the ideal plane, and in the picture.
+  double largest_squared_ = 0.0;
+  double largest_picture_ = 0.0;
+  double table_scale_ = 0.0;                   // table index per squared radius in the picture
   std::array<float, kTableSize + 2> table_{};  // radius in the ideal plane over that in the picture
 };
 

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kStretchNoise = 2.3;
 constexpr double kTiltOfNoise = 8.0;
 constexpr double kMemory = 0.98;         // decay of the inner edges' information per frame
-constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance, that frames average out
+constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance that averages out
 constexpr double kModelDegrees = 4.0;    // degrees of freedom of the errors' scale
 constexpr double kErrorOverSigma = 0.4;  // measured .25 to .6: stated sigmas are too large
 constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error

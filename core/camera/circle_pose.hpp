@@ -34,8 +34,8 @@ struct CirclePose {
 /// Homography from the circle's plane to the ideal plane; unit: the circle's radius.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose);
 
-/// Covariance of a circle's position [radii^2], from the uncertainty of its image. Includes that
-/// the ellipse determines the tilt only to second order near a frontal view.
+/// Covariance of a circle's position [radii^2], from the uncertainty of its image. Wider near a
+/// frontal view, where the ellipse determines the tilt to second order only.
 [[nodiscard]] Eigen::Matrix3d position_covariance(const Camera& camera,
                                                   const CirclePose& pose,
                                                   const RingUncertainty& picture);

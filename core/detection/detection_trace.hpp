@@ -92,8 +92,8 @@ class DetectionTrace {
   void report(std::span<const Detection> detections);
   /// Marks the target. Does nothing for candidate -1.
   void choose(int candidate);
-  /// Converts all from the picture, a region of the frame reduced by `scale`, to pixels of the
-  /// frame; distorts the ellipses, which are in the ideal plane.
+  /// Converts all coordinates and lengths from pixels of the picture, a region of the frame reduced
+  /// by `scale`, to pixels of the frame. Distorts the ellipses, which are in the ideal plane.
   void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
 
  private:

@@ -35,8 +35,8 @@ constexpr double kTukeyOfSigma = 4.7;
 constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
 constexpr double kMinShare = 0.5;
 
-// Sums over a sector's pixels of products of: the unit step s between the two levels, its slope g,
-// its change w as it gets narrower, and the brightness i.
+// Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
+// g, its derivative w by narrowing, and the brightness i.
 enum Sum { k1, kS, kSS, kI, kIS, kII, kG, kGS, kGG, kIG, kW, kWS, kWG, kWW, kIW, kSums };
 using Sums = Eigen::Array<double, kSums, 1>;
 
@@ -47,13 +47,13 @@ struct Sector {
   int lines = 0;
 };
 
-// Where a line of pixels crosses the perimeter.
+// Crossing of a line of pixels and the perimeter.
 struct Crossing {
-  const std::uint8_t* pixel = nullptr;  // next to it
-  std::ptrdiff_t along = 0;             // to the next one of the line [bytes]
-  float offset = 0.0F;                  // from that pixel [px]
-  float slope = 0.0F;                   // of the distance from the perimeter, along the line,
-  float bend = 0.0F;                    // and half its second derivative
+  const std::uint8_t* pixel = nullptr;  // nearest to the crossing
+  std::ptrdiff_t along = 0;             // stride of the line's pixels [bytes]
+  float offset = 0.0F;                  // of the crossing from the pixel [px]
+  float slope = 0.0F;                   // derivative of the distance from the perimeter
+  float bend = 0.0F;                    // half its second derivative
 
   void read(std::uint8_t (&levels)[kLanes]) const {
     const std::uint8_t* next = pixel - kBefore * along;
@@ -78,7 +78,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
   constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
   alignas(16) std::uint8_t levels[kLanes];
   crossing.read(levels);
-  // In a loop of its own: between bytes and floats the other would use vectors of two floats only.
+  // A separate loop: with the conversion from bytes, the next one would use vectors of two floats.
   alignas(32) float intensities[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) {
     intensities[lane] = static_cast<float>(levels[lane]) - 128.0F;

@@ -10,7 +10,7 @@
 namespace ellipse {
 namespace {
 
-// Into (-pi/2, pi/2]: an axis has no direction.
+// Normalizes to (-pi/2, pi/2]: opposite directions denote the same axis.
 double normalized_axis_angle(double angle_rad) {
   angle_rad = std::remainder(angle_rad, std::numbers::pi);
   return angle_rad <= -std::numbers::pi / 2 ? std::numbers::pi / 2 : angle_rad;

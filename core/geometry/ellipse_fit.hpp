@@ -41,7 +41,7 @@ class Moments {
 /// [HalirFlusser1998], on standardized points.
 ///
 /// @param points_px  Image points [px], any order. Borrowed for the call only.
-/// @return nullopt for fewer than 5 points, and for points (nearly) on one line or at one place.
+/// @return nullopt for fewer than 5 points, and for (nearly) collinear or coincident points.
 ///
 /// Deterministic, thread-safe, allocates nothing; O(N).
 [[nodiscard]] std::optional<Ellipse> fit_ellipse(std::span<const Eigen::Vector2d> points_px);

@@ -32,7 +32,7 @@ void read_words(const std::uint8_t* in, const PixelLayout& layout, int width, st
   }
 }
 
-// `in` begins with the row; the first pixel is column `left` of it.
+// Unpacks a row from column `left` on. `in` is the first byte of the row.
 void unpack_row(const std::uint8_t* in, int left, int width, std::uint8_t* out) {
   for (int x = left; x < left + width; ++x) {
     const std::uint8_t* p = in + std::ptrdiff_t{x / 3} * 4;
@@ -59,7 +59,7 @@ void convert_row(
   }
 }
 
-// A row or column, or beyond the border that of the same colours.
+// Mirrors a row or column index at the border, which keeps its colours in the mosaic.
 int mirrored(int at, int size) {
   if (at < 0) return std::min(-at, size - 1);
   return at < size ? at : std::max(2 * (size - 1) - at, 0);

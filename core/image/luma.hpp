@@ -12,7 +12,7 @@ namespace ellipse {
 struct PixelLayout {
   /// Stored brightness.
   enum class Kind {
-    kLuma,    ///< A byte of luma: all of it, or the most significant one of more.
+    kLuma,    ///< One byte of luma: the only one, or the most significant one of several.
     kRgb,     ///< Red, green and blue bytes.
     kWord,    ///< 16 bits, little endian, of which 8 are read.
     kPacked,  ///< 32 bits, little endian, of three pixels with 10 bits each; the first is lowest.
@@ -54,13 +54,14 @@ struct PixelView {
 };
 
 /// Reads the luma of regions of a picture: in place if the picture stores plain luma in memory that
-/// is fast to read, else converted into an internal buffer that is reused between pictures. Only
-/// the regions are converted, and what is converted already is not read again.
+/// is fast to read, else converted into an internal buffer that is reused between pictures.
+/// Converts only the smallest rectangle around the regions read so far, and each of its pixels
+/// once.
 ///
-/// RGB becomes luma with the weights of [BT601], full range, rounded. Of more than 8 bits the 8 most
-/// significant ones are used. Bayer mosaics are filtered by (1 2 1) in both directions, so that each
-/// pixel has a quarter of red, half of green and a quarter of blue, wherever it lies in the
-/// arrangement. Not thread-safe.
+/// RGB becomes luma with the weights of [BT601], full range, rounded. Of more than 8 bits the 8
+/// most significant ones are used. Bayer mosaics are filtered by (1 2 1) in both directions, so
+/// that each pixel is a mean of a quarter of red, half of green and a quarter of blue,
+/// independently of its own colour filter. Not thread-safe.
 class LumaReader {
  public:
   /// Begins a picture, which is borrowed until the next one.

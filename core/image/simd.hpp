@@ -9,7 +9,8 @@
 #endif
 #define ELLIPSE_INLINE inline __attribute__((always_inline))
 
-// In front of a loop: its arrays do not overlap. Compilers give up on the pairs they would compare.
+// Placed before a loop, states that its arrays do not overlap. Without it, compilers do not
+// vectorize a loop over many arrays, because they would have to check each pair for overlap.
 #if defined(__clang__)
 #define ELLIPSE_NO_ALIAS _Pragma("clang loop vectorize(assume_safety)")
 #else

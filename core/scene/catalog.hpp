@@ -17,7 +17,7 @@ struct NamedScene {
 /// All named scenes. Their order and content are fixed: published figures depend on them.
 [[nodiscard]] std::span<const NamedScene> scene_catalog();
 
-/// Throws std::invalid_argument that lists the names, where this is none of them.
+/// Throws std::invalid_argument that lists the names if there is no such scene.
 [[nodiscard]] Scene scene_by_name(const char* name, std::uint64_t seed = 1);
 
 /// A named lens.
@@ -30,7 +30,7 @@ struct NamedLens {
 /// All named lenses; their order and content are fixed.
 [[nodiscard]] std::span<const NamedLens> lens_catalog();
 
-/// Throws std::invalid_argument that lists the names, where this is none of them.
+/// Throws std::invalid_argument that lists the names if there is no such lens.
 void put_on_lens(Scene& scene, const char* name);
 
 /// Nicks of the enumerations, in their order.

@@ -5,8 +5,8 @@
 
 namespace ellipse {
 
-/// A sinusoidal wave in a flat sheet: a fold of cloth or, if long, a bend of a plate. Lengths are
-/// in the units of the sheet.
+/// A sinusoidal wave in a flat sheet. Short waves are folds of cloth, long ones the curvature of a
+/// plate. Lengths are in the units of the sheet.
 struct Fold {
   Eigen::Vector2d wave{0.0, 0.0};   ///< Wave vector: direction times 2 pi / wavelength.
   double phase_rad = 0.0;           ///< At the sheet's origin.

@@ -5,7 +5,8 @@
 
 namespace ellipse {
 
-/// Ground around the pad. Most kinds resemble ellipses in places; only kCircles contains some.
+/// Ground around the pad. Most kinds show shapes that resemble ellipses; only kCircles shows
+/// ellipses.
 enum class GroundKind {
   kPlain,
   kAsphalt,   ///< Speckled, with cracks.

@@ -32,8 +32,8 @@ struct Sheet {
   Anchor anchor = Anchor::kWorld;
   /// Its x axis, its y axis and its origin, as columns.
   Eigen::Matrix3d frame = (Eigen::Matrix3d() << 1, 0, 0, 0, 1, 0, 0, 0, 0).finished();
-  /// Above 0: a ball about the origin. The sheet is what its outline bounds in the picture: the
-  /// unit circle, x right, y down.
+  /// Above 0: a ball about the origin. The sheet is then the disc inside the ball's outline in the
+  /// picture. The outline is the unit circle of its frame, x right, y down.
   double ball_radius = 0.0;
   Swing swing;
   double spin_rad_s = 0.0;  ///< Turns its axes.

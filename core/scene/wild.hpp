@@ -11,7 +11,7 @@ namespace ellipse {
 
 /// Theme of a wild scene.
 enum class WildTheme {
-  kPad,       ///< Landing pads of all kinds, flat, bent, on cloth, with people around.
+  kPad,       ///< Landing pads of all kinds, flat, curved, on cloth, with people around.
   kEye,       ///< A pupil in an iris, lids, lashes, glints, blinks.
   kBoard,     ///< Calibration boards: many discs or rings.
   kTraffic,   ///< A road with vehicles, wheels, lamps and round signs.
@@ -34,7 +34,7 @@ struct Wild {
 };
 
 /// A random scene, determined by the seed alone; the first frame, at time 0, is as representative
-/// as any other. true_ellipses() lists all its ellipses, and nothing else in it is as round. Scenes
+/// as any other. true_ellipses() lists all its ellipses; no other shape in it is an ellipse. Scenes
 /// of the last two themes have no ellipse.
 [[nodiscard]] Wild make_wild(std::uint64_t seed);
 

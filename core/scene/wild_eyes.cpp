@@ -47,7 +47,7 @@ Matrix3d gaze_frame(Draft& draft) {
   const Matrix3d turn = Eigen::AngleAxisd(aside, axis).toRotationMatrix();
   Matrix3d frame;
   frame << turn.col(0), -turn.col(1), Vector3d(0.0, 0.0, 0.0);
-  // Shift of the iris by an eyeball of twice its size.
+  // The centre of the iris moves on a sphere of 1.6 radii of the iris.
   const Vector3d normal = turn.col(2);
   frame.col(2).head<2>() = 1.6 * normal.head<2>();
   return frame;

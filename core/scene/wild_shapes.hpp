@@ -32,8 +32,7 @@ namespace ellipse::wild {
                          const Paint& paint,
                          std::uint64_t seed);
 
-/// A letter or a digit of straight bars, one unit high from its middle upwards and downwards, of
-/// "HX0123456789".
+/// One of "HX0123456789", made of straight bars. It extends one unit above and below its middle.
 [[nodiscard]] std::vector<Shape> glyph(char letter, double bar_width, const Paint& paint);
 /// Moves, turns and scales shapes on their sheet.
 void place(std::vector<Shape>& shapes, const Eigen::Vector2d& to, double scale, double turn_rad);

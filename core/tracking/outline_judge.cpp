@@ -70,8 +70,9 @@ void OutlineJudge::judge(Detector& detector,
   if (judged) add(*judged);
 }
 
-// A short arc is weak evidence against an outline that was visible before: below half of the
-// perimeter, evaluates only outlines that never showed more.
+// A short arc is weak evidence against an outline that was more visible before. If less than half
+// of the perimeter is visible, evaluates only outlines that were not more visible since the last
+// detection.
 bool OutlineJudge::is_due(const Target& target) const {
   if (target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return false;
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;

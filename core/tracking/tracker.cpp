@@ -170,7 +170,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   target.ellipse_overlap = track->outline;
   target.visible_fraction = visible;
   target.search_region = region;
-  // A frame has one of the two, the periodic evaluation or the periodic detection.
+  // At most one of the periodic evaluation and the periodic detection runs per frame.
   const bool is_put_off = judge_->is_sure() && is_look_due() && !settings_.wants_candidates;
   if (track->is_visible && !is_put_off) {
     judge_->judge(search_->detector(), window, target, settings_.limits);
@@ -178,8 +178,8 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   return target;
 }
 
-// Runs the detector. While the target is certain only a rival seen in a reduced frame makes it
-// search as finely as for a new target, which limits the frame time.
+// Runs the detector. While the target is certain, searches a reduced frame first, and the full
+// resolution only if the reduced frame shows a better target. This limits the frame time.
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
@@ -201,7 +201,7 @@ bool Tracker::is_better(const Target& chosen, const Target& followed) const {
   return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
 }
 
-// Of so large a target the detector finds only the inner edges.
+// Whether the detector can find only the inner edges of a target of this size.
 bool Tracker::is_too_large(const Ellipse& e) const {
   return !settings_.limits.admit_axes_of(e) ||
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);

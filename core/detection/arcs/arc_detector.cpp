@@ -199,7 +199,7 @@ Verdict ArcDetector::judge_news(const Guess& guess) const {
   return {};
 }
 
-// Of two that are the same, the more probable one stays.
+// Keeps the more probable one of two duplicates.
 void ArcDetector::add(const MeasuredEllipse& measured) {
   use_arcs_on(measured.ellipse, measured.polarity);
   Found found{measured, scale_};

@@ -22,8 +22,8 @@ constexpr double kStraightSlope = -0.5;  // halfway between an ellipse's 0 and a
 constexpr std::size_t kFewSamples = 32;  // of the early steps,
 constexpr std::size_t kSamples = 64;     // of the last step and the final measurement
 
-// A Gauss-Newton step. From it on, the log odds grow by at most max_growth for 99 % of the ellipses
-// of the sources.
+// A Gauss-Newton step. For 99 % of the true ellipses of the sources, the log odds grow by at most
+// max_growth from this step on.
 struct Step {
   std::size_t samples;
   double part_of_reach;

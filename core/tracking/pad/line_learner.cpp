@@ -15,7 +15,7 @@ constexpr double kStraightPx = 1.2;     // max distance of a line from its chord
 constexpr double kMinLength = 0.1;      // [radii]
 constexpr double kBesideCircle = 0.05;  // lines this close to a circle throughout are part of it
 constexpr double kMaxRadius = 0.97;     // of a line's middle
-constexpr double kShortened = 0.02;     // cut at both ends, where corners bend the edge
+constexpr double kShortened = 0.02;     // cut at both ends, where smoothing displaces the edge
 constexpr std::size_t kRoom = 4 * LineLearner::kMaxLines;
 constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
 

@@ -53,7 +53,7 @@ constexpr double kMinMatchedOfLine = 0.5;
 constexpr double kEnoughVisible = 0.15;    // share of the outer circle that determines the centre
 constexpr double kMaxCentreSigma = 0.025;  // [radii], if less is visible
 constexpr double kSureCoverage = 0.75;
-constexpr double kSharedVariance = 1.3;  // of the refined edge: neighbouring samples err alike
+constexpr double kSharedVariance = 1.3;  // of the refined edge: errors of samples are correlated
 constexpr double kMinVisibleToRefine = 0.3;
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {

@@ -49,7 +49,7 @@ class PadTracker {
   /// @return Whether the learned edges match the image.
   [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
 
-  /// @param frames  Time since the last call, in thirtieths of a second.
+  /// @param frames  Time since the last call [1/30 s].
   /// @return nullopt if the pad is lost.
   [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
 
@@ -73,6 +73,7 @@ class PadTracker {
   void release() { is_locked_ = false; }
 
   /// Region of the next frame to pass to track() [px]; covers its search range.
+  /// @param frames  Time until the next frame [1/30 s].
   [[nodiscard]] Rect region_after(double frames, int width, int height) const;
 
  private:
