@@ -69,9 +69,9 @@ static gboolean ellipse_meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
-// Where a scaler puts the picture. If the display aspect ratio changes, black borders are assumed,
-// as videoscale adds by default; GstVideoMetaTransform does not tell. Borders are whole chroma
-// samples.
+// The part of a scaler's output that shows the picture. If the display aspect ratio changes,
+// assumes the black borders that videoscale adds by default, since GstVideoMetaTransform does not
+// specify them. Borders are whole chroma samples.
 static ellipse::Rect picture_inside(const GstVideoInfo& in, const GstVideoInfo& out) {
   const gint width = GST_VIDEO_INFO_WIDTH(&out);
   const gint height = GST_VIDEO_INFO_HEIGHT(&out);

@@ -29,8 +29,8 @@ GType gst_ellipse_tracker_state_get_type(void) {
  * Since: 0.1
  */
 GType gst_ellipse_search_meta_api_get_type(void) {
-  // The tags of the ellipses, though a time has no size: an element that drops the ellipses must
-  // also drop this, or the buffer would say that nothing was found.
+  // The same tags as the ellipses: an element that drops the ellipses must also drop this metadata.
+  // Otherwise the buffer would state that nothing was found.
   static const gchar* kTags[] = {GST_META_TAG_VIDEO_STR,
                                  GST_META_TAG_VIDEO_SIZE_STR,
                                  GST_META_TAG_VIDEO_ORIENTATION_STR,
@@ -102,7 +102,7 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
  * gst_buffer_get_ellipse_search_meta:
  * @buffer: (transfer none): a #GstBuffer
  *
- * Tells whether the frame of a buffer was searched.
+ * Returns the search metadata of a buffer, which marks its frame as searched.
  *
  * Returns: (transfer none) (nullable): the metadata, %NULL if the frame was not searched or an
  * element has dropped the metadata

@@ -28,7 +28,7 @@ Mix mix_of(double scale, double red, double green, double blue, int offset) {
 }
 
 Mixes yuv_mixes(const GstVideoInfo& info) {
-  double kr = 0.299;  // [BT601], if the caps do not tell
+  double kr = 0.299;  // [BT601], unless the caps specify another
   double kb = 0.114;
   gst_video_color_matrix_get_Kr_Kb(info.colorimetry.matrix, &kr, &kb);
   const double kg = 1.0 - kr - kb;

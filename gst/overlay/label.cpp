@@ -45,8 +45,8 @@ bool is_inside(const Rect& box, const Rect& frame) {
 
 }  // namespace
 
-// For a luma of 64 to 191 both would do for a line; on the translucent box of a label text is
-// easier to read on black.
+// Both have sufficient contrast with a luma of 64 to 191. Text of this luma is easier to read on a
+// black translucent box.
 std::uint32_t contrast_to(std::uint32_t argb) {
   const double luma =
       0.299 * (argb >> 16U & 0xffU) + 0.587 * (argb >> 8U & 0xffU) + 0.114 * (argb & 0xffU);

@@ -108,7 +108,7 @@ void cover_axes(Canvas& canvas, const Ellipse& e, double width_px) {
   }
 }
 
-// Straight lines between opposite points, although the lens bends the axes slightly.
+// Draws straight lines between opposite points; ignores the slight distortion of the axes.
 void cover_axes(Canvas& canvas, const Outline& outline, double width_px) {
   const guint half = outline.size() / 2;
   for (const guint i : {0U, half / 2}) {

@@ -18,7 +18,7 @@ struct Sighting {
   GstClockTime first = GST_CLOCK_TIME_NONE;
   GstClockTime last = GST_CLOCK_TIME_NONE;
 
-  /// Call it for each frame with a target. A new id starts afresh; a predicted target is not
+  /// Call it for each frame with a target. A new id resets the times; a predicted target is not
   /// visible.
   void add(const ellipse::Target& target, GstClockTime pts);
 };

@@ -353,8 +353,8 @@ static gboolean gst_ellipse_track_filter_meta(GstBaseTransform* /*base*/,
   return api == GST_VIDEO_CROP_META_API_TYPE;
 }
 
-// Warns about interlaced and mixed streams: the two fields of a frame differ in time and turn
-// moving edges into combs.
+// Warns about interlaced and mixed streams: the two fields of a frame differ in time, which gives
+// moving edges a comb pattern.
 static gboolean gst_ellipse_track_set_info(GstVideoFilter* filter,
                                            GstCaps* /*in_caps*/,
                                            GstVideoInfo* in_info,

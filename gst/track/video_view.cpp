@@ -3,7 +3,7 @@
 
 #include <string>
 
-// A sensor's colours in any of the four arrangements.
+// Bayer mosaics in all four arrangements.
 static constexpr char kMosaicCaps[] =
     "video/x-bayer, format=(string){ bggr, gbrg, grbg, rggb }, width=(int)[ 1, max ], "
     "height=(int)[ 1, max ], framerate=(fraction)[ 0, max ]";
@@ -14,7 +14,7 @@ static constexpr const char* kVideoFormats[] = {
     "RGBx",  "BGRx",      "xRGB",      "xBGR",        "RGBA",        "BGRA",      "ARGB",
     "ABGR",  "GRAY16_LE", "GRAY16_BE", "GRAY10_LE16", "GRAY10_LE32", "I420_10LE", "P010_10LE"};
 
-// The raw formats that this GStreamer knows: GRAY10_LE16 is younger than 1.22.
+// The raw formats that this version of GStreamer supports: 1.22 does not have GRAY10_LE16.
 static GstCaps* video_caps() {
   GstCaps* caps = gst_caps_from_string(GST_VIDEO_CAPS_MAKE("GRAY8"));
   GValue formats = G_VALUE_INIT;
@@ -78,7 +78,7 @@ void explain_refusal(GstBaseTransform* element, GstCaps* caps) {
   GstPad* sink = GST_BASE_TRANSFORM_SINK_PAD(element);
   GstPad* peer = gst_pad_get_peer(sink);
   if (peer == nullptr) return;
-  // A pad has the caps of its stream before it sends them.
+  // The current caps of the peer are those of its stream, also before it has sent them.
   GstCaps* begun = gst_pad_get_current_caps(peer);
   gst_object_unref(peer);
   const bool is_stream = begun != nullptr && gst_caps_is_equal(begun, caps) != FALSE;

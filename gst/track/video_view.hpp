@@ -13,14 +13,14 @@ void add_video_pad_templates(GstElementClass* element_class);
 /// meta:GstVideoOverlayComposition.
 void add_composing_pad_templates(GstElementClass* element_class);
 
-/// If these caps are those of the stream that upstream begins, not of a query: posts an error with
-/// the formats of the sink pad, which do not include them.
+/// Posts an error with these caps and the formats of the sink pad, if a stream begins with the
+/// caps. Does nothing for the caps of a query.
 void explain_refusal(GstBaseTransform* element, GstCaps* caps);
 
 /// Whether these are the caps of a Bayer mosaic of 8 bits.
 [[nodiscard]] bool is_mosaic(const GstCaps* caps);
 
-/// Describes a mosaic as the GRAY8 frame that has its bytes. @return False if the caps lack a size.
+/// Describes a mosaic as a GRAY8 frame with the same bytes. @return False if the caps have no size.
 [[nodiscard]] bool set_mosaic_info(GstVideoInfo* info, const GstCaps* caps);
 
 /// Maps a video buffer for its lifetime. Takes no reference, so that metadata can be attached to
