@@ -263,8 +263,9 @@ void install_files(const Installer& install) {
   install(PROP_GRAVITY,
           gst_param_spec_array("gravity",
                                "Gravity",
-                               "Down in the camera's frame, as <x, y, z>; selects between the two "
-                               "possible tilts of a level target; <0, 0, 0> = unknown",
+                               "Downward direction in the camera's frame, as <x, y, z>; selects "
+                               "between the two possible tilts of a level target; "
+                               "<0, 0, 0> = unknown",
                                g_param_spec_double("number",
                                                    "Number",
                                                    "x, y or z, in any unit",
