@@ -280,9 +280,9 @@ GList* gst_buffer_list_ellipse_meta(GstBuffer* buffer) {
  * @buffer: a buffer
  * @role: the role to find
  *
- * Returns the first ellipse with a role, such as the target of a frame or the truth. After several
- * trackers in a row it is that of the first one;
- * [func@GstEllipse.buffer_iterate_ellipse_meta] gives all. Allocates nothing.
+ * Returns the first ellipse with a role, such as the target of a frame or the truth. If several
+ * trackers follow each other, it is the result of the first one;
+ * [func@GstEllipse.buffer_iterate_ellipse_meta] returns all. Allocates nothing.
  *
  * Returns: (transfer none) (nullable): the first ellipse with that role, owned by the buffer;
  *   `NULL` if there is none

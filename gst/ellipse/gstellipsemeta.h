@@ -67,8 +67,8 @@ GType gst_ellipse_state_get_type(void);
  * @frame_height: height in px of the frame to which the coordinates refer
  * @pts: presentation time stamp of the analysed frame, in ns; or `GST_CLOCK_TIME_NONE`
  * @processing_time: processing time of that frame, in ns; or `GST_CLOCK_TIME_NONE`
- * @has_pose: whether bearing, angles, centre and normals are valid, as the camera is known
- * @has_position: whether the positions are valid, as the target's diameter is known too
+ * @has_pose: whether bearing, angles, centre and normals are valid: the camera is known
+ * @has_position: whether the positions are valid: the target's diameter is known too
  * @bearing_x: unit vector from the camera to the circle's centre, x to the right
  * @bearing_y: the same, y down
  * @bearing_z: the same, z forward
@@ -101,8 +101,8 @@ GType gst_ellipse_state_get_type(void);
  * @covariance: covariance of cx, cy, semi_major, semi_minor [px] and angle_rad: the upper triangle
  *   by rows, beginning with cx cx, cx cy. Valid if @sigma_px is not 0. Since: 0.2
  *
- * One ellipse on a video buffer; a buffer may have several. Copying keeps it and scaling transforms
- * it, also if the scale differs in x and y.
+ * One ellipse on a video buffer; a buffer may have several. Copying the buffer keeps it. Scaling
+ * transforms it, also if the scale differs in x and y.
  *
  * The buffer owns it, in every language: read its fields while you hold the buffer, or keep the
  * result of [method@GstEllipse.EllipseMeta.to_structure].
