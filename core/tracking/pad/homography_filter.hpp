@@ -26,7 +26,7 @@ struct HomographyFilter {
   HomographyChange velocity = HomographyChange::Zero();  ///< Per frame.
   HomographyCovariance pose = HomographyCovariance::Zero();
   HomographyCovariance homography_velocity =
-      HomographyCovariance::Zero();  ///< Cross-covariance of both.
+      HomographyCovariance::Zero();  ///< Cross-covariance of change and velocity.
   HomographyCovariance velocity_variance = HomographyCovariance::Zero();
 
   /// Predicts at constant velocity plus noise.
