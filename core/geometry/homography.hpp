@@ -41,8 +41,10 @@ using RingMatrix = Eigen::Matrix<double, 5, 5>;
 
 /// Uncertainty of the image of an outer circle.
 struct RingUncertainty {
-  Eigen::Matrix3d view;    ///< A view that maps the outer circle to this image.
-  RingMatrix information;  ///< Inverse covariance of T, S and E in this view.
+  /// A view that maps the outer circle to this image.
+  Eigen::Matrix3d view = Eigen::Matrix3d::Identity();
+  /// Inverse covariance of T, S and E in this view.
+  RingMatrix information = RingMatrix::Zero();
 };
 
 /// Covariance of an ellipse's parameters: x and y of its centre, semi-major and semi-minor axis [px],
