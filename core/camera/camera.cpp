@@ -48,7 +48,7 @@ double radial_slope(const Camera& camera, double theta) {
   return factor.value > 0.0 ? factor.value + 2.0 * r * r * factor.derivative : 0.0;
 }
 
-double radial_place(const Camera& camera, double theta) {
+double radial_point(const Camera& camera, double theta) {
   if (camera.lens == LensModel::kFisheye) return fisheye_angle(camera.distortion, theta).value;
   const double r = std::tan(theta);
   return r * rational_factor(camera.distortion, r * r).value;
@@ -84,8 +84,8 @@ ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& places) {
     const float across_y = at.x_by_x * ny - x_by_y * nx;
     const float along = std::sqrt(across_x * across_x + across_y * across_y);
     const bool is_shown = x * x + y * y <= by.largest_squared;
-    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kNowhere;
-    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kNowhere;
+    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kOutOfRange;
+    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kOutOfRange;
     places.nx[k] = across_x / along;
     places.ny[k] = across_y / along;
     places.px_per_ideal_along[k] = along;
@@ -146,13 +146,13 @@ Eigen::Matrix3d Camera::matrix() const {
 void Camera::validate() const {
   constexpr double kLargest = 1e6;
   const auto is_length = [](double v) { return v > 0.0 && v <= kLargest; };
-  const auto is_place = [](double v) { return std::abs(v) <= kLargest; };
+  const auto is_coordinate = [](double v) { return std::abs(v) <= kLargest; };
   check(width > 0 && width <= kLargest, "width is not between 1 and 1e6 px");
   check(height > 0 && height <= kLargest, "height is not between 1 and 1e6 px");
   check(is_length(fx), "fx is not in (0, 1e6] px");
   check(is_length(fy), "fy is not in (0, 1e6] px");
-  check(is_place(cx), "cx is not between -1e6 and 1e6 px");
-  check(is_place(cy), "cy is not between -1e6 and 1e6 px");
+  check(is_coordinate(cx), "cx is not between -1e6 and 1e6 px");
+  check(is_coordinate(cy), "cy is not between -1e6 and 1e6 px");
   for (const double k : distortion) check(std::isfinite(k), "distortion is not finite");
 }
 
@@ -168,7 +168,7 @@ Lens::Lens(const Camera& camera)
     widest = theta;
   }
   largest_squared_ = std::pow(std::tan(widest), 2);
-  largest_picture_ = radial_place(camera, widest);
+  largest_picture_ = radial_point(camera, widest);
   if (camera.is_distorted()) make_table();
 }
 
@@ -187,7 +187,7 @@ void Lens::make_table() {
     for (int step = 0; step < kTableSteps; ++step) {
       const double t = std::tan(theta);
       const double per_angle = camera_.lens == LensModel::kFisheye ? 1.0 : 1.0 + t * t;
-      theta += (wanted - radial_place(camera_, theta)) / (per_angle * radial_slope(camera_, theta));
+      theta += (wanted - radial_point(camera_, theta)) / (per_angle * radial_slope(camera_, theta));
     }
     table_[i] = static_cast<float>(std::tan(theta) / wanted);
   }
@@ -203,7 +203,7 @@ Vector2d Lens::from_table(const Vector2d& distorted) const {
   return static_cast<double>(table_[k] + beyond * (table_[k + 1] - table_[k])) * distorted;
 }
 
-Vector2d Lens::near_ideal(const Vector2d& picture_px) const {
+Vector2d Lens::approximate_ideal(const Vector2d& picture_px) const {
   if (!(table_scale_ > 0.0)) return picture_px;
   const Vector2d wanted = ray(picture_px);
   const Vector2d first = from_table(wanted);

@@ -62,7 +62,7 @@ struct CurveSamples {
                                         ///< for displacements of the curve along its normal;
   float* px_per_ideal_along = nullptr;  ///< and for lengths along the curve.
 
-  static constexpr float kNowhere = 1e8F;  ///< Outside of any picture.
+  static constexpr float kOutOfRange = 1e8F;  ///< Outside of any picture.
 };
 
 /// Maps between a camera's picture and its ideal plane. A value; thread-safe; allocates nothing.
@@ -76,7 +76,7 @@ class Lens {
   [[nodiscard]] std::optional<LensPoint> picture_from_ideal(const Eigen::Vector2d& ideal_px) const;
 
   /// Distorts a curve in place, within 1e-6 of the picture's size. Samples outside the one-to-one
-  /// range become kNowhere.
+  /// range become kOutOfRange.
   /// @param origin_px, scale  Sample p is pixel origin + scale p, before and after.
   void distort(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& places) const;
 
@@ -86,7 +86,7 @@ class Lens {
 
   /// The same from a table: within .01 px of the picture, up to 80 degrees from the axis. NaN if
   /// there is no inverse, and outside pictures of the camera's size.
-  [[nodiscard]] Eigen::Vector2d near_ideal(const Eigen::Vector2d& picture_px) const;
+  [[nodiscard]] Eigen::Vector2d approximate_ideal(const Eigen::Vector2d& picture_px) const;
 
  private:
   static constexpr std::size_t kTableSize = 1024;

@@ -82,8 +82,8 @@ void LensView::distort(const Vector2d& origin_px, const CurveSamples& places) co
   if (is_distorted()) lens_->distort(in_frame(origin_px), scale_, places);
 }
 
-Vector2d LensView::near_ideal(const Vector2d& picture_px) const {
-  return is_distorted() ? in_picture(lens_->near_ideal(in_frame(picture_px))) : picture_px;
+Vector2d LensView::approximate_ideal(const Vector2d& picture_px) const {
+  return is_distorted() ? in_picture(lens_->approximate_ideal(in_frame(picture_px))) : picture_px;
 }
 
 // Outside the lens's range a segment counts with the length of the last one inside.

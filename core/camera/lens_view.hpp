@@ -36,7 +36,7 @@ class LensView {
   void distort(const Eigen::Vector2d& origin_px, const CurveSamples& places) const;
 
   /// As ideal_from_picture(), from a table: within .01 px of the picture; NaN if out of range.
-  [[nodiscard]] Eigen::Vector2d near_ideal(const Eigen::Vector2d& picture_px) const;
+  [[nodiscard]] Eigen::Vector2d approximate_ideal(const Eigen::Vector2d& picture_px) const;
 
  private:
   [[nodiscard]] Eigen::Vector2d in_frame(const Eigen::Vector2d& px) const {

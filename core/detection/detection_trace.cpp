@@ -82,7 +82,7 @@ void DetectionTrace::choose(int candidate) {
   candidates_[static_cast<std::size_t>(candidate)].is_target = true;
 }
 
-void DetectionTrace::place_in_frame(const Rect& region, int scale, const LensView& lens) {
+void DetectionTrace::to_frame_coordinates(const Rect& region, int scale, const LensView& lens) {
   for (TracedPass& pass : passes_) {
     pass.region.x += region.x;
     pass.region.y += region.y;

@@ -94,7 +94,7 @@ class DetectionTrace {
   void choose(int candidate);
   /// Converts all coordinates and lengths from pixels of the picture, a region of the frame reduced
   /// by `scale`, to pixels of the frame. Distorts the ellipses, which are in the ideal plane.
-  void place_in_frame(const Rect& region, int scale, const LensView& lens = {});
+  void to_frame_coordinates(const Rect& region, int scale, const LensView& lens = {});
 
  private:
   std::vector<TracedPass> passes_;

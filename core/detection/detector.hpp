@@ -46,7 +46,7 @@ class Detector {
                                                           const Thresholds& thresholds) = 0;
 
   /// Whether the detector computes Detection::probability and applies min_probability.
-  [[nodiscard]] virtual bool tells_probability() const { return false; }
+  [[nodiscard]] virtual bool has_probability() const { return false; }
 
   /// Log odds that the outline `e` of this picture is an ellipse, by the same evidence as detect();
   /// nullopt if the detector cannot compute them. Cheaper than detect(): no search.

@@ -50,7 +50,7 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
 
 Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
   const double apart = (candidate.center() - last.center()).norm();
-  const Verdict place = at_most(Reason::kOtherPlace, apart, last.semi_major);
+  const Verdict place = at_most(Reason::kTooFarFromLast, apart, last.semi_major);
   if (!place.is_accepted()) return place;
   const double axis = 2.0 * candidate.semi_major;
   const double last_axis = 2.0 * last.semi_major;

@@ -43,9 +43,7 @@ struct Thresholds {
   /// Tests both axes and their ratio against the limits: too large, too small, too flat, in this
   /// order.
   [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;
-  [[nodiscard]] bool admit_axes_of(const Ellipse& e) const {
-    return judge_axes_of(e).is_accepted();
-  }
+  [[nodiscard]] bool accepts_axes(const Ellipse& e) const { return judge_axes_of(e).is_accepted(); }
 
   /// The thresholds for a picture reduced by `scale`: lengths are divided by it.
   [[nodiscard]] Thresholds at_scale(int scale) const;

@@ -16,7 +16,7 @@ using Color = std::array<std::uint8_t, 3>;
 constexpr Color kGrey = {84, 90, 98};
 constexpr Color kFound = {255, 196, 64};
 constexpr Color kTarget = {72, 230, 140};
-constexpr Color kRefused = {232, 88, 96};
+constexpr Color kRejectedColor = {232, 88, 96};
 
 // Hues a golden angle apart: consecutive indices have clearly different colours.
 Color color_of(std::size_t i) {
@@ -83,7 +83,7 @@ void draw_candidates(Sheet& sheet, const DetectionTrace& trace, std::size_t pass
       }
     }
   };
-  draw(kRefused, [](const TracedCandidate& c) { return c.contour_overlap == 0.0; });
+  draw(kRejectedColor, [](const TracedCandidate& c) { return c.contour_overlap == 0.0; });
   draw(kFound, [](const TracedCandidate& c) { return c.contour_overlap > 0.0 && !c.is_target; });
   draw(kTarget, [](const TracedCandidate& c) { return c.is_target; });
 }

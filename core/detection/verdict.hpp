@@ -19,19 +19,19 @@ enum class Reason {
   kKnown,            ///< Duplicates an ellipse found before, or found better at another scale.
   kCrowdedOut,       ///< Dropped for better ones: too many detections.
   // Further tests of the arc detector.
-  kPoorFit,      ///< RMS distance of its arcs from the ellipse too large.
-  kFarOutside,   ///< Its centre is more than one picture size outside.
-  kRefused,      ///< Duplicates a candidate rejected before.
-  kTooFewEdges,  ///< Too few edges match its outline.
-  kUnlikely,     ///< Probability of an ellipse too low.
+  kPoorFit,              ///< RMS distance of its arcs from the ellipse too large.
+  kFarOutside,           ///< Its centre is more than one picture size outside.
+  kDuplicateOfRejected,  ///< Duplicates a candidate rejected before.
+  kTooFewEdges,          ///< Too few edges match its outline.
+  kUnlikely,             ///< Probability of an ellipse too low.
   // The tests of SelectTarget, [Keipour2021] Algorithm 3.
-  kOtherPlace,  ///< Too far from the last target.
-  kOtherSize,   ///< Size differs too much from the last target's.
-  kSingle,      ///< Single, while another set has two edges; II.4.
-  kWeakerSet,   ///< Its concentric set has less evidence than another.
-  kWeakInSet,   ///< Score too low compared to the best of its set.
-  kInnerEdge,   ///< An edge inside the target's.
-  kSameEdge,    ///< A second fit to the target's edge, with a lower score.
+  kTooFarFromLast,  ///< Too far from the last target.
+  kOtherSize,       ///< Size differs too much from the last target's.
+  kSingle,          ///< Single, while another set has two edges; II.4.
+  kWeakerSet,       ///< Its concentric set has less evidence than another.
+  kWeakInSet,       ///< Score too low compared to the best of its set.
+  kInnerEdge,       ///< An edge inside the target's.
+  kSameEdge,        ///< A second fit to the target's edge, with a lower score.
 };
 
 /// Result of a test.

@@ -75,9 +75,9 @@ EdgeMeasurement measured(const OutlineSamples& outline,
 }
 
 // The pixels whose search stays inside the picture: a rectangle relative to an outline's origin.
-class Room {
+class SearchableArea {
  public:
-  Room(int width, int height, int margin, const Eigen::Vector2i& origin)
+  SearchableArea(int width, int height, int margin, const Eigen::Vector2i& origin)
       : left_(margin - origin.x()),
         top_(margin - origin.y()),
         width_(static_cast<unsigned>(std::max(0, width - 2 * margin))),
@@ -99,7 +99,7 @@ class Room {
 class MapSearch {
  public:
   MapSearch(const GradientMap& map, const Eigen::Vector2i& origin, int reach_px)
-      : room(map.width(), map.height(), GradientMap::kBorder + reach_px, origin),
+      : area(map.width(), map.height(), GradientMap::kBorder + reach_px, origin),
         maxima_(map.maxima()),
         gradients_(map.gradients()),
         stride_(map.stride()),
@@ -121,7 +121,7 @@ class MapSearch {
     return std::nullopt;
   }
 
-  Room room;
+  SearchableArea area;
 
  private:
   const std::uint8_t* maxima_;
@@ -135,7 +135,7 @@ class MapSearch {
 class PictureSearch {
  public:
   PictureSearch(const ImageView& luma, const Eigen::Vector2i& origin, double min_gradient)
-      : room(luma.width, luma.height, kReachOnPicture + 1 + GradientMap::kBorder, origin),
+      : area(luma.width, luma.height, kReachOnPicture + 1 + GradientMap::kBorder, origin),
         luma_(luma),
         origin_(origin),
         min_gradient_(static_cast<float>(min_gradient)) {}
@@ -160,7 +160,7 @@ class PictureSearch {
     return found.sharpness > 0.0F ? std::optional(found) : std::nullopt;
   }
 
-  Room room;
+  SearchableArea area;
 
  private:
   ImageView luma_;
@@ -172,7 +172,7 @@ class PictureSearch {
 
 // Uses the mean sharpness of the outline, since the sharpness of a single edge is noisy. Limits the
 // variance to that of a uniform distribution over the reach, which chance matches follow.
-void EdgeMeasurer::tell_sigmas(float noise, float reach_px) {
+void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {
   const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
@@ -199,7 +199,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     const float length = outline.length_px(k);
     total += length;
     const Eigen::Vector2i pixel = outline.nearest(k);
-    if (!search.room.has(pixel)) continue;
+    if (!search.area.has(pixel)) continue;
     inside += length;
     inside_turn += outline.turn(k);
     const auto maximum = search.find(pixel, outline.is_flat(k), sign * outline.normal(k));
@@ -222,7 +222,7 @@ OutlineSupport EdgeMeasurer::measure(const GradientMap& map,
   const OutlineSamples outline(e, samples, map.lens());
   const MapSearch search(map, outline.origin(), reach_px);
   const OutlineSupport support = measure_along(outline, polarity, search);
-  tell_sigmas(static_cast<float>(map.noise()), static_cast<float>(reach_px));
+  compute_sigmas(static_cast<float>(map.noise()), static_cast<float>(reach_px));
   return support;
 }
 

@@ -70,7 +70,7 @@ class EdgeMeasurer {
   [[nodiscard]] Eigen::Vector2d origin() const { return origin_; }
 
  private:
-  void tell_sigmas(float noise, float reach_px);
+  void compute_sigmas(float noise, float reach_px);
   template <class Search>
   OutlineSupport measure_along(const OutlineSamples& outline,
                                Polarity polarity,

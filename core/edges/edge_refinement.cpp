@@ -27,7 +27,7 @@ std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
   const auto count = static_cast<double>(edges.size());
   std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples> ideal;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    ideal[i] = picture.lens.near_ideal(measurer.origin() + edges[i].point.cast<double>());
+    ideal[i] = picture.lens.approximate_ideal(measurer.origin() + edges[i].point.cast<double>());
     refined.gradient += edges[i].contrast / count;
   }
   for (const double reach_px : kTukeyReach) {

@@ -70,7 +70,7 @@ class GradientMap {
   /// Position of a pixel of the maps in the ideal plane [px].
   [[nodiscard]] Eigen::Vector2d point_of(std::int32_t pixel) const {
     const Eigen::Vector2d in_picture(pixel % stride_, pixel / stride_);
-    return lens_.near_ideal(in_picture);
+    return lens_.approximate_ideal(in_picture);
   }
 
   [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }

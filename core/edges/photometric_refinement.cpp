@@ -18,14 +18,14 @@ namespace {
 constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
 constexpr int kBefore = 6;  // of these, before the pixel nearest to the edge
 constexpr std::size_t kMaxSectors = 80;
-constexpr double kUsualSectors = 64.0;
+constexpr double kTypicalSectors = 64.0;
 constexpr double kShortestSector = 6.0;  // lines
 constexpr double kLongestPx = 1e6;       // limit of the perimeter in the count of lines
 constexpr double kFewLines = 96.0;
 constexpr double kMaxLines = 800.0;
 constexpr std::size_t kMinSectors = 8;
 constexpr std::size_t kNeighbours = 3;  // sectors on each side that share the two levels
-constexpr double kUsualStepPx = 2.3;    // half the width of the blurred step
+constexpr double kTypicalStepPx = 2.3;  // half the width of the blurred step
 constexpr double kMinStepPx = 1.8;
 constexpr double kMaxStepPx = 5.0;
 constexpr double kAlike = 9.0;       // largest chi-square of shared levels
@@ -133,13 +133,13 @@ ELLIPSE_AVX2 void add_line_avx2(const Crossing& crossing,
 
 class Accumulator {
  public:
-  Accumulator(double inside_px, double step_px, bool tells_width)
+  Accumulator(double inside_px, double step_px, bool fits_width)
       : inside_px_(static_cast<float>(std::min(inside_px, kPhotometricBandPx))),
         inverse_step_(static_cast<float>(1.0 / step_px)) {
     if (best_simd() == Simd::kAvx2) {
-      add_ = tells_width ? add_line_avx2<true> : add_line_avx2<false>;
+      add_ = fits_width ? add_line_avx2<true> : add_line_avx2<false>;
     } else {
-      add_ = tells_width ? add_line_baseline<true> : add_line_baseline<false>;
+      add_ = fits_width ? add_line_baseline<true> : add_line_baseline<false>;
     }
   }
 
@@ -165,7 +165,7 @@ class Accumulator {
 
 struct Pass {
   double max_lines = 0.0;  // above it, lines are subsampled
-  bool tells_width = false;
+  bool fits_width = false;
   double step_px = 0.0;
 };
 
@@ -173,7 +173,7 @@ struct Pass {
 class Band {
  public:
   Band(const ImageView& luma, const Ellipse& e, double inside_px, const Pass& pass)
-      : accumulator_(inside_px, pass.step_px, pass.tells_width),
+      : accumulator_(inside_px, pass.step_px, pass.fits_width),
         center_(e.center()),
         shape_(shape_matrix(e)),
         conic_(shape_.inverse()),
@@ -181,7 +181,7 @@ class Band {
     const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
     stride_ = static_cast<int>(std::ceil(lines / pass.max_lines));
     lines_of_sector_ =
-        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kUsualSectors)));
+        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kTypicalSectors)));
     for (int quarter = 0; quarter < 4; ++quarter) read(quarter);
     close_sector();
   }
@@ -386,7 +386,7 @@ std::optional<double> fit_edges(const Band& band,
   const auto better = fit.solve();
   if (!better) return std::nullopt;
   refined.ellipse = *better;
-  return kUsualStepPx * std::exp(-narrower / weights);
+  return kTypicalStepPx * std::exp(-narrower / weights);
 }
 
 }  // namespace
@@ -399,7 +399,7 @@ std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
   if (!(inside_px >= kMinPhotometricBandPx)) return std::nullopt;
   const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
   FittedEllipse refined{e, {}};
-  Pass pass{kFewLines, true, kUsualStepPx};
+  Pass pass{kFewLines, true, kTypicalStepPx};
   for (int i = 0; i < 2; ++i) {
     const Band band(luma, refined.ellipse, inside_px, pass);
     const auto sectors = band.sectors();

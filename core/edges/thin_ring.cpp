@@ -98,11 +98,11 @@ Eigen::Matrix2d stretch_of(const Ellipse& e) {
 
 }  // namespace
 
-void prepare_repulsion() {
+void prepare_blur_bias() {
   (void)maxima_distances();
 }
 
-RingEdges without_repulsion(const RingEdges& maxima) {
+RingEdges without_blur_bias(const RingEdges& maxima) {
   const Eigen::Matrix2d outer = stretch_of(maxima.outer);
   const Eigen::Matrix2d inner = stretch_of(maxima.inner);
   const Eigen::Matrix2d middle = 0.5 * (outer + inner);

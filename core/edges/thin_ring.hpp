@@ -19,10 +19,10 @@ struct RingEdges {
 /// a lens in focus, as for kMaximumShift.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
-[[nodiscard]] RingEdges without_repulsion(const RingEdges& maxima);
+[[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);
 
-/// Computes the table that the first call of without_repulsion() needs.
-void prepare_repulsion();
+/// Computes the table that the first call of without_blur_bias() needs.
+void prepare_blur_bias();
 
 /// Largest ratio of inner to outer radius at which a ring is distinguished from a line.
 inline constexpr double kMaxRingRatio = 0.97;

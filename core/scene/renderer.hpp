@@ -43,7 +43,9 @@ class SceneRenderer {
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
   /// The lens of the last frame, or nullptr without distortion. Valid until the next frame.
-  [[nodiscard]] const Lens* bent_lens() const { return lens_map_ ? &lens_map_->lens() : nullptr; }
+  [[nodiscard]] const Lens* distorting_lens() const {
+    return lens_map_ ? &lens_map_->lens() : nullptr;
+  }
 
  private:
   struct Block;  // some pixels and their footprint on the plane

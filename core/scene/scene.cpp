@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 // Distance of the picture's border from the middle at focal length 1.
-double border_place(const Distortion& distortion, double hfov_rad) {
+double border_x(const Distortion& distortion, double hfov_rad) {
   Camera unit{.width = 1, .height = 1, .fx = 1.0, .fy = 1.0};
   unit.lens = distortion.model;
   unit.distortion = distortion.coefficients;
@@ -27,9 +27,9 @@ double border_place(const Distortion& distortion, double hfov_rad) {
 }
 
 // An outline distorted by the lens.
-class BentOutline {
+class DistortedOutline {
  public:
-  BentOutline(const Camera& camera, const Ellipse& ideal)
+  DistortedOutline(const Camera& camera, const Ellipse& ideal)
       : lens_(camera), ideal_(ideal), middle_(camera.cx, camera.cy) {}
 
   [[nodiscard]] double share_in_frame() {
@@ -108,7 +108,7 @@ Camera camera_of(const Scene& scene, int width, int height) {
   if (!scene.lens) return camera;
   camera.lens = scene.lens->model;
   camera.distortion = scene.lens->coefficients;
-  camera.fx = camera.fy = 0.5 * width / border_place(*scene.lens, scene.hfov_rad);
+  camera.fx = camera.fy = 0.5 * width / border_x(*scene.lens, scene.hfov_rad);
   return camera;
 }
 
@@ -132,7 +132,7 @@ Truth truth_of(const Pad& pad, const Eigen::Matrix3d& image_from_pad, const Came
 }
 
 double share_in_frame(const Ellipse& ideal, const Camera& camera) {
-  return camera.is_distorted() ? BentOutline(camera, ideal).share_in_frame()
+  return camera.is_distorted() ? DistortedOutline(camera, ideal).share_in_frame()
                                : visible_fraction(ideal, camera.width, camera.height);
 }
 

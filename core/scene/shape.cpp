@@ -160,11 +160,11 @@ ShapeEdge::Nearness ShapeEdge::at(const Vector2d& place) const {
 }
 
 double ShapeEdge::mesh_coverage(const Vector2d& place,
-                                const Matrix2d& place_per_px,
+                                const Matrix2d& point_per_px,
                                 double blur_px) const {
   double uncovered = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
-    const double spacing_px = 1.0 / place_per_px.row(axis).norm();
+    const double spacing_px = 1.0 / point_per_px.row(axis).norm();
     const double sigma = std::hypot(blur_px / spacing_px, softness_);
     double share = 2.0 * amount_;
     // Wires closer to each other than this blur to an even grey.
@@ -181,11 +181,11 @@ double ShapeEdge::mesh_coverage(const Vector2d& place,
 }
 
 double ShapeEdge::coverage(const Vector2d& place,
-                           const Matrix2d& place_per_px,
+                           const Matrix2d& point_per_px,
                            double blur_px) const {
-  if (outline_ == Outline::kMesh) return mesh_coverage(place, place_per_px, blur_px);
+  if (outline_ == Outline::kMesh) return mesh_coverage(place, point_per_px, blur_px);
   const Nearness edge = at(place);
-  const double per_px = (place_per_px.transpose() * edge.gradient).norm();
+  const double per_px = (point_per_px.transpose() * edge.gradient).norm();
   const double blur = blur_px * per_px;
   const double sigma = std::sqrt(blur * blur + softness_ * softness_);
   const double whole = blurred_step(edge.distance / sigma);

@@ -54,9 +54,9 @@ class ShapeEdge {
   [[nodiscard]] Nearness at(const Eigen::Vector2d& place) const;
 
   /// Share of the light at a point that comes from the shape.
-  /// @param place_per_px  Derivative of the place by the picture's pixels.
+  /// @param point_per_px  Derivative of the place by the picture's pixels.
   [[nodiscard]] double coverage(const Eigen::Vector2d& place,
-                                const Eigen::Matrix2d& place_per_px,
+                                const Eigen::Matrix2d& point_per_px,
                                 double blur_px) const;
 
   /// Signed lower bound of the distance to the next edge: above 0 outside the paint, below 0
@@ -77,7 +77,7 @@ class ShapeEdge {
   [[nodiscard]] Nearness from_radius(const Eigen::Vector2d& place) const;
   [[nodiscard]] Nearness from_corners(const Eigen::Vector2d& place) const;
   [[nodiscard]] double mesh_coverage(const Eigen::Vector2d& place,
-                                     const Eigen::Matrix2d& place_per_px,
+                                     const Eigen::Matrix2d& point_per_px,
                                      double blur_px) const;
 
   Outline outline_;

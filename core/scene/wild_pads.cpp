@@ -205,7 +205,7 @@ void add_occluders(Draft& draft, double azimuth_rad) {
 }
 
 // Keeps corners visible: the sides of a polygon are inside its circle by more than the blur.
-int most_corners(double radius_px, double blur_px) {
+int max_corners(double radius_px, double blur_px) {
   int corners = 12;
   while (corners > 5 &&
          radius_px * (1.0 - std::cos(std::numbers::pi / corners)) < 1.5 + 1.5 * blur_px) {
@@ -256,7 +256,7 @@ void make_polygons(Draft& draft) {
   }
   const bool is_square = draft.chance(0.3);
   draft.note(is_square ? "rounded-square" : "polygon");
-  const double most = most_corners(radius_px * std::cos(tilt) * 0.75, draft.scene().sensor.blur_px);
+  const double most = max_corners(radius_px * std::cos(tilt) * 0.75, draft.scene().sensor.blur_px);
   const auto corners = regular_corners(5 + draft.random.below(static_cast<int>(most) - 4),
                                        draft.random.between(0.0, kTwoPi));
   const double rounding = draft.random.between(0.0, 0.35);

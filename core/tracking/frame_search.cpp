@@ -62,7 +62,7 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
   const std::optional<Ellipse> last =
       last_target ? std::optional(to_region(*last_target, region, scale)) : std::nullopt;
   const std::optional<Detection> selected = select_target(detections, last, trace_);
-  if (trace_ != nullptr) trace_->place_in_frame(region, scale, frame.lens);
+  if (trace_ != nullptr) trace_->to_frame_coordinates(region, scale, frame.lens);
   if (!selected) return std::nullopt;
 
   const PixelView& pixels = frame.pixels;

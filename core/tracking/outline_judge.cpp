@@ -41,13 +41,13 @@ LumaWindow part_around(const LumaWindow& window, const Ellipse& seen) {
 void OutlineJudge::start(double log_odds, double absence_s) {
   odds_.start(log_odds, absence_s);
   since_judged_s_ = 0.0;
-  most_visible_ = 0.0;
+  max_visible_ = 0.0;
   judged_overlap_ = 0.0;
 }
 
 void OutlineJudge::confirm(double log_odds) {
   add(log_odds);
-  most_visible_ = 0.0;
+  max_visible_ = 0.0;
   judged_overlap_ = 0.0;
 }
 
@@ -55,7 +55,7 @@ void OutlineJudge::judge(Detector& detector,
                          const LumaWindow& window,
                          const Target& target,
                          const Thresholds& limits) {
-  most_visible_ = std::max(most_visible_, target.visible_fraction);
+  max_visible_ = std::max(max_visible_, target.visible_fraction);
   const auto seen = distorted(window.lens, target.ellipse);
   if (!seen || !is_due(target)) return;
   judged_overlap_ = target.ellipse_overlap;
@@ -74,7 +74,7 @@ void OutlineJudge::judge(Detector& detector,
 // of the perimeter is visible, evaluates only outlines that were not more visible since the last
 // detection.
 bool OutlineJudge::is_due(const Target& target) const {
-  if (target.visible_fraction < std::min(kEnoughToJudge, most_visible_)) return false;
+  if (target.visible_fraction < std::min(kEnoughToJudge, max_visible_)) return false;
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
   return !is_sure() || is_less_matched || since_judged_s_ >= kJudge_s;
 }

@@ -19,7 +19,7 @@ constexpr Range kRoiExpansionRange{1.0, 10.0};
 constexpr Range kRingRatioRange{0.0, kMaxRingRatio};
 constexpr Range kFieldOfViewRange{0.0, 3.0};
 constexpr Range kFocalRangePx{0.0, 1e6};
-constexpr Range kPlaceRangePx{-1e6, 1e6};
+constexpr Range kCoordinateRangePx{-1e6, 1e6};
 constexpr Range kDiameterRange{0.0, 1e4};
 
 template <auto kMember, auto... kRest>
@@ -148,9 +148,9 @@ const std::array kSettings = {
     setting<&TrackerSettings::fy_px>(
         "fy", kFocalRangePx, false, "Vertical focal length, with fx [px]; 0 = same as fx"),
     setting<&TrackerSettings::cx_px>(
-        "cx", kPlaceRangePx, false, "Principal point x, with fx [px]; 0 = frame centre"),
+        "cx", kCoordinateRangePx, false, "Principal point x, with fx [px]; 0 = frame centre"),
     setting<&TrackerSettings::cy_px>(
-        "cy", kPlaceRangePx, false, "Principal point y, with fx [px]; 0 = frame centre"),
+        "cy", kCoordinateRangePx, false, "Principal point y, with fx [px]; 0 = frame centre"),
     setting<&TrackerSettings::target_diameter_m>(
         "target-diameter",
         kDiameterRange,

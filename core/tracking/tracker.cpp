@@ -13,15 +13,15 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30.0;     // unit of the frame clock
-constexpr double kLook_s = 8.0 * kFrame_s;  // period of detections while tracking
-constexpr int kLookScale = 4;               // frame scale of these while the target is certain
-constexpr double kGivenUp = -3.0;           // log odds below which the hypothesis is dropped
-constexpr double kKeepsNumber_s = 0.4;      // max absence after which a target keeps its id
-constexpr double kEnoughToLock = 0.45;      // min visible share of the perimeter to lock
-constexpr double kMinPredicted = 0.5;       // min visible share to report a prediction
-constexpr double kMinCoverage = 0.4;        // min matched share of its edges for the same
-constexpr double kDetectedSigmaPx = 0.3;    // edge sigma of an ellipse that is not tracked
+constexpr double kFrame_s = 1.0 / 30.0;                // unit of the frame clock
+constexpr double kDetectionPeriod_s = 8.0 * kFrame_s;  // period of detections while tracking
+constexpr int kCheckScale = 4;                 // frame scale of these while the target is certain
+constexpr double kDropLogOdds = -3.0;          // log odds below which the hypothesis is dropped
+constexpr double kMaxAbsenceToKeepId_s = 0.4;  // max absence after which a target keeps its id
+constexpr double kEnoughToLock = 0.45;         // min visible share of the perimeter to lock
+constexpr double kMinPredicted = 0.5;          // min visible share to report a prediction
+constexpr double kMinCoverage = 0.4;           // min matched share of its edges for the same
+constexpr double kDetectedSigmaPx = 0.3;       // edge sigma of an ellipse that is not tracked
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -63,7 +63,7 @@ std::optional<Target> Tracker::process(const PixelView& frame, std::int64_t pts_
 std::optional<Target> Tracker::process(const PixelView& frame,
                                        std::int64_t pts_ns,
                                        const SearchScope& scope) {
-  const ScopedFrame scoped = take_in(frame, scope);
+  const ScopedFrame scoped = prepare_frame(frame, scope);
   const double elapsed_s = clock_.advance_to(pts_ns) * kFrame_s;
   if (scoped.searchable.empty()) return std::nullopt;
   std::optional<Target> target = track(scoped, elapsed_s);
@@ -76,7 +76,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   return target;
 }
 
-ScopedFrame Tracker::take_in(const PixelView& frame, const SearchScope& scope) {
+ScopedFrame Tracker::prepare_frame(const PixelView& frame, const SearchScope& scope) {
   const Rect searchable = intersect(scope.within, frame.bounds());
   const bool is_other_size = frame.bounds() != frame_bounds_;
   if (is_other_size || searchable.empty()) reset();
@@ -107,12 +107,12 @@ std::optional<Target> Tracker::detect(const ScopedFrame& frame) {
 // Advances the state machine by one frame. The odds accumulate all frames of the hypothesis.
 std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s) {
   judge_->advance(elapsed_s);
-  since_look_s_ += elapsed_s;
+  since_detection_s_ += elapsed_s;
   absence_s_ += elapsed_s;
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
-  if (wants_look(target)) target = look(frame, target);
-  if (judge_->log_odds() < kGivenUp) pad_tracker_->release();
+  if (needs_detection(target)) target = look(frame, target);
+  if (judge_->log_odds() < kDropLogOdds) pad_tracker_->release();
 
   if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
   if (target) hypothesis_ = target->ellipse;
@@ -132,20 +132,20 @@ TrackerState Tracker::state_after(const std::optional<Target>& target) const {
 }
 
 double Tracker::wanted_log_odds() const {
-  const bool has_limit = search_->detector().tells_probability();
+  const bool has_limit = search_->detector().has_probability();
   const double wanted = has_limit ? log_odds(settings_.limits.min_probability) : 0.0;
   return std::min(wanted, TargetOdds::kMax);
 }
 
 // Detects unless a visible target has sufficient odds; then only periodically, since a better
 // target may have come into view.
-bool Tracker::wants_look(const std::optional<Target>& followed) const {
+bool Tracker::needs_detection(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  return !is_visible || judge_->log_odds() < wanted_log_odds() || is_look_due();
+  return !is_visible || judge_->log_odds() < wanted_log_odds() || is_detection_due();
 }
 
-bool Tracker::is_look_due() const {
-  return settings_.wants_candidates || since_look_s_ >= kLook_s;
+bool Tracker::is_detection_due() const {
+  return settings_.wants_candidates || since_detection_s_ >= kDetectionPeriod_s;
 }
 
 // Reads only the search window of the pad.
@@ -171,7 +171,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   target.visible_fraction = visible;
   target.search_region = region;
   // At most one of the periodic evaluation and the periodic detection runs per frame.
-  const bool is_put_off = judge_->is_sure() && is_look_due() && !settings_.wants_candidates;
+  const bool is_put_off = judge_->is_sure() && is_detection_due() && !settings_.wants_candidates;
   if (track->is_visible && !is_put_off) {
     judge_->judge(search_->detector(), window, target, settings_.limits);
   }
@@ -186,10 +186,10 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   const auto is_rival = [&](const std::optional<Target>& seen) {
     return seen && (!is_visible || is_better(*seen, *followed));
   };
-  since_look_s_ = 0.0;
+  since_detection_s_ = 0.0;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
     ScopedFrame reduced = frame;
-    reduced.finest_scale = std::max(frame.finest_scale, kLookScale);
+    reduced.finest_scale = std::max(frame.finest_scale, kCheckScale);
     if (!is_rival(detect(reduced))) return followed;
   }
   const std::optional<Target> chosen = detect(frame);
@@ -203,7 +203,7 @@ bool Tracker::is_better(const Target& chosen, const Target& followed) const {
 
 // Whether the detector can find only the inner edges of a target of this size.
 bool Tracker::is_too_large(const Ellipse& e) const {
-  return !settings_.limits.admit_axes_of(e) ||
+  return !settings_.limits.accepts_axes(e) ||
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
 }
 
@@ -214,7 +214,8 @@ Target Tracker::acquire(const ScopedFrame& frame, Target target) {
     judge_->confirm(log_odds(target.probability));
   } else {
     judge_->start(log_odds(target.probability), absence_s_);
-    const bool is_back = absence_s_ < kKeepsNumber_s && is_near(last_ellipse_, target.ellipse);
+    const bool is_back =
+        absence_s_ < kMaxAbsenceToKeepId_s && is_near(last_ellipse_, target.ellipse);
     id_ = is_back ? last_id_ : last_id_ + 1;
   }
   target.id = id_;
@@ -306,8 +307,8 @@ void Tracker::configure(const TrackerSettings& settings) {
   }
   const bool is_other_camera = !has_same_camera(settings, settings_);
   // A tracked target may outgrow the limits; changed limits that exclude it reset the tracker.
-  const bool is_excluded = had_target_ && settings_.limits.admit_axes_of(last_ellipse_) &&
-                           !settings.limits.admit_axes_of(last_ellipse_);
+  const bool is_excluded = had_target_ && settings_.limits.accepts_axes(last_ellipse_) &&
+                           !settings.limits.accepts_axes(last_ellipse_);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;
   settings_ = settings;
   search_->configure(settings);

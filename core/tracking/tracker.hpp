@@ -83,7 +83,7 @@ class Tracker {
   [[nodiscard]] LensView lens() const;
 
  private:
-  [[nodiscard]] ScopedFrame take_in(const PixelView& frame, const SearchScope& scope);
+  [[nodiscard]] ScopedFrame prepare_frame(const PixelView& frame, const SearchScope& scope);
   [[nodiscard]] std::optional<Target> track(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> detect(const ScopedFrame& frame);
   void remember(const std::optional<Target>& target);
@@ -93,8 +93,8 @@ class Tracker {
   [[nodiscard]] std::optional<Target> follow(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;
   [[nodiscard]] double wanted_log_odds() const;
-  [[nodiscard]] bool wants_look(const std::optional<Target>& followed) const;
-  [[nodiscard]] bool is_look_due() const;
+  [[nodiscard]] bool needs_detection(const std::optional<Target>& followed) const;
+  [[nodiscard]] bool is_detection_due() const;
   [[nodiscard]] std::optional<Target> follow_edges(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> look(const ScopedFrame& frame,
                                            const std::optional<Target>& followed);
@@ -121,7 +121,7 @@ class Tracker {
   std::uint64_t last_id_ = 0;          // its id
   std::uint64_t located_id_ = 0;       // target of the pose estimator
   double absence_s_ = std::numeric_limits<double>::infinity();  // since a target was reported
-  double since_look_s_ = 0.0;                                   // since the detector ran
+  double since_detection_s_ = 0.0;                              // since the detector ran
   bool had_target_ = false;  // in the last frame, reported or not
   bool is_lens_stale_ = true;
   bool is_detector_given_ = false;  // by the constructor; overrides the settings

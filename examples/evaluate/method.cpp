@@ -138,7 +138,7 @@ class CommandMethod : public Method {
     answer.processing_ms = found->second.ms;
     detections_ = found->second.detections;
     std::erase_if(detections_, [](const ellipse::Detection& detection) {
-      return !ellipse::Thresholds().admit_axes_of(detection.ellipse);
+      return !ellipse::Thresholds().accepts_axes(detection.ellipse);
     });
     if (const auto target = ellipse::select_target(detections_)) {
       answer.target = target->ellipse;

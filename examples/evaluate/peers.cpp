@@ -43,7 +43,7 @@ class Peer : public ellipse::Detector {
   void add(const ellipse::Detection& found) { detections_.push_back(found); }
 
   void add(const std::optional<ellipse::Ellipse>& e, const ellipse::Thresholds& limits) {
-    if (e && limits.admit_axes_of(*e)) detections_.push_back(scored_by_perimeter(*e));
+    if (e && limits.accepts_axes(*e)) detections_.push_back(scored_by_perimeter(*e));
   }
 
  private:
@@ -160,7 +160,7 @@ class CannyFitPeer final : public Peer {
                                      box.size.width / 2.0,
                                      box.size.height / 2.0,
                                      box.angle * kRadiansPerDegree);
-      if (!e || !limits.admit_axes_of(*e) || mean_distance_px(contour, *e) > kMaxDistancePx) {
+      if (!e || !limits.accepts_axes(*e) || mean_distance_px(contour, *e) > kMaxDistancePx) {
         continue;
       }
       add({*e, 0.0, 0.0, static_cast<double>(contour.size())});

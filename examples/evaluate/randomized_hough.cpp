@@ -71,7 +71,7 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
     if (!can_be_axis(p, q, min_sq, max_sq)) continue;
     ++votings;
     const auto candidate = vote(p, q);
-    if (candidate && limits.admit_axes_of(candidate->ellipse)) keep(*candidate);
+    if (candidate && limits.accepts_axes(candidate->ellipse)) keep(*candidate);
   }
   return found_;
 }

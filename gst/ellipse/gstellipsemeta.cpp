@@ -83,9 +83,9 @@ static ellipse::Rect picture_inside(const GstVideoInfo& in, const GstVideoInfo& 
       gst_util_fraction_multiply(
           n, d, GST_VIDEO_INFO_PAR_D(&out), GST_VIDEO_INFO_PAR_N(&out), &n, &d);
   if (!is_known || n <= 0 || d <= 0) return {0, 0, width, height};
-  const guint64 least_height = gst_util_uint64_scale_int(static_cast<guint64>(width), d, n);
-  if (least_height <= static_cast<guint64>(height)) {
-    const gint used = static_cast<gint>(least_height);
+  const guint64 min_height = gst_util_uint64_scale_int(static_cast<guint64>(width), d, n);
+  if (min_height <= static_cast<guint64>(height)) {
+    const gint used = static_cast<gint>(min_height);
     const guint chroma = out.finfo->h_sub[1];
     return {0, (height - used) / 2 >> chroma << chroma, width, used};
   }

@@ -73,7 +73,7 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
   const double length = way.norm();
   const Vector2d along = length > 0.0 ? Vector2d(way / length) : Vector2d::Zero();
   const double reach = 0.5 * width_px + 0.5;
-  const double most_share = std::min(1.0, width_px);  // of a pixel, for lines thinner than 1 px
+  const double max_share = std::min(1.0, width_px);  // of a pixel, for lines thinner than 1 px
   const Vector2d least = from.cwiseMin(to).array() - reach;
   const Vector2d most = from.cwiseMax(to).array() + reach;
   const int bottom = static_cast<int>(std::min(height_ - 1.0, std::floor(most.y())));
@@ -89,7 +89,7 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
     for (int x = static_cast<int>(std::max(0.0, std::ceil(left))); x <= last; ++x) {
       const Vector2d d = Vector2d(x, y) - from;
       const double distance = (d - std::clamp(d.dot(along), 0.0, length) * along).norm();
-      const double share = std::clamp(reach - distance, 0.0, most_share);
+      const double share = std::clamp(reach - distance, 0.0, max_share);
       // Never negative; lround would be a call. NOLINTNEXTLINE(bugprone-incorrect-roundings)
       cover(x, y, static_cast<std::uint8_t>(255.0 * share + 0.5));
     }

@@ -227,7 +227,7 @@ static gboolean gst_ellipse_overlay_accept_caps(GstBaseTransform* base,
                                                 GstCaps* caps) {
   const gboolean is_accepted = GST_BASE_TRANSFORM_CLASS(gst_ellipse_overlay_parent_class)
                                    ->accept_caps(base, direction, caps);
-  if (!is_accepted && direction == GST_PAD_SINK) explain_refusal(base, caps);
+  if (!is_accepted && direction == GST_PAD_SINK) report_unsupported_caps(base, caps);
   return is_accepted;
 }
 

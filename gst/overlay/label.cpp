@@ -75,8 +75,8 @@ std::optional<Rect> place_label(const Label& label,
   const double away = ellipse::half_extent(e).y() + gap_px;
   const int width = label.box.width;
   const int height = label.box.height;
-  const double most_left = std::max(0, frame.width - width);
-  const int left = static_cast<int>(std::lround(std::clamp(e.cx - 0.5 * width, 0.0, most_left)));
+  const double max_left = std::max(0, frame.width - width);
+  const int left = static_cast<int>(std::lround(std::clamp(e.cx - 0.5 * width, 0.0, max_left)));
   const std::array tops{static_cast<int>(std::ceil(e.cy + away)),
                         static_cast<int>(std::floor(e.cy - away)) - height,
                         frame.height - height,

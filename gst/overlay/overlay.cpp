@@ -50,7 +50,7 @@ void cover_ellipse(Canvas& canvas, const Ellipse& e, double width_px) {
 class Outline {
  public:
   explicit Outline(const GstEllipseMeta& meta)
-      : meta_(meta), size_(std::min(meta.n_outline, kMost)) {}
+      : meta_(meta), size_(std::min(meta.n_outline, kMaxPoints)) {}
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] guint size() const { return size_; }
@@ -72,7 +72,7 @@ class Outline {
   }
 
  private:
-  static constexpr guint kMost = G_N_ELEMENTS(GstEllipseMeta::outline) / 2;
+  static constexpr guint kMaxPoints = G_N_ELEMENTS(GstEllipseMeta::outline) / 2;
   const GstEllipseMeta& meta_;
   guint size_;
 };

@@ -182,7 +182,7 @@ static void attach_ellipse(GstEllipseTestSrc* self,
   meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
   meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
   meta->pts = GST_BUFFER_PTS(buffer);
-  const ellipse::Lens* distortion = self->renderer->bent_lens();
+  const ellipse::Lens* distortion = self->renderer->distorting_lens();
   if (distortion != nullptr) write_outline(meta, *distortion);
 }
 

@@ -56,7 +56,7 @@ static bool is_stopped(GstEllipseTrack* self) {
   return GST_STATE(self) == GST_STATE_NULL;
 }
 
-static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
+static void warn_rejected(GstEllipseTrack* self, const std::string& refusal) {
   if (refusal.empty()) return;
   GST_WARNING_OBJECT(self, "setting rejected: %s", refusal.c_str());
   GST_ELEMENT_WARNING(
@@ -64,7 +64,7 @@ static void tell_refusal(GstEllipseTrack* self, const std::string& refusal) {
 }
 
 // @return Why the values are not valid together; empty if they are.
-static std::string misfit_of(const TrackProperties& properties) {
+static std::string validation_error(const TrackProperties& properties) {
   try {
     properties.tracker.validate();
   } catch (const std::exception& error) {
@@ -86,9 +86,9 @@ static std::string changed(TrackShared& shared, const PropertyChange& change, bo
   if (is_stopped) {
     if (!shared.wanted) shared.wanted = shared.properties;
     change.apply_to(*shared.wanted);
-    if (misfit_of(*shared.wanted).empty()) next = *shared.wanted;
+    if (validation_error(*shared.wanted).empty()) next = *shared.wanted;
   }
-  std::string misfit = misfit_of(next);
+  std::string misfit = validation_error(next);
   if (misfit.empty()) shared.properties = next;
   return misfit;
 }
@@ -102,7 +102,7 @@ static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
 
 // A rejected value that a controller sets at every frame is reported once, until a value is
 // accepted again.
-static bool is_told_already(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
+static bool is_already_reported(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
   const bool is_repeated = is_controlled(self, pspec);
   GST_OBJECT_LOCK(self);
   std::set<std::string>& refused = self->shared->refused;
@@ -127,10 +127,10 @@ class ObjectLock {
 };
 
 // @return Why the value is rejected; empty if it is accepted.
-static std::string set_or_refuse(GstEllipseTrack* self,
-                                 guint which,
-                                 const GValue* value,
-                                 const char* name) {
+static std::string try_set(GstEllipseTrack* self,
+                           guint which,
+                           const GValue* value,
+                           const char* name) {
   TrackShared& shared = *self->shared;
   try {
     const PropertyChange change(which, value);  // may read a file
@@ -155,8 +155,8 @@ static void gst_ellipse_track_set_property(GObject* object,
     G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
     return;
   }
-  const std::string refusal = set_or_refuse(self, id - PROP_FIRST_SETTING, value, pspec->name);
-  if (!is_told_already(self, pspec, !refusal.empty())) tell_refusal(self, refusal);
+  const std::string refusal = try_set(self, id - PROP_FIRST_SETTING, value, pspec->name);
+  if (!is_already_reported(self, pspec, !refusal.empty())) warn_rejected(self, refusal);
 }
 
 static void gst_ellipse_track_get_property(GObject* object,
@@ -212,7 +212,7 @@ static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* na
   }
   shared.preset.reset();
   GST_OBJECT_UNLOCK(self);
-  tell_refusal(self, refusal);
+  warn_rejected(self, refusal);
   return is_loaded;
 }
 
@@ -272,8 +272,8 @@ static void add_latency(GstEllipseTrack* self, GstQuery* query) {
   TrackShared& shared = *self->shared;
   GST_OBJECT_LOCK(self);
   shared.is_live = is_live != FALSE;
-  shared.told_latency = shared.stats.latency();
-  const GstClockTime own = shared.told_latency;
+  shared.reported_latency = shared.stats.latency();
+  const GstClockTime own = shared.reported_latency;
   GST_OBJECT_UNLOCK(self);
   if (is_live == FALSE) return;
   gst_query_set_latency(query, TRUE, min + own, GST_CLOCK_TIME_IS_VALID(max) ? max + own : max);
@@ -291,13 +291,13 @@ static gboolean gst_ellipse_track_query(GstBaseTransform* base,
 }
 
 static gboolean gst_ellipse_track_sink_event(GstBaseTransform* base, GstEvent* event) {
-  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) forget_stream(GST_ELLIPSE_TRACK(base));
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) reset_stream(GST_ELLIPSE_TRACK(base));
   return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->sink_event(base, event);
 }
 
 static gboolean gst_ellipse_track_start(GstBaseTransform* base) {
   auto* self = GST_ELLIPSE_TRACK(base);
-  forget_stream(self);
+  reset_stream(self);
   GST_OBJECT_LOCK(self);
   self->shared->stats = TrackStats();
   GST_OBJECT_UNLOCK(self);
@@ -305,7 +305,7 @@ static gboolean gst_ellipse_track_start(GstBaseTransform* base) {
 }
 
 static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
-  forget_stream(GST_ELLIPSE_TRACK(base));
+  reset_stream(GST_ELLIPSE_TRACK(base));
   return TRUE;
 }
 
@@ -313,7 +313,7 @@ static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
 static std::string obstacle_to_start(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const ObjectLock lock(self);
-  std::string obstacle = shared.wanted ? misfit_of(*shared.wanted) : "";
+  std::string obstacle = shared.wanted ? validation_error(*shared.wanted) : "";
   if (!shared.senseless.empty()) obstacle = shared.senseless.begin()->second;
   if (obstacle.empty()) shared.wanted.reset();
   return obstacle;
@@ -406,7 +406,7 @@ static gboolean gst_ellipse_track_accept_caps(GstBaseTransform* base,
                                               GstCaps* caps) {
   const gboolean is_accepted =
       GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)->accept_caps(base, direction, caps);
-  if (!is_accepted && direction == GST_PAD_SINK) explain_refusal(base, caps);
+  if (!is_accepted && direction == GST_PAD_SINK) report_unsupported_caps(base, caps);
   return is_accepted;
 }
 

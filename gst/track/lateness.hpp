@@ -13,7 +13,7 @@ class Lateness {
   /// Whether to skip the frame of this running time. Skipping helps if the analysis causes the
   /// lateness. Another element may cause it: after four skipped frames in a row one is analysed
   /// anyway, so that the target is not lost for good.
-  [[nodiscard]] bool takes_a_skip(GstClockTime running_time);
+  [[nodiscard]] bool should_skip(GstClockTime running_time);
 
  private:
   GstClockTime earliest_time_ = GST_CLOCK_TIME_NONE;

@@ -14,7 +14,7 @@ class LoadWatch {
   bool add(GstClockTime processing_time, GstClockTime limit);
 
   /// Whether the next frame passes without analysis. Call once per frame.
-  [[nodiscard]] bool takes_a_skip();
+  [[nodiscard]] bool should_skip();
 
   [[nodiscard]] bool is_overloaded() const { return step_ > 0; }
   /// Finest frame scale to search: 1, 2, 4 or 8.

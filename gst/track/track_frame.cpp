@@ -78,7 +78,7 @@ static const GstEllipseMeta* publish(GstEllipseTrack* self,
 }
 
 // Posts LATENCY if the reported latency is outdated, so that the application queries it again.
-static void tell_latency(GstEllipseTrack* self) {
+static void report_latency(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const guint64 frame = self->stream->frame;
   if (frame % kLatencyInterval != 0 && !(frame < kLatencyInterval && std::has_single_bit(frame))) {
@@ -88,7 +88,7 @@ static void tell_latency(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
   const GstClockTime latency = shared.stats.latency();
   if (shared.is_live) {
-    is_news = latency > shared.told_latency || 2 * latency < shared.told_latency;
+    is_news = latency > shared.reported_latency || 2 * latency < shared.reported_latency;
   }
   GST_OBJECT_UNLOCK(self);
   if (!is_news) return;
@@ -97,16 +97,16 @@ static void tell_latency(GstEllipseTrack* self) {
 }
 
 // Resets the tracker and reports a followed target as lost.
-static void forget_target(GstEllipseTrack* self,
-                          const TrackProperties& properties,
-                          const FrameTimes& times = {}) {
+static void reset_target(GstEllipseTrack* self,
+                         const TrackProperties& properties,
+                         const FrameTimes& times = {}) {
   self->stream->tracker.reset();
   self->stream->sighting = {};
   const std::optional<ellipse::Target> before = self->stream->last_target;
   self->stream->last_target.reset();
   const ellipse::TrackerState tracker_state = self->stream->tracker.state();
   GST_OBJECT_LOCK(self);
-  self->shared->stats.forget_target();
+  self->shared->stats.reset_target();
   self->shared->tracker_state = tracker_state;
   self->shared->target.reset();
   GST_OBJECT_UNLOCK(self);
@@ -123,14 +123,14 @@ static TrackProperties take_properties(GstEllipseTrack* self) {
   const bool reset_is_due = self->shared->reset_is_due;
   self->shared->reset_is_due = false;
   GST_OBJECT_UNLOCK(self);
-  if (reset_is_due) forget_target(self, properties);
+  if (reset_is_due) reset_target(self, properties);
   return properties;
 }
 
 static bool is_too_late(GstEllipseTrack* self, const FrameTimes& times) {
   if (!gst_base_transform_is_qos_enabled(GST_BASE_TRANSFORM(self))) return false;
   GST_OBJECT_LOCK(self);
-  const bool is_too_late = self->shared->lateness.takes_a_skip(times.running);
+  const bool is_too_late = self->shared->lateness.should_skip(times.running);
   GST_OBJECT_UNLOCK(self);
   return is_too_late;
 }
@@ -155,7 +155,7 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
   if (is_too_late(self, times)) return Skip::kLate;
   // Without a limit no frame is skipped: reset the load watch.
   if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);
-  if (self->stream->load.takes_a_skip()) return Skip::kLoad;
+  if (self->stream->load.should_skip()) return Skip::kLoad;
   return std::nullopt;
 }
 
@@ -230,7 +230,7 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
   const TrackProperties properties = take_properties(self);
   const ellipse::Rect bounds = search_bounds(buffer, GST_VIDEO_FILTER(base)->in_info, properties);
   if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
-    if (*reason == Skip::kRegion) forget_target(self, properties, times);
+    if (*reason == Skip::kRegion) reset_target(self, properties, times);
     skip(self, *reason);
   } else {
     analyse(self, buffer, times, properties, bounds);
@@ -240,17 +240,17 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
 void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
   const auto body = [&] { pass_on(self, buffer); };
   if (!succeeds(self, "Cannot analyse a frame", body)) skip(self, Skip::kFailed);
-  tell_latency(self);
+  report_latency(self);
 }
 
-void forget_stream(GstEllipseTrack* self) {
+void reset_stream(GstEllipseTrack* self) {
   GST_DEBUG_OBJECT(self, "starts over");
   succeeds(self, "Cannot reset the tracker", [self] {
     GST_OBJECT_LOCK(self);
     const TrackProperties properties = self->shared->properties;
     self->shared->lateness = Lateness();
     GST_OBJECT_UNLOCK(self);
-    forget_target(self, properties);
+    reset_target(self, properties);
   });
   self->stream->load = LoadWatch();
   self->stream->frame = 0;

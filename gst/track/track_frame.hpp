@@ -39,7 +39,7 @@ struct TrackShared {
   Lateness lateness;
   std::optional<GstEllipseMeta> target;  ///< In the last analysed frame.
   ellipse::TrackerState tracker_state = ellipse::TrackerState::kSearching;  ///< After that frame.
-  GstClockTime told_latency = 0;
+  GstClockTime reported_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;
   std::set<std::string> refused;  ///< Properties whose last new value was rejected.
@@ -62,4 +62,4 @@ void track_frame(GstEllipseTrack* self, GstBuffer* buffer);
 
 /// Resets the tracker for a new stream and reports a followed target as lost. Do not call it while
 /// a buffer is being processed.
-void forget_stream(GstEllipseTrack* self);
+void reset_stream(GstEllipseTrack* self);

@@ -14,7 +14,7 @@ void TrackStats::add_skipped(Skip reason) {
   ++skipped_[static_cast<std::size_t>(reason)];
 }
 
-void TrackStats::forget_target() {
+void TrackStats::reset_target() {
   if (had_target_) ++lost_;
   had_target_ = false;
 }

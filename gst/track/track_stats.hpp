@@ -25,7 +25,7 @@ class TrackStats {
  public:
   void add_skipped(Skip reason);
   /// Counts a followed target as lost.
-  void forget_target();
+  void reset_target();
   /// @param processing_time  [ns]
   void add_analysed(const std::optional<ellipse::Target>& target, GstClockTime processing_time);
 

@@ -74,7 +74,7 @@ static std::string formats_of(const GstCaps* caps) {
   return formats;
 }
 
-void explain_refusal(GstBaseTransform* element, GstCaps* caps) {
+void report_unsupported_caps(GstBaseTransform* element, GstCaps* caps) {
   GstPad* sink = GST_BASE_TRANSFORM_SINK_PAD(element);
   GstPad* peer = gst_pad_get_peer(sink);
   if (peer == nullptr) return;

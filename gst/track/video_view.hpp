@@ -15,7 +15,7 @@ void add_composing_pad_templates(GstElementClass* element_class);
 
 /// Posts an error with these caps and the formats of the sink pad, if a stream begins with the
 /// caps. Does nothing for the caps of a query.
-void explain_refusal(GstBaseTransform* element, GstCaps* caps);
+void report_unsupported_caps(GstBaseTransform* element, GstCaps* caps);
 
 /// Whether these are the caps of a Bayer mosaic of 8 bits.
 [[nodiscard]] bool is_mosaic(const GstCaps* caps);

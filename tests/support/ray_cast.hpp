@@ -51,7 +51,7 @@ class RayCaster {
     const Eigen::Vector3d second = pose.normal.cross(first);
     const auto light_at = [&](double x, double y) {
       const Eigen::Vector2d ideal =
-          camera_.is_distorted() ? lens_.near_ideal({x, y}) : Eigen::Vector2d(x, y);
+          camera_.is_distorted() ? lens_.approximate_ideal({x, y}) : Eigen::Vector2d(x, y);
       if (!ideal.allFinite()) return 0.0;
       const Eigen::Vector3d ray(
           (ideal.x() - camera_.cx) / camera_.fx, (ideal.y() - camera_.cy) / camera_.fy, 1.0);

@@ -20,7 +20,7 @@ constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share 
 constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
 constexpr Tolerance kSameOutline{2.0, 0.1};  // between a judged outline and its fit
 constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis above which half the size suffices
-constexpr double kNoDoubt = 3.0;             // log odds of a certain target
+constexpr double kCertainLogOdds = 3.0;      // log odds of a certain target
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -90,7 +90,7 @@ Picture ArcDetector::reduced(const Picture& picture, int scale) {
 void ArcDetector::search_scales(const Picture& picture, const Thresholds& thresholds) {
   for (const int scale : kScales) {
     search(reduced(picture, scale), thresholds, scale);
-    if (!thresholds.wants_all && is_beyond_doubt()) return;
+    if (!thresholds.wants_all && is_certain()) return;
   }
   confirm_at_finer_scales(thresholds);
 }
@@ -176,14 +176,14 @@ Verdict ArcDetector::examine(const Guess& guess,
   const double limit_px = EllipseVerifier::deformation_px(ellipse);
   Verdict verdict = at_most(Reason::kPoorFit, rms_px, limit_px);
   if (verdict.is_accepted()) verdict = EllipseVerifier::judge_shape(ellipse, *map_, thresholds);
-  if (verdict.is_accepted()) verdict = judge_news(guess);
+  if (verdict.is_accepted()) verdict = check_duplicate(guess);
   if (!verdict.is_accepted()) return verdict;
   verdict = verifier_.verify(*map_, ellipse, polarity, thresholds, evidence_, measured);
   if (!verdict.is_accepted()) rejected_.push_back(guess);
   return verdict;
 }
 
-Verdict ArcDetector::judge_news(const Guess& guess) const {
+Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
   for (const Found& known : found_) {
     if (known.scale == scale_ && known.measured.polarity == guess.polarity &&
@@ -193,7 +193,7 @@ Verdict ArcDetector::judge_news(const Guess& guess) const {
   }
   for (const Guess& known : rejected_) {
     if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, 1.0)) {
-      return {Reason::kRefused};
+      return {Reason::kDuplicateOfRejected};
     }
   }
   return {};
@@ -230,10 +230,10 @@ void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
 }
 
 // Whether the best target is certain enough to skip the remaining scales.
-bool ArcDetector::is_beyond_doubt() {
+bool ArcDetector::is_certain() {
   report();
   const auto target = select_target(detections_);
-  return target && log_odds(target->probability) >= kNoDoubt;
+  return target && log_odds(target->probability) >= kCertainLogOdds;
 }
 
 // Averages the log odds of ellipses from reduced pictures with those at the finer scales: reduction
@@ -242,7 +242,7 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   Thresholds thresholds = full;
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   thresholds.min_contour_size = 0;
-  thresholds.min_probability = probability_of(-kNoDoubt);
+  thresholds.min_probability = probability_of(-kCertainLogOdds);
   std::erase_if(found_, [&](Found& found) {
     double sum = log_odds(found.measured.probability);
     int scales = 1;
@@ -257,7 +257,7 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
                                                finer);
       const bool holds = verdict.is_accepted() &&
                          are_same(finer.ellipse, guess, static_cast<double>(found.scale) / scale);
-      sum += holds ? log_odds(finer.probability) : -kNoDoubt;
+      sum += holds ? log_odds(finer.probability) : -kCertainLogOdds;
       ++scales;
     }
     found.measured.probability = probability_of(sum / scales);

@@ -38,7 +38,7 @@ class ArcDetector final : public Detector {
 
   [[nodiscard]] std::span<const Detection> detect(const Picture& picture,
                                                   const Thresholds& thresholds) override;
-  [[nodiscard]] bool tells_probability() const override { return true; }
+  [[nodiscard]] bool has_probability() const override { return true; }
   [[nodiscard]] std::optional<double> log_odds_of(const Picture& picture,
                                                   const Ellipse& e,
                                                   const Thresholds& thresholds) override;
@@ -72,10 +72,10 @@ class ArcDetector final : public Detector {
   [[nodiscard]] Verdict examine(const Guess& guess,
                                 const Thresholds& thresholds,
                                 MeasuredEllipse& measured);
-  [[nodiscard]] Verdict judge_news(const Guess& guess) const;
+  [[nodiscard]] Verdict check_duplicate(const Guess& guess) const;
   void add(const MeasuredEllipse& measured);
   void use_arcs_on(const Ellipse& e, Polarity polarity);
-  [[nodiscard]] bool is_beyond_doubt();
+  [[nodiscard]] bool is_certain();
   void confirm_at_finer_scales(const Thresholds& full);
   void refine_at_full_size(const Picture& picture, const Thresholds& thresholds);
   void report();

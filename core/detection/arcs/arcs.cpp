@@ -50,7 +50,7 @@ Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
   const bool is_flat = std::abs(here->x) > std::abs(here->y);
   Eigen::Vector2d point = place_of(pixel, map.stride());
   point[is_flat ? 0 : 1] += subpixel_maximum(here, is_flat ? 1 : map.stride()).offset_px;
-  return map.lens().near_ideal(point);
+  return map.lens().approximate_ideal(point);
 }
 
 // Transforms a normal from the picture to the ideal plane, at the point `ideal_px`.
@@ -177,7 +177,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
 }
 
 // Smallest reverse turn of the direction that is not noise [rad].
-double ArcSplitter::min_retreat(double noise, std::size_t begin, std::size_t end) const {
+double ArcSplitter::min_reverse_turn(double noise, std::size_t begin, std::size_t end) const {
   float strength = 0.0F;
   for (std::size_t i = begin; i < end; ++i) strength += strengths_[i];
   const double length = static_cast<double>(end - begin);
@@ -188,7 +188,7 @@ double ArcSplitter::min_retreat(double noise, std::size_t begin, std::size_t end
 // Cuts at extremes of the direction, where the reverse turn exceeds the noise.
 void ArcSplitter::split_smooth_part(double noise, std::size_t begin, std::size_t end) {
   if (end < begin + ChainTracer::kMinLength) return;
-  const auto retreat = static_cast<float>(min_retreat(noise, begin, end));
+  const auto retreat = static_cast<float>(min_reverse_turn(noise, begin, end));
   std::size_t lowest_at = begin;
   std::size_t highest_at = begin;
   float lowest = angles_[begin];

@@ -51,7 +51,7 @@ class ArcSplitter {
   };
 
   void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
-  [[nodiscard]] double min_retreat(double noise, std::size_t begin, std::size_t end) const;
+  [[nodiscard]] double min_reverse_turn(double noise, std::size_t begin, std::size_t end) const;
   void split_smooth_part(double noise, std::size_t begin, std::size_t end);
   void unwrap(std::size_t begin, std::size_t end);
   void add_whole(const GradientMap& map, std::size_t begin, std::size_t end);

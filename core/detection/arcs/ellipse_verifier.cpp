@@ -94,11 +94,11 @@ Verdict EllipseVerifier::judge_shape(const Ellipse& e,
                                      const Thresholds& thresholds) {
   const Verdict axes = thresholds.judge_axes_of(e);
   if (!axes.is_accepted()) return axes;
-  const auto judge_place = [](double center, int size) {
+  const auto check_position = [](double center, int size) {
     return at_most(Reason::kFarOutside, std::abs(center / size - 0.5) - 0.5, 1.0);
   };
-  const Verdict column = judge_place(e.cx, map.width());
-  return column.is_accepted() ? judge_place(e.cy, map.height()) : column;
+  const Verdict column = check_position(e.cx, map.width());
+  return column.is_accepted() ? check_position(e.cy, map.height()) : column;
 }
 
 // Gauss-Newton steps with a narrowing reach.

@@ -17,7 +17,7 @@ constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' g
 }  // namespace
 
 RingCorrector::RingCorrector() {
-  prepare_repulsion();  // takes a few milliseconds; kept out of the first frame
+  prepare_blur_bias();  // takes a few milliseconds; kept out of the first frame
 }
 
 void RingCorrector::correct(const Picture& picture,
@@ -34,8 +34,8 @@ void RingCorrector::correct(const Picture& picture,
     if (!next || next->support < kMinSupport) continue;
     if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
     const bool is_outer = maximum.semi_major > next->ellipse.semi_major;
-    detections[i].ellipse = is_outer ? without_repulsion({maximum, next->ellipse}).outer
-                                     : without_repulsion({next->ellipse, maximum}).inner;
+    detections[i].ellipse = is_outer ? without_blur_bias({maximum, next->ellipse}).outer
+                                     : without_blur_bias({next->ellipse, maximum}).inner;
   }
 }
 

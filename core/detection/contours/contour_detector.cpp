@@ -185,7 +185,7 @@ Verdict examine(std::span<const cv::Point> contour,
   if (is_known(*e, known)) return {Reason::kKnown};  // from the other side of the same edge
   const Detection better = scored(refined(*e, contour, field), on_ellipse, thick_edges);
   const bool is_better =
-      better.ellipse_overlap >= found.ellipse_overlap && limits.admit_axes_of(better.ellipse);
+      better.ellipse_overlap >= found.ellipse_overlap && limits.accepts_axes(better.ellipse);
   if (is_better) found = better;
   return {};
 }
@@ -322,7 +322,7 @@ std::span<const Detection> ContourDetector::detect(const Picture& picture,
   drop_short_contours(thresholds.min_contour_size);
   for (const auto& contour : contours_) try_contour(contour, thresholds, &TracedPass::chains);
   if (detections_.empty()) try_parts(thresholds);
-  take_to_ideal_plane();
+  undistort_detections();
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
 }
@@ -339,7 +339,7 @@ std::optional<double> ContourDetector::log_odds_of(const Picture& picture,
 }
 
 // The paper has no lens model: the detections so far are ellipses of the distorted picture.
-void ContourDetector::take_to_ideal_plane() {
+void ContourDetector::undistort_detections() {
   if (!lens_.is_distorted()) return;
   std::erase_if(detections_, [&](Detection& detection) {
     const auto ideal = undistorted(lens_, detection.ellipse);

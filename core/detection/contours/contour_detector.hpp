@@ -32,7 +32,7 @@ class ContourDetector final : public Detector {
  private:
   void add_detection(const Detection& detection);
   void detect_edges(const ImageView& luma, const Thresholds& thresholds);
-  void take_to_ideal_plane();
+  void undistort_detections();
   void drop_short_contours(int min_size);
   void try_contour(std::span<const cv::Point> contour,
                    const Thresholds& thresholds,

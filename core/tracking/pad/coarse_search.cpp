@@ -56,7 +56,7 @@ Template circle_template(double radius_cells, bool is_bright_outside) {
 
 class Patch {
  public:
-  Patch(const ImageView& luma, const PadPlace& middle, double contrast) {
+  Patch(const ImageView& luma, const ProjectedPoint& middle, double contrast) {
     const Eigen::Vector2d right = kCell * middle.slope.col(0);
     const Eigen::Vector2d down = kCell * middle.slope.col(1);
     const Eigen::Vector2d first = middle.point - 0.5 * (kCells - 1) * (right + down);

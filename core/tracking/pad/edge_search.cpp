@@ -106,10 +106,10 @@ struct EdgeSearch::Placement {
   }
 };
 
-void EdgeSearch::place(const PadModel& model,
-                       const PadView& view,
-                       const ImageView& luma,
-                       int samples) {
+void EdgeSearch::sample(const PadModel& model,
+                        const PadView& view,
+                        const ImageView& luma,
+                        int samples) {
   samples_.clear();
   samples_.reserve(kMaxSamples);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
@@ -135,18 +135,18 @@ void EdgeSearch::place(const PadModel& model,
 
   placement.spacing_px = std::max(2.0, total_px / samples);
   for (std::size_t c = 0; c < circles; ++c) {
-    place_on_circle(placement, model.circles[c], visible[c], static_cast<int>(c));
+    sample_circle(placement, model.circles[c], visible[c], static_cast<int>(c));
   }
   for (std::size_t l = 0; l < model.lines.size(); ++l) {
-    place_on_line(placement, model.lines[l], static_cast<int>(circles + l));
+    sample_line(placement, model.lines[l], static_cast<int>(circles + l));
   }
   if (view.lens.is_distorted()) distort(view.lens);
 }
 
-void EdgeSearch::place_on_circle(const Placement& placement,
-                                 const PadCircle& circle,
-                                 const VisibleSteps& visible,
-                                 int feature) {
+void EdgeSearch::sample_circle(const Placement& placement,
+                               const PadCircle& circle,
+                               const VisibleSteps& visible,
+                               int feature) {
   const double step_px = placement.step_px(circle);
   const double spacing_px = placement.spacing_px;
   const double sign = circle.is_bright_outside ? 1.0 : -1.0;
@@ -169,7 +169,7 @@ void EdgeSearch::place_on_circle(const Placement& placement,
   }
 }
 
-void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, int feature) {
+void EdgeSearch::sample_line(const Placement& placement, const PadLine& line, int feature) {
   const Interval part = placement.visible.clip(line.from, line.to);
   const int count = static_cast<int>(placement.length_px(line, part) / placement.spacing_px);
   for (int i = 0; i < count; ++i) {
@@ -184,8 +184,7 @@ void EdgeSearch::place_on_line(const Placement& placement, const PadLine& line, 
 
 // Maps all samples from the ideal plane to the distorted image.
 void EdgeSearch::distort(const LensView& lens) {
-  constexpr std::size_t kMost = kMaxSamples;
-  std::array<std::array<float, kMost>, 6> numbers;
+  std::array<std::array<float, kMaxSamples>, 6> numbers;
   auto& [x, y, nx, ny, across, along] = numbers;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const EdgeView& view = samples_[i].view;
@@ -206,11 +205,11 @@ void EdgeSearch::distort(const LensView& lens) {
   }
 }
 
-void EdgeSearch::look(const ImageView& luma,
-                      double gain,
-                      double reach_px,
-                      const HomographyCovariance* covariance,
-                      double max_px) {
+void EdgeSearch::search(const ImageView& luma,
+                        double gain,
+                        double reach_px,
+                        const HomographyCovariance* covariance,
+                        double max_px) {
   for (EdgeSample& sample : samples_) {
     double reach = reach_px;
     if (covariance != nullptr) {
@@ -218,7 +217,7 @@ void EdgeSearch::look(const ImageView& luma,
       // Rounding may make the variance negative.
       reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)) + 2.0, reach_px, max_px);
     }
-    look_along(luma, gain, reach, sample);
+    search_along(luma, gain, reach, sample);
   }
 }
 
@@ -249,10 +248,10 @@ std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma)
 
 // Differences of box averages across the edge, positive from dark to bright. Reads pixels along the
 // row or column closest to the normal, which avoids interpolation.
-void EdgeSearch::look_along(const ImageView& luma,
-                            double gain,
-                            double reach_px,
-                            EdgeSample& sample) const {
+void EdgeSearch::search_along(const ImageView& luma,
+                              double gain,
+                              double reach_px,
+                              EdgeSample& sample) const {
   sample.count = 0;
   sample.is_visible = false;
   const auto found = crossing_of(sample.view, luma);

@@ -37,20 +37,20 @@ struct EdgeSample {
 class EdgeSearch {
  public:
   /// Places samples on all visible edges, evenly by their length in the image.
-  void place(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
+  void sample(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
 
   /// Searches edges of the expected polarity at each sample.
   /// @param gain       Ratio of image contrast to model contrast.
   /// @param reach_px   Search range. With a covariance: 3 sigma + 2 px at each sample, within
   ///                   [reach_px, max_px].
-  void look(const ImageView& luma,
-            double gain,
-            double reach_px,
-            const HomographyCovariance* covariance = nullptr,
-            double max_px = 0.0);
+  void search(const ImageView& luma,
+              double gain,
+              double reach_px,
+              const HomographyCovariance* covariance = nullptr,
+              double max_px = 0.0);
 
   [[nodiscard]] std::span<const EdgeSample> samples() const { return samples_; }
-  /// Visible share of the outer circle at the last place().
+  /// Visible share of the outer circle at the last sample().
   [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
 
   static constexpr int kMaxSamples = 256;
@@ -61,18 +61,18 @@ class EdgeSearch {
   using VisibleSteps = std::bitset<kCircleSteps>;
   struct Placement;
 
-  void place_on_circle(const Placement& placement,
-                       const PadCircle& circle,
-                       const VisibleSteps& visible,
-                       int feature);
-  void place_on_line(const Placement& placement, const PadLine& line, int feature);
+  void sample_circle(const Placement& placement,
+                     const PadCircle& circle,
+                     const VisibleSteps& visible,
+                     int feature);
+  void sample_line(const Placement& placement, const PadLine& line, int feature);
   void add(const Eigen::Matrix3d& view,
            const Eigen::Vector2d& place,
            const Eigen::Vector2d& to_bright,
            double contrast,
            int feature);
   void distort(const LensView& lens);
-  void look_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
+  void search_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
 
   std::vector<EdgeSample> samples_;
   double visible_fraction_ = 0.0;

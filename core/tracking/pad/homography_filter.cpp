@@ -13,14 +13,14 @@ constexpr double kFocalOverWidth = 0.8;  // if no camera is known
 constexpr double kAlongShare = 0.7;      // share of the shift along the optical axis
 constexpr double kSlack = 0.0015;        // sigma of stretch and tilt for unmodelled effects
 constexpr double kLittleSlack = 0.05;    // share of that variance for size and rotation
-constexpr double kLeast = 1e-9;          // variance added to all parameters
+constexpr double kMinVariance = 1e-9;    // variance added to all parameters
 constexpr double kMaxTurn = 0.05;        // max sigma of the rotation that rings leave open [rad]
 
 // Changes of a view by one-sigma camera motions, one per column.
-Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
-                                          const Camera& camera,
-                                          double turn_rad,
-                                          double shift) {
+Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pad,
+                                            const Camera& camera,
+                                            double turn_rad,
+                                            double shift) {
   Eigen::Matrix<double, 6, 1> sigmas;
   sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
   return change_by_camera(image_from_pad, camera.matrix()) * sigmas.asDiagonal();
@@ -28,7 +28,7 @@ Eigen::Matrix<double, 8, 6> usual_changes(const Eigen::Matrix3d& image_from_pad,
 
 }  // namespace
 
-Camera usual_camera(const Eigen::Vector2d& frame_px) {
+Camera default_camera(const Eigen::Vector2d& frame_px) {
   const auto width = static_cast<int>(frame_px.x());
   const auto height = static_cast<int>(frame_px.y());
   return Camera::with_hfov(2.0 * std::atan(0.5 / kFocalOverWidth), width, height);
@@ -42,7 +42,7 @@ HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                                   const Camera& camera,
                                   double turn_rad,
                                   double shift) {
-  const auto changes = usual_changes(image_from_pad, camera, turn_rad, shift);
+  const auto changes = typical_changes(image_from_pad, camera, turn_rad, shift);
   return changes * changes.transpose();
 }
 
@@ -53,8 +53,8 @@ HomographyChange carried(const HomographyChange& velocity,
                          const Camera& camera,
                          double turn_rad,
                          double shift) {
-  const auto here = usual_changes(from, camera, turn_rad, shift);
-  const auto there = usual_changes(to, camera, turn_rad, shift);
+  const auto here = typical_changes(from, camera, turn_rad, shift);
+  const auto there = typical_changes(to, camera, turn_rad, shift);
   Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
   normal.diagonal().array() += kSlack * kSlack;
   const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
@@ -76,8 +76,9 @@ HomographyFilter HomographyFilter::after(double frames,
   const double much = kSlack * kSlack;
   const double little = kLittleSlack * much;
   next.pose.diagonal() +=
-      (HomographyChange() << kLeast, kLeast, little, much, much, little, much, much).finished();
-  next.pose.diagonal().array() += kLeast;
+      (HomographyChange() << kMinVariance, kMinVariance, little, much, much, little, much, much)
+          .finished();
+  next.pose.diagonal().array() += kMinVariance;
   return next;
 }
 
@@ -94,7 +95,7 @@ HomographyFilter HomographyFilter::corrected(const HomographyEstimate& measured)
   return result;
 }
 
-void HomographyFilter::leave_turn_open() {
+void HomographyFilter::leave_rotation_free() {
   velocity(5) = 0.0;
   const double factor = std::min(1.0, kMaxTurn / std::sqrt(pose(5, 5)));
   pose.row(5) *= factor;

@@ -7,7 +7,7 @@
 namespace ellipse {
 
 /// The camera assumed if none is known: a pinhole of typical focal length.
-[[nodiscard]] Camera usual_camera(const Eigen::Vector2d& frame_px);
+[[nodiscard]] Camera default_camera(const Eigen::Vector2d& frame_px);
 
 /// Transports a homography velocity to another view, assuming constant camera motion.
 /// @param velocity  Change of the view `from` per frame. The part that camera motion does not
@@ -39,7 +39,7 @@ struct HomographyFilter {
 
   /// Limits the uncertainty of the rotation about the pad's normal, which rings do not determine,
   /// and sets its velocity to 0.
-  void leave_turn_open();
+  void leave_rotation_free();
 
   /// Standard deviation of the pad's centre [radii].
   [[nodiscard]] double centre_sigma() const;

@@ -16,7 +16,7 @@ constexpr double kMinLength = 0.1;      // [radii]
 constexpr double kBesideCircle = 0.05;  // lines this close to a circle throughout are part of it
 constexpr double kMaxRadius = 0.97;     // of a line's middle
 constexpr double kShortened = 0.02;     // cut at both ends, where smoothing displaces the edge
-constexpr std::size_t kRoom = 4 * LineLearner::kMaxLines;
+constexpr std::size_t kCapacity = 4 * LineLearner::kMaxLines;
 constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
 
 }  // namespace
@@ -25,7 +25,7 @@ void LineLearner::reserve(PadModel& model) {
   model.lines.reserve(kMaxLines);
   if (!pixels_.empty()) return;
   pixels_.assign(static_cast<std::size_t>(kSize) * kSize, 0);
-  lines_.reserve(kRoom);
+  lines_.reserve(kCapacity);
   chains_.reserve(pixels_.size() / 4 / kMaximaOfChain + 8);
   map_.compute({pixels_.data(), kSize, kSize, kSize}, {1.0, 1.0});
   chains_.trace(map_);
@@ -40,10 +40,10 @@ void LineLearner::take(const ImageView& luma, const PadView& view) {
   const int end = std::min(kSize, rows_ + kSize / kParts);
   for (; rows_ < end; ++rows_) {
     std::uint8_t* pixel = pixels_.data() + static_cast<std::ptrdiff_t>(rows_) * kSize;
-    auto next = view.at(place_of(0, rows_));
+    auto next = view.at(pad_point_of(0, rows_));
     for (int column = 0; column < kSize; column += kStraightPixels) {
       const auto here = next;
-      next = view.at(place_of(column + kStraightPixels, rows_));
+      next = view.at(pad_point_of(column + kStraightPixels, rows_));
       Eigen::Vector2f first(-1.0F, -1.0F);  // outside the image
       Eigen::Vector2f step(0.0F, 0.0F);
       if (here && next) {
@@ -82,12 +82,12 @@ void LineLearner::forget_maxima_at_border() {
   }
 }
 
-Eigen::Vector2d LineLearner::place_of(int column, int row) {
+Eigen::Vector2d LineLearner::pad_point_of(int column, int row) {
   return kPixel * (Eigen::Array2d(column, row) + 0.5) - 1.0;
 }
 
-Eigen::Vector2d LineLearner::place_of(std::int32_t pixel) const {
-  return place_of(pixel % map_.stride(), pixel / map_.stride());
+Eigen::Vector2d LineLearner::pad_point_of(std::int32_t pixel) const {
+  return pad_point_of(pixel % map_.stride(), pixel / map_.stride());
 }
 
 void LineLearner::learn(PadModel& model) {
@@ -113,13 +113,13 @@ void LineLearner::keep_longest() {
 void LineLearner::split(std::span<const std::int32_t> pixels, const PadModel& model) {
   const auto shortest = static_cast<std::size_t>(0.7 * kMinLength / kPixel);
   if (pixels.size() < shortest) return;
-  const Eigen::Vector2d from = place_of(pixels.front());
-  const Eigen::Vector2d chord = place_of(pixels.back()) - from;
+  const Eigen::Vector2d from = pad_point_of(pixels.front());
+  const Eigen::Vector2d chord = pad_point_of(pixels.back()) - from;
   const Eigen::Vector2d across = Eigen::Vector2d(-chord.y(), chord.x()).normalized();
   double farthest = kStraightPx * kPixel;
   std::size_t corner = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const Eigen::Vector2d beside = place_of(pixels[i]) - from;
+    const Eigen::Vector2d beside = pad_point_of(pixels[i]) - from;
     const double distance = chord.norm() > kPixel ? std::abs(across.dot(beside)) : beside.norm();
     if (distance <= farthest) continue;
     farthest = distance;
@@ -134,8 +134,8 @@ void LineLearner::split(std::span<const std::int32_t> pixels, const PadModel& mo
 }
 
 void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& model) {
-  const Eigen::Vector2d from = place_of(pixels.front());
-  const Eigen::Vector2d to = place_of(pixels.back());
+  const Eigen::Vector2d from = pad_point_of(pixels.front());
+  const Eigen::Vector2d to = pad_point_of(pixels.back());
   const double length = (to - from).norm();
   if (length < kMinLength) return;
   const Eigen::Vector2d middle = 0.5 * (from + to);
@@ -150,7 +150,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   const auto corner = std::min(pixels.size() / 4, static_cast<std::size_t>(kShortened / kPixel));
   const PadLine line = line_through(pixels.subspan(corner, pixels.size() - 2 * corner), from, to);
   if (line.contrast < kMinContrastShare * model.circles.front().contrast) return;
-  if (lines_.size() == kRoom) keep_longest();
+  if (lines_.size() == kCapacity) keep_longest();
   lines_.push_back(line);
 }
 
@@ -167,7 +167,7 @@ PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
     const Gradient* here = map_.gradients() + pixel;
     const bool is_flat = std::abs(here->x) > std::abs(here->y);
     const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : map_.stride());
-    Eigen::Vector2d place = place_of(pixel) - middle;
+    Eigen::Vector2d place = pad_point_of(pixel) - middle;
     place[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
     sum += place;
     squares += place * place.transpose();

@@ -49,8 +49,8 @@ class LineLearner {
                                      const Eigen::Vector2d& to) const;
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
   void keep_longest();
-  [[nodiscard]] static Eigen::Vector2d place_of(int column, int row);
-  [[nodiscard]] Eigen::Vector2d place_of(std::int32_t pixel) const;
+  [[nodiscard]] static Eigen::Vector2d pad_point_of(int column, int row);
+  [[nodiscard]] Eigen::Vector2d pad_point_of(std::int32_t pixel) const;
 
   std::vector<std::uint8_t> pixels_;  // top view
   int rows_ = 0;                      // completed

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinSupport = 0.5;         // share of the perimeter with a gradient maximum
 constexpr std::size_t kSamples = 48;        // half of the detector's, since this runs in each frame
 constexpr double kThinRingPx = 6.0;         // max width of a ring that needs a blur correction
-constexpr double kRepulsionShare = 0.2;     // sigma of the blur correction, share of it
+constexpr double kBlurBiasShare = 0.2;      // sigma of the blur correction, share of it
 constexpr double kReachOfNextEdgePx = 2.0;  // blur of the ring's inner edge
 constexpr Tolerance kNear{1.0, 0.03};       // max distance from the predicted outline
 
@@ -61,8 +61,8 @@ std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
   const auto inner = on_maxima(luma, view, model.circles[1], min_contrast);
   if (!inner) return exact;
   const Ellipse blurred = exact->ellipse;
-  exact->ellipse = without_repulsion({blurred, inner->ellipse}).outer;
-  const double sigma_px = kRepulsionShare * max_difference_px(exact->ellipse, blurred);
+  exact->ellipse = without_blur_bias({blurred, inner->ellipse}).outer;
+  const double sigma_px = kBlurBiasShare * max_difference_px(exact->ellipse, blurred);
   const double radius_px = std::sqrt(blurred.semi_major * blurred.semi_minor);
   exact->uncertainty.information = widened(exact->uncertainty.information, sigma_px / radius_px);
   return exact;

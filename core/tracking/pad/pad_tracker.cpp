@@ -21,7 +21,8 @@ constexpr double kTurnNoise = 0.002;    // sigma of the camera's rotation per fr
 constexpr double kShiftNoise = 0.0015;  // sigma of its translation [radii]
 constexpr double kFirstTurn = 0.03;     // initial sigmas of the velocity, as above
 constexpr double kFirstShift = 0.05;
-constexpr double kUsualShare = 0.35;      // typical squared innovation over its predicted variance
+constexpr double kTypicalInnovation =
+    0.35;                                 // typical squared innovation over its predicted variance
 constexpr double kInnovationRate = 0.25;  // smoothing exponent
 constexpr double kMinRatio = 0.5;         // of one frame
 constexpr double kMinInnovationRatio = 0.25;
@@ -120,7 +121,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   is_locked_ = false;
   refined_.reset();
   inner_count_ = 0;
-  camera_ = window.camera.value_or(usual_camera(window.frame_px));
+  camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
   if (!learn_pad(window, outer_edge)) return false;
   line_learner_.reserve(model_);
@@ -133,7 +134,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   motion_.pose.diagonal() << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6, 1e-4, 1e-4;
   std::optional<Attempt> attempt;
   for (int step = 0; step < kLockSteps; ++step) {
-    attempt = look_near(window, view_, motion_.pose);
+    attempt = search_near(window, view_, motion_.pose);
     if (!attempt) return false;
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
@@ -162,9 +163,9 @@ std::optional<PadTracker::Attempt> PadTracker::finish(const LumaWindow& window,
                                                       const HomographyChange& change,
                                                       double reach_px) {
   const Eigen::Matrix3d view = moved(start, change);
-  search_.place(model_, view_in(window, view), window.luma, kFineSamples);
+  search_.sample(model_, view_in(window, view), window.luma, kFineSamples);
   if (search_.samples().size() < kMinMatched) return std::nullopt;
-  search_.look(window.luma, gain_, reach_px);
+  search_.search(window.luma, gain_, reach_px);
   const HomographyPrior here{prior.mean - change, prior.information};
   const auto estimate = solve_homography(
       search_.samples(), here, HomographyChange::Zero(), reach_px, kEdgeSigmaPx, 3);
@@ -186,13 +187,13 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
 }
 
 // Near a good prediction one search suffices.
-std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& window,
-                                                         const Eigen::Matrix3d& start,
-                                                         const HomographyCovariance& covariance) {
+std::optional<PadTracker::Attempt> PadTracker::search_near(const LumaWindow& window,
+                                                           const Eigen::Matrix3d& start,
+                                                           const HomographyCovariance& covariance) {
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, view_in(window, start), window.luma, kFineSamples);
+  search_.sample(model_, view_in(window, start), window.luma, kFineSamples);
   if (search_.samples().size() < kMinMatched) return std::nullopt;
-  search_.look(window.luma, gain_, kReachPx, &covariance, 3.0 * kReachPx);
+  search_.search(window.luma, gain_, kReachPx, &covariance, 3.0 * kReachPx);
   auto estimate = solve_homography(
       search_.samples(), prior, HomographyChange::Zero(), 3.0 * kReachPx, kEdgeSigmaPx, 2);
   if (!estimate) return std::nullopt;
@@ -214,15 +215,15 @@ std::optional<PadTracker::Attempt> PadTracker::look_near(const LumaWindow& windo
 
 // The search range contains clutter: tests several hypotheses, each from four edges and the motion
 // prior, and refines the best.
-std::optional<PadTracker::Attempt> PadTracker::look_wide(const LumaWindow& window,
-                                                         const Eigen::Matrix3d& start,
-                                                         const HomographyCovariance& covariance) {
+std::optional<PadTracker::Attempt> PadTracker::search_wide(const LumaWindow& window,
+                                                           const Eigen::Matrix3d& start,
+                                                           const HomographyCovariance& covariance) {
   const double reach_px = std::max(2.0 * kReachPx, kWideReach * radius_px());
   const HomographyPrior prior{HomographyChange::Zero(), inverse_of(covariance)};
-  search_.place(model_, view_in(window, start), window.luma, kWideSamples);
+  search_.sample(model_, view_in(window, start), window.luma, kWideSamples);
   const auto samples = search_.samples();
   if (samples.size() < kMinMatched) return std::nullopt;
-  search_.look(window.luma, gain_, reach_px);
+  search_.search(window.luma, gain_, reach_px);
   const double fit_px = 0.5 * reach_px;
   const HomographyChange best = best_hypothesis(samples, prior, reach_px, fit_px);
   auto estimate = solve_homography(samples, prior, best, reach_px, kEdgeSigmaPx, 2);
@@ -276,22 +277,22 @@ HomographyChange PadTracker::best_hypothesis(std::span<const EdgeSample> samples
 
 std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double frames) {
   if (!is_locked_) return std::nullopt;
-  camera_ = window.camera.value_or(usual_camera(window.frame_px));
+  camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
   refined_.reset();
   inner_count_ = 0;
   const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
   last_coverage_ = 0.0;
   HomographyFilter before = predicted(frames, 1.0 + 0.5 * missed_);
-  auto attempt = look_near(window, prediction, before.pose);
+  auto attempt = search_near(window, prediction, before.pose);
   if (!attempt) {
     before = predicted(frames, 400.0);
-    attempt = look_wide(window, prediction, before.pose);
+    attempt = search_wide(window, prediction, before.pose);
   }
-  if (!attempt) attempt = look_coarsely(window, prediction, before);
+  if (!attempt) attempt = search_coarse(window, prediction, before);
   if (!attempt) {
-    miss(prediction, before, frames);
-    return is_locked_ ? told(nullptr) : std::nullopt;
+    coast(prediction, before, frames);
+    return is_locked_ ? make_track(nullptr) : std::nullopt;
   }
   const Eigen::Matrix3d last_view = view_;
   accept(*attempt, before, frames);
@@ -299,18 +300,18 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   if (window.camera) measure_inner_edges(window);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
   learn_lines(window, *attempt);
-  return told(&*attempt);
+  return make_track(&*attempt);
 }
 
 // Searches a coarse image of the surroundings. Inflates the covariances of `before` on success.
-std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& window,
+std::optional<PadTracker::Attempt> PadTracker::search_coarse(const LumaWindow& window,
                                                              const Eigen::Matrix3d& prediction,
                                                              HomographyFilter& before) {
   const auto coarse = coarse_search(window.luma, model_, view_in(window, prediction));
   if (!coarse) return std::nullopt;
   HomographyCovariance loose = HomographyCovariance::Zero();
   loose.diagonal() << 0.02, 0.02, 0.01, 2.5e-3, 2.5e-3, 1e-4, 1e-4, 1e-4;
-  auto attempt = look_wide(window, shifted(*coarse, window.origin_px), loose);
+  auto attempt = search_wide(window, shifted(*coarse, window.origin_px), loose);
   if (!attempt) return std::nullopt;
   // Total change from the prediction.
   const Eigen::Matrix3d between = prediction.inverse() * attempt->view;
@@ -323,7 +324,7 @@ std::optional<PadTracker::Attempt> PadTracker::look_coarsely(const LumaWindow& w
 
 void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, double frames) {
   motion_ = before.corrected(attempt.estimate);
-  if (model_.lines.empty()) motion_.leave_turn_open();  // rings have no orientation
+  if (model_.lines.empty()) motion_.leave_rotation_free();  // rings have no orientation
   // Squared displacement of the edges over its predicted variance.
   double moved_px = 0.0;
   double expected_px = 0.0;
@@ -333,7 +334,7 @@ void PadTracker::accept(const Attempt& attempt, const HomographyFilter& before, 
   }
   if (expected_px > 0.0) {
     const double ratio =
-        std::clamp(moved_px / (kUsualShare * expected_px), kMinRatio, kMaxInnovationRatio);
+        std::clamp(moved_px / (kTypicalInnovation * expected_px), kMinRatio, kMaxInnovationRatio);
     innovation_ratio_ = std::clamp(innovation_ratio_ * std::pow(ratio, kInnovationRate),
                                    kMinInnovationRatio,
                                    kMaxInnovationRatio);
@@ -437,9 +438,9 @@ void PadTracker::judge_lines(const HomographyChange& change) {
   });
 }
 
-void PadTracker::miss(const Eigen::Matrix3d& prediction,
-                      const HomographyFilter& before,
-                      double frames) {
+void PadTracker::coast(const Eigen::Matrix3d& prediction,
+                       const HomographyFilter& before,
+                       double frames) {
   view_ = prediction;
   motion_ = before;
   motion_.velocity *= std::pow(kSlowing, frames);
@@ -447,7 +448,7 @@ void PadTracker::miss(const Eigen::Matrix3d& prediction,
   if (missed_ > kLongestMiss) is_locked_ = false;
 }
 
-std::optional<EdgeTrack> PadTracker::told(const Attempt* attempt) const {
+std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
   const auto ellipse = project_circle(view_, 1.0);
   if (!ellipse) return std::nullopt;
   EdgeTrack track;

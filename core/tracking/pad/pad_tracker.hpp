@@ -86,17 +86,17 @@ class PadTracker {
   };
 
   [[nodiscard]] HomographyFilter predicted(double frames, double looseness) const;
-  [[nodiscard]] std::optional<Attempt> look_near(const LumaWindow& window,
-                                                 const Eigen::Matrix3d& start,
-                                                 const HomographyCovariance& covariance);
-  [[nodiscard]] std::optional<Attempt> look_wide(const LumaWindow& window,
-                                                 const Eigen::Matrix3d& start,
-                                                 const HomographyCovariance& covariance);
+  [[nodiscard]] std::optional<Attempt> search_near(const LumaWindow& window,
+                                                   const Eigen::Matrix3d& start,
+                                                   const HomographyCovariance& covariance);
+  [[nodiscard]] std::optional<Attempt> search_wide(const LumaWindow& window,
+                                                   const Eigen::Matrix3d& start,
+                                                   const HomographyCovariance& covariance);
   [[nodiscard]] static HomographyChange best_hypothesis(std::span<const EdgeSample> samples,
                                                         const HomographyPrior& prior,
                                                         double reach_px,
                                                         double fit_px);
-  [[nodiscard]] std::optional<Attempt> look_coarsely(const LumaWindow& window,
+  [[nodiscard]] std::optional<Attempt> search_coarse(const LumaWindow& window,
                                                      const Eigen::Matrix3d& prediction,
                                                      HomographyFilter& before);
   [[nodiscard]] std::optional<Attempt> finish(const LumaWindow& window,
@@ -114,8 +114,8 @@ class PadTracker {
   void learn_radii(const HomographyChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const HomographyChange& change);
-  void miss(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double frames);
-  [[nodiscard]] std::optional<EdgeTrack> told(const Attempt* attempt) const;
+  void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double frames);
+  [[nodiscard]] std::optional<EdgeTrack> make_track(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
   std::optional<RingUncertainty> refined_;  // of the last frame

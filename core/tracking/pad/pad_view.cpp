@@ -10,17 +10,17 @@ namespace ellipse {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::optional<PadPlace> PadView::at(const Vector2d& place) const {
+std::optional<ProjectedPoint> PadView::at(const Vector2d& place) const {
   const Eigen::Matrix3d& h = ideal_from_pad;
   const Vector3d seen = h * place.homogeneous();
   if (!(seen.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
-  PadPlace result;
+  ProjectedPoint result;
   result.point = seen.hnormalized();
   result.slope = (h.topLeftCorner<2, 2>() - result.point * h.bottomLeftCorner<1, 2>()) / seen.z();
   if (!lens.is_distorted()) return result;
   const auto shown = lens.picture_from_ideal(result.point);
   if (!shown) return std::nullopt;
-  return PadPlace{shown->picture_px, shown->slope * result.slope};
+  return ProjectedPoint{shown->picture_px, shown->slope * result.slope};
 }
 
 double PadView::radius_px() const {

@@ -8,7 +8,7 @@
 namespace ellipse {
 
 /// Image of a point on the pad's plane.
-struct PadPlace {
+struct ProjectedPoint {
   Eigen::Vector2d point;  ///< [px]
   Eigen::Matrix2d slope;  ///< Jacobian of the point by its pad coordinates.
 };
@@ -23,7 +23,7 @@ struct PadView {
   LensView lens;
 
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
-  [[nodiscard]] std::optional<PadPlace> at(const Eigen::Vector2d& place) const;
+  [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& place) const;
 
   /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;

@@ -31,10 +31,10 @@ IdealRect inner_rect(const LensView& lens, double right, double bottom) {
     const double x = std::lerp(kMarginPx, right, at);
     const double y = std::lerp(kMarginPx, bottom, at);
     // Points without an inverse are NaN, which std::max and std::min ignore as second argument.
-    rect.left = std::max(rect.left, lens.near_ideal({kMarginPx, y}).x());
-    rect.right = std::min(rect.right, lens.near_ideal({right, y}).x());
-    rect.top = std::max(rect.top, lens.near_ideal({x, kMarginPx}).y());
-    rect.bottom = std::min(rect.bottom, lens.near_ideal({x, bottom}).y());
+    rect.left = std::max(rect.left, lens.approximate_ideal({kMarginPx, y}).x());
+    rect.right = std::min(rect.right, lens.approximate_ideal({right, y}).x());
+    rect.top = std::max(rect.top, lens.approximate_ideal({x, kMarginPx}).y());
+    rect.bottom = std::min(rect.bottom, lens.approximate_ideal({x, bottom}).y());
   }
   return rect;
 }
@@ -51,7 +51,7 @@ VisiblePart::VisiblePart(const PadView& view, const ImageView& luma)
   borders_.row(3) = rect.bottom * h.row(2) - h.row(1);
 }
 
-bool VisiblePart::is_let_in(const Eigen::Vector2d& place) const {
+bool VisiblePart::is_visible_distorted(const Eigen::Vector2d& place) const {
   const auto seen = view_.at(place);
   return seen && seen->point.x() >= kMarginPx && seen->point.y() >= kMarginPx &&
          seen->point.x() <= right_px_ && seen->point.y() <= bottom_px_;

@@ -17,7 +17,7 @@ class VisiblePart {
   [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
     const bool is_within =
         ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
-    return is_within || (view_.lens.is_distorted() && is_let_in(place));
+    return is_within || (view_.lens.is_distorted() && is_visible_distorted(place));
   }
 
   /// The visible part of a line, parameterized from 0 to 1; empty if end <= begin. With distortion
@@ -25,7 +25,7 @@ class VisiblePart {
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
-  [[nodiscard]] bool is_let_in(const Eigen::Vector2d& place) const;
+  [[nodiscard]] bool is_visible_distorted(const Eigen::Vector2d& place) const;
   [[nodiscard]] double farthest(const Eigen::Vector2d& from,
                                 const Eigen::Vector2d& to,
                                 double inside,

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxCandidates = 2000;  // a few hundred bytes of JSON eac
 
 bool is_found(const ellipse::TracedCandidate& candidate) {
   return candidate.verdict.is_accepted() ||
-         candidate.verdict.reason >= ellipse::Reason::kOtherPlace;
+         candidate.verdict.reason >= ellipse::Reason::kTooFarFromLast;
 }
 
 void write_ellipse(JsonWriter& json, const ellipse::Ellipse& e) {

@@ -40,12 +40,12 @@ TEST_P(EachLensView, TableIsNearTheInverse) {
   for (double y = 0.0; y < 360.0; y += 8.3) {
     for (double x = 0.0; x < 640.0; x += 9.7) {
       const Vector2d pixel(x, y);
-      const auto back = lens_.picture_from_ideal(view.near_ideal(pixel));
+      const auto back = lens_.picture_from_ideal(view.approximate_ideal(pixel));
       ASSERT_TRUE(back);
       EXPECT_LT((back->picture_px - pixel).norm(), 0.01) << pixel.transpose();
     }
   }
-  EXPECT_FALSE(view.near_ideal({9000.0, 0.0}).allFinite());
+  EXPECT_FALSE(view.approximate_ideal({9000.0, 0.0}).allFinite());
 }
 
 // A part of a reduced copy: its pixels are those of the frame, and so are its ideal ones.
@@ -103,7 +103,7 @@ TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
   LensView(lens_).distort(
       {0.0, 0.0}, {2, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   EXPECT_LT(std::abs(x[0]), 640.0F);
-  EXPECT_EQ(x[1], CurveSamples::kNowhere);
+  EXPECT_EQ(x[1], CurveSamples::kOutOfRange);
 }
 
 TEST_P(EachLensView, WhatIsBentIsUnbent) {
@@ -166,7 +166,7 @@ TEST(LensView, IsNoneByDefault) {
   for (const LensView& view : {LensView(), LensView(pinhole)}) {
     EXPECT_FALSE(view.is_distorted());
     const Vector2d pixel(17.0, 300.0);
-    EXPECT_EQ(view.near_ideal(pixel), pixel);
+    EXPECT_EQ(view.approximate_ideal(pixel), pixel);
     EXPECT_EQ(view.picture_from_ideal(pixel)->picture_px, pixel);
     EXPECT_EQ(*view.ideal_from_picture(pixel), pixel);
     EXPECT_FALSE(view.part({3.0, 4.0}).reduced(2).is_distorted());

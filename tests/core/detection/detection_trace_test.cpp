@@ -201,7 +201,8 @@ TEST_P(DetectionTraceOf, SaysInnerEdge) {
 TEST_P(DetectionTraceOf, SaysWhereTheTargetWas) {
   Ellipse last = kRing;
   last.cx -= 100.0;
-  const Verdict place = verdict_for(Reason::kOtherPlace, rendered(plain_ring(), kRing), {}, last);
+  const Verdict place =
+      verdict_for(Reason::kTooFarFromLast, rendered(plain_ring(), kRing), {}, last);
   EXPECT_NEAR(place.measured, 100.0, 0.5);
   EXPECT_EQ(place.limit, last.semi_major);
   last = scaled(kRing, 3.0);
@@ -298,7 +299,7 @@ TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
     int min_contour_size;
   } kCases[] = {
       {Reason::kPoorFit, "glare", 4.0, 50},
-      {Reason::kRefused, "negative", 0.5, 20},
+      {Reason::kDuplicateOfRejected, "negative", 0.5, 20},
       {Reason::kTooFewEdges, "negative", 0.5, 20},
       {Reason::kUnlikely, "oblique", 2.0, 50},
   };

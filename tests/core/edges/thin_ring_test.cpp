@@ -36,7 +36,7 @@ double median(std::vector<double> values) {
 TEST(RingEdges, LeavesEdgesThatAreFarApart) {
   const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
   const Ellipse inner = grown(outer, -7.0);
-  const RingEdges edges = without_repulsion({outer, inner});
+  const RingEdges edges = without_blur_bias({outer, inner});
   EXPECT_EQ(edges.outer, outer);
   EXPECT_EQ(edges.inner, inner);
 }
@@ -45,7 +45,7 @@ TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.3};
   for (const double ratio : {0.78, 0.75, 0.72}) {
     const Ellipse inner = shrunk(outer, ratio);
-    const RingEdges edges = without_repulsion({outer, inner});
+    const RingEdges edges = without_blur_bias({outer, inner});
     const double width = edges.outer.semi_major - edges.inner.semi_major;
     EXPECT_LT(width, outer.semi_major - inner.semi_major) << ratio;
     EXPECT_GT(width, 0.0) << ratio;
@@ -58,7 +58,7 @@ TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
 TEST(RingEdges, KeepsTheRingThatCannotBeTold) {
   // Noise puts the gradient maxima closer together than those of a line: the ring has no width.
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.0};
-  const RingEdges edges = without_repulsion({outer, grown(outer, -1.5)});
+  const RingEdges edges = without_blur_bias({outer, grown(outer, -1.5)});
   EXPECT_NEAR(edges.outer.semi_major, 13.25, 0.01);
   EXPECT_NEAR(edges.inner.semi_major, 13.25, 0.01);
 }
