@@ -11,18 +11,16 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMinConsecutive = 4;            // consecutive detections before the target is trusted
-constexpr double kMinVisibleToStart = 0.6;    // visible fraction of the outline
-constexpr double kMinVisibleToMeasure = 0.1;  // above it the reported error is reliable
-constexpr double kBlindError = 0.1;       // position error if only the inner pattern is visible [m]
-constexpr double kLost_s = 1.0;           // without detection, in phases that can wait
-constexpr double kRecent_s = 2.0;         // since a detection: more accurate than radio
-constexpr double kSpiralGrowth = 0.5;     // growth of the search spiral [m/s]
-constexpr double kSpiralSpeed = 1.5;      // speed along the spiral [m/s]
-constexpr double kSweepRate = 0.5;        // of the search height [rad/s]
-constexpr double kMaxSpiralRadius = 3.0;  // [m]
-constexpr double kTouchDownSpeed = 0.8;   // [m/s]
-constexpr double kMaxDrift = 1.2;         // safe relative speed near the ground [m/s]
+constexpr int kMinConsecutive = 4;           // consecutive detections before the target is trusted
+constexpr double kMinVisibleToStart = 0.6;   // visible fraction of the outline
+constexpr double kLost_s = 1.0;              // without detection, in phases that can wait
+constexpr double kRecent_s = 2.0;            // since a detection: more accurate than radio
+constexpr double kSpiralGrowth = 0.5;        // growth of the search spiral [m/s]
+constexpr double kSpiralSpeed = 1.5;         // speed along the spiral [m/s]
+constexpr double kSweepRate = 0.5;           // of the search height [rad/s]
+constexpr double kMaxSpiralRadius = 3.0;     // [m]
+constexpr double kTouchDownSpeed = 0.8;      // [m/s]
+constexpr double kMaxDrift = 1.2;            // safe relative speed near the ground [m/s]
 constexpr double kMinSpeedForHeading = 0.5;  // slower platforms have none [m/s]
 
 }  // namespace
@@ -70,12 +68,9 @@ void Controller::look(const Observation& seen) {
     rejected_ = 0;
     return;
   }
-  // Adds errors that the picture cannot show: an attitude error rotates the measurement, and
-  // without visible outline one line of the pattern can be mistaken for another.
+  // An attitude error, which the picture cannot show, rotates the measurement.
   const double attitude = 0.01 + 0.01 * seen.pad->norm();
-  const double blind =
-      kBlindError * std::max(0.0, 1.0 - seen.visible_fraction / kMinVisibleToMeasure);
-  const double error = std::hypot(attitude, blind, seen.error);
+  const double error = std::hypot(attitude, seen.error);
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
     consecutive_ = 0;
     rejected_ = rejected_ % kMaxRejected + 1;

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What each named constant of core/ is worth: builds a copy in which constants come from the
-environment, changes one at a time by 30 % (a count by at least 1), and judges data sets with
-ellipse-evaluate.
+"""The named numeric constants of core/, without core/scene/.
 
-    tests/sensitivity.py [--names REGEX] [--methods arcs+none,arcs+edges] [--out FILE] DATASET...
-
-Prints a Markdown table: file, constant, value, and the largest change of F1 (or of the share of
-frames without a false target) at -30 % and at +30 %. Constants that array sizes, templates and
-other constant expressions need are not varied. The copy is kept in build-sensitivity.
+    tests/constants.py check TABLE
+        Fails unless the table in a Markdown file lists them all, with their values.
+    tests/constants.py vary [--names REGEX] [--methods METHOD,...] [--out FILE] DATASET...
+        Builds a copy in build-sensitivity in which constants come from the environment, changes one
+        at a time by 30 % (a count by at least 1), and judges data sets with ellipse-evaluate. Prints
+        rows of that table: file, constant, value, and the largest change of F1 (or of the share of
+        frames without a false target) at -30 % and at +30 %. Constants that array sizes, templates
+        and other constant expressions need are not varied.
 """
 
 import argparse
@@ -74,10 +75,8 @@ class Constant:
 
 
 def core_files():
-    names = subprocess.run(["git", "-C", PROJECT, "ls-files", "core"], check=True,
-                           capture_output=True, text=True).stdout.split()
-    return [name for name in names
-            if name.endswith((".cpp", ".hpp")) and not name.startswith("core/scene/")]
+    names = (str(path.relative_to(PROJECT)) for path in PROJECT.glob("core/**/*.[ch]pp"))
+    return sorted(name for name in names if not name.startswith("core/scene/"))
 
 
 def find_constants(files):
@@ -147,8 +146,8 @@ def build(files, constants):
         if result.returncode == 0:
             return
         if fix_what_fails(result.stdout, constants) == 0:
-            sys.exit("sensitivity.py: the copy does not compile:\n" + result.stdout[-3000:])
-    sys.exit("sensitivity.py: the copy does not compile after many attempts")
+            sys.exit("constants.py: the copy does not compile:\n" + result.stdout[-3000:])
+    sys.exit("constants.py: the copy does not compile after many attempts")
 
 
 def grades(arguments, knob=None):
@@ -175,20 +174,13 @@ def largest_change(before, after):
     return f"{changes[key]:+.3f} {key[0]} {key[1]}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("dataset", nargs="+", metavar="DATASET")
-    parser.add_argument("--names", default="", help="only constants FILE:NAME that match")
-    parser.add_argument("--methods", default="arcs+none,arcs+edges")
-    parser.add_argument("--out", type=argparse.FileType("w"), default=sys.stdout)
-    arguments = parser.parse_args()
-
+def vary(arguments):
     files = core_files()
     constants = find_constants(files)
     build(files, constants)
     before = grades(arguments)
     if before is None:
-        sys.exit("sensitivity.py: ellipse-evaluate fails without any change")
+        sys.exit("constants.py: ellipse-evaluate fails without any change")
     chosen = [c for c in constants if re.search(arguments.names, c.key)]
 
     def row(constant):
@@ -204,5 +196,34 @@ def main():
             print("| " + " | ".join(cells) + " |", file=arguments.out, flush=True)
 
 
+def check(arguments):
+    """Compares rows "| `file` | `kName` | value | ..." with the code, in any order."""
+    rows = re.findall(r"^\| `([\w/.]+)` \| `(k\w+)` \| ([^|]+) \|", arguments.table.read(), re.MULTILINE)
+    listed = {f"{file} {name} = {value.strip()}" for file, name, value in rows}
+    actual = {f"{c.file.removeprefix('core/')} {c.name} = {c.value}" for c in find_constants(core_files())}
+    for line in sorted(actual - listed):
+        print("constants.py: not in the table:", line)
+    for line in sorted(listed - actual):
+        print("constants.py: not in core/:", line)
+    print(f"{len(actual)} constants")
+    return listed != actual
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    commands = parser.add_subparsers(required=True)
+    checking = commands.add_parser("check")
+    checking.add_argument("table", type=argparse.FileType())
+    checking.set_defaults(run=check)
+    varying = commands.add_parser("vary")
+    varying.add_argument("dataset", nargs="+", metavar="DATASET")
+    varying.add_argument("--names", default="", help="only constants FILE:NAME that match")
+    varying.add_argument("--methods", default="arcs+none,arcs+edges")
+    varying.add_argument("--out", type=argparse.FileType("w"), default=sys.stdout)
+    varying.set_defaults(run=vary)
+    arguments = parser.parse_args()
+    return arguments.run(arguments)
+
+
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
