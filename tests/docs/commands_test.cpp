@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/docs/json_lines.hpp"
 #include "tests/docs/recipes.hpp"
 #include "tests/docs/sockets.hpp"
 #include "tests/gst/loopback.hpp"
@@ -28,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using recipes::all_of;
 using recipes::Document;
+using recipes::json_lines_of;
 using recipes::Recipe;
 using support::ShellJob;
 
@@ -41,36 +43,6 @@ const Document& cookbook() {
 const Document& readme() {
   static const Document document = recipes::read(ELLIPSE_ROOT "/README.md");
   return document;
-}
-
-// What stands in a line of JSON, of the target that was found last.
-struct Line {
-  double pts_ns = -1.0;
-  bool has_target = false;
-  double cx = 0.0;
-  double cy = 0.0;
-};
-
-std::vector<Line> lines_of(const std::string& text) {
-  std::vector<Line> lines;
-  for (const auto& parsed : support::parse_ndjson(std::istringstream(text))) {
-    JsonObject* object = support::object_of(parsed);
-    EXPECT_NE(object, nullptr) << "line " << lines.size() << " is no JSON: " << text;
-    if (object == nullptr) return lines;
-    Line line;
-    JsonNode* pts = json_object_get_member(object, "pts_ns");
-    if (!JSON_NODE_HOLDS_NULL(pts)) line.pts_ns = json_node_get_double(pts);
-    JsonArray* targets = json_object_get_array_member(object, "targets");
-    for (guint i = 0; i < json_array_get_length(targets); ++i) {
-      JsonObject* one = json_array_get_object_element(targets, i);
-      if (std::string(json_object_get_string_member(one, "role")) != "target") continue;
-      line.has_target = true;
-      line.cx = json_object_get_double_member(one, "cx");
-      line.cy = json_object_get_double_member(one, "cy");
-    }
-    lines.push_back(line);
-  }
-  return lines;
 }
 
 using Jobs = std::vector<std::pair<const Recipe*, std::unique_ptr<ShellJob>>>;
@@ -135,15 +107,15 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
 
   // Of what crosses a network, or may drop old frames, a part may be missing.
   static void expect_targets(const std::string& text, std::size_t frames, bool may_drop) {
-    const std::vector<Line> lines = lines_of(text);
+    const std::vector<recipes::JsonLine> lines = json_lines_of(text);
     if (may_drop) {
       EXPECT_GE(lines.size(), frames / 2) << text;
       EXPECT_LE(lines.size(), frames);
     } else {
       EXPECT_EQ(lines.size(), frames) << text;
     }
-    const auto found =
-        std::count_if(lines.begin(), lines.end(), [](const Line& line) { return line.has_target; });
+    const auto found = std::count_if(
+        lines.begin(), lines.end(), [](const recipes::JsonLine& line) { return line.has_target; });
     EXPECT_GE(found, std::floor(0.5 * static_cast<double>(lines.size()))) << text;
   }
 
@@ -205,8 +177,8 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
 
   // Of a recording: each line has the time and the target of a frame of the video.
   void check_clock(const std::string& video, const std::string& written) const {
-    const auto seen = lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
-    const auto lines = lines_of(support::contents_of(file(written)));
+    const auto seen = json_lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
+    const auto lines = json_lines_of(support::contents_of(file(written)));
     ASSERT_EQ(seen.size(), lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
       EXPECT_NEAR(seen[i].pts_ns, lines[i].pts_ns, 1e6) << "frame " << i;

@@ -32,15 +32,19 @@ inline Document read(const std::string& path) {
   std::string before;  // the paragraph in front of a block
   bool is_below_recipe = false;
   for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("```")) {
+    const std::size_t indent = line.find_first_not_of(' ');
+    if (indent == std::string::npos || !line.substr(indent).starts_with("```")) {
       if (line.starts_with("#")) section = line.substr(line.find(' ') + 1);
       before = line.empty() ? "" : before + line + " ";
       if (!line.empty()) is_below_recipe = false;
       continue;
     }
-    const std::string language = line.substr(3);
+    const std::string language = line.substr(indent + 3);
+    const std::string end = std::string(indent, ' ') + "```";
     std::string text;
-    while (std::getline(in, line) && line != "```") text += line + "\n";
+    while (std::getline(in, line) && line != end) {
+      text += line.substr(std::min(indent, line.size())) + "\n";
+    }
     std::smatch name;
     if (language == "sh") {
       const bool waits = text.starts_with("# until Ctrl-C\n");
