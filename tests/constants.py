@@ -32,7 +32,7 @@ MAX_ROUNDS = 30
 DEFINITION = re.compile(
     r"^(?P<indent> *)(?P<static>(?:inline |static )?)constexpr "
     r"(?P<type>double|float|int|unsigned|std::size_t|std::ptrdiff_t|std::int64_t) "
-    r"(?P<name>k\w+) = (?P<value>[^;{]+);", re.MULTILINE)
+    r"(?P<name>k\w+) =\s+(?P<value>[^;{]+);", re.MULTILINE)
 
 KNOB = """#pragma once
 #include <cmath>

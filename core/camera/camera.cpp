@@ -16,13 +16,13 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kWidestRad = 1.53;  // 87.7 degrees: the ideal plane diverges at 90
-constexpr double kMinSlope = 0.05;   // of the radial map to count as one to one
-constexpr int kRadialSteps = 512;    // samples for that test
-constexpr int kTableSteps = 3;
+constexpr double kWidestRad = 1.53;    // 87.7 degrees: the ideal plane diverges at 90
+constexpr double kMinSlope = 0.05;     // of the radial map to count as one to one
+constexpr int kRadialSteps = 512;      // samples for that test
+constexpr int kTableSteps = 3;         // Newton steps per table entry
 constexpr double kTableMargin = 1.05;  // for the tangential part
-constexpr int kMaxIterations = 20;
-constexpr double kNearPx = 1e-5;  // residual after which one more step is exact
+constexpr int kMaxIterations = 20;     // Newton steps per point
+constexpr double kNearPx = 1e-5;       // residual after which one more step is exact
 
 // In normalized coordinates (focal length 1).
 LensPoint distorted(const Camera& camera, const Vector2d& p) {

@@ -89,7 +89,7 @@ class Lens {
   [[nodiscard]] Eigen::Vector2d approximate_ideal(const Eigen::Vector2d& picture_px) const;
 
  private:
-  static constexpr std::size_t kTableSize = 1024;
+  static constexpr std::size_t kTableSize = 1024;  // steps, even in the squared radius
 
   void make_table();
   [[nodiscard]] Eigen::Vector2d from_table(const Eigen::Vector2d& distorted) const;

@@ -15,8 +15,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kStretchNoise = 2.3;
-constexpr double kTiltOfNoise = 8.0;
+constexpr double kStretchNoise = 2.3;    // weight of sigma over stretch in the tilt's widening
+constexpr double kTiltOfNoise = 8.0;     // prior variance of the tilt, in sigmas of the stretch
 constexpr double kMemory = 0.98;         // decay of the inner edges' information per frame
 constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance that averages out
 constexpr double kModelDegrees = 4.0;    // degrees of freedom of the errors' scale
@@ -75,7 +75,7 @@ std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
                                     const RingMatrix& information,
                                     double radius) {
   constexpr double kStep = 1e-3;  // relative radius step of the numeric derivative
-  constexpr int kSteps = 2;
+  constexpr int kSteps = 2;       // Gauss-Newton steps
   RadiusFit fit;
   for (int step = 0; step <= kSteps; ++step) {
     const auto here = ring_change(view, project_circle(predicted, radius));
@@ -225,7 +225,7 @@ void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
 }
 
 double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
-  constexpr double kMaxDifferences = 30.0;
+  constexpr double kMaxDifferences = 30.0;  // length of the running mean [frames]
   if (information > 0.0) {
     differences = std::min(differences + 1.0, kMaxDifferences);
     const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));

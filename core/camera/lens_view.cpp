@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t kFitPoints = 24;
+constexpr std::size_t kFitPoints = 24;      // samples to fit a distorted ellipse
 constexpr std::size_t kOutlinePoints = 96;  // samples to measure a distorted perimeter
 
 bool is_shown(const Vector2d& point) {

@@ -9,8 +9,8 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kLongestWalk = 16384;  // pixels
-constexpr int kClosingGap = 3;               // pixels
+constexpr std::size_t kLongestWalk = 16384;  // sizes a buffer [pixels]
+constexpr int kClosingGap = 3;               // between the ends of a closed chain [pixels]
 
 // For each octant of an edge, the codes that may follow, as a bit set: free gradient maxima whose
 // edge direction differs by at most one octant.

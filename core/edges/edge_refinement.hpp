@@ -17,6 +17,7 @@ struct RefinedEllipse {
   double gradient = 0.0;  ///< Mean gradient of these edges [units of Gradient].
 };
 
+/// Samples of the outline, as of OutlineSamples.
 inline constexpr std::size_t kRefinementSamples = 96;
 
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient

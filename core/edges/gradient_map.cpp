@@ -16,15 +16,15 @@ constexpr int kPadRight = 64;  // and after the last one, so that blocks may ove
 constexpr int kBlock = GradientMap::kBlock;
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kNoiseRows = 16;  // approximate number of sampled rows
-constexpr double kNoiseQuantile = 0.3;
+constexpr int kNoiseRows = 16;          // approximate number of sampled rows
+constexpr double kNoiseQuantile = 0.3;  // of the gradient, low enough to exclude edges
 constexpr double kLowOverNoise = 3.0;
-constexpr double kHighOverLow = 2.0;  // [Canny1986]: two to three
-constexpr double kMinLow = 1.25;      // [grey levels / px]
-constexpr double kMinNoise = 20.0;    // from rounding to grey levels alone
-constexpr int kHistogramBins = 1536;
-constexpr int kHistogramShift = 4;
-constexpr double kMaxGradient = 24480.0;
+constexpr double kHighOverLow = 2.0;      // [Canny1986]: two to three
+constexpr double kMinLow = 1.25;          // [grey levels / px]
+constexpr double kMinNoise = 20.0;        // [units of Gradient]; rounding to grey levels gives 7.6
+constexpr int kHistogramBins = 1536;      // of magnitudes
+constexpr int kHistogramShift = 4;        // log2 of a bin [units of Gradient]
+constexpr double kMaxGradient = 24480.0;  // keeps thresholds in 16 bits [units of Gradient]
 
 // The compiler vectorizes these plain loops, for SSE2 and AVX2 on x86-64 and for NEON on AArch64.
 // Sixteen bits suffice: the largest component is 16 x 255 x 3 = 12240.

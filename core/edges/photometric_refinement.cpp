@@ -15,25 +15,25 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
-constexpr int kBefore = 6;  // of these, before the pixel nearest to the edge
-constexpr std::size_t kMaxSectors = 80;
-constexpr double kTypicalSectors = 64.0;
-constexpr double kShortestSector = 6.0;  // lines
-constexpr double kLongestPx = 1e6;       // limit of the perimeter in the count of lines
-constexpr double kFewLines = 96.0;
-constexpr double kMaxLines = 800.0;
-constexpr std::size_t kMinSectors = 8;
-constexpr std::size_t kNeighbours = 3;  // sectors on each side that share the two levels
-constexpr double kTypicalStepPx = 2.3;  // half the width of the blurred step
-constexpr double kMinStepPx = 1.8;
+constexpr int kLanes = 12;               // pixels across the edge: kPhotometricBandPx at 45 degrees
+constexpr int kBefore = 6;               // of these, before the pixel nearest to the edge
+constexpr std::size_t kMaxSectors = 80;  // sizes buffers
+constexpr double kTypicalSectors = 64.0;  // unless they would be too short
+constexpr double kShortestSector = 6.0;   // lines
+constexpr double kLongestPx = 1e6;        // limit of the perimeter in the count of lines
+constexpr double kFewLines = 96.0;        // of the first pass
+constexpr double kMaxLines = 800.0;       // of the second pass
+constexpr std::size_t kMinSectors = 8;    // with an edge
+constexpr std::size_t kNeighbours = 3;    // sectors on each side that share the two levels
+constexpr double kTypicalStepPx = 2.3;    // half the width of the blurred step
+constexpr double kMinStepPx = 1.8;        // bounds of the fitted width
 constexpr double kMaxStepPx = 5.0;
-constexpr double kAlike = 9.0;       // largest chi-square of shared levels
-constexpr double kNoiseFloor = 1.0;  // variance in a sector [grey levels^2]
-constexpr double kTukeyReachPx = 1.0;
-constexpr double kTukeyOfSigma = 4.7;
+constexpr double kAlike = 9.0;             // largest chi-square of shared levels
+constexpr double kNoiseFloor = 1.0;        // variance in a sector [grey levels^2]
+constexpr double kTukeyReachPx = 1.0;      // minimum
+constexpr double kTukeyOfSigma = 4.7;      // reach over the scatter
 constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
-constexpr double kMinShare = 0.5;
+constexpr double kMinShare = 0.5;          // of the sectors with an edge
 
 // Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
 // g, its derivative w by narrowing, and the brightness i.

@@ -32,7 +32,7 @@ inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
 /// [Devernay1995] 2. Projects the neighbours' gradients on the middle one.
 /// @param here  The middle gradient in a map; its neighbours are `step` before and after.
 [[nodiscard]] inline SubpixelMaximum subpixel_maximum(const Gradient* here, int step) {
-  constexpr float kFarthest = 0.7F;
+  constexpr float kFarthest = 0.7F;  // offset of a vertex [px]
   const float gx = here->x;
   const float gy = here->y;
   const float before = here[-step].x * gx + here[-step].y * gy;

@@ -14,7 +14,7 @@ constexpr double kLensBlur = 0.6;       // standard deviation [px], in focus
 constexpr double kWidest = 6.0;         // largest corrected gap [px]
 constexpr std::size_t kWidths = 31;     // in the table, from 0 to kWidest
 constexpr int kPhases = 8;              // sub-pixel positions of the bar to average over
-constexpr int kHalvings = 20;
+constexpr int kHalvings = 20;           // bisection steps
 
 using PerWidth = std::array<double, kWidths>;
 

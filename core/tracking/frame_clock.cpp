@@ -6,8 +6,8 @@
 namespace ellipse {
 namespace {
 
-constexpr double kUnitNs = 1e9 / 30.0;
-constexpr double kLongestGap = 30.0;  // [1/30 s]
+constexpr double kUnitNs = 1e9 / 30.0;  // 1/30 s
+constexpr double kLongestGap = 30.0;    // [1/30 s]
 
 }  // namespace
 

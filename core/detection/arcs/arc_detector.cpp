@@ -14,8 +14,8 @@ namespace ellipse {
 namespace {
 
 constexpr int kScales[] = {2, 4, 1};  // in order of the search
-constexpr int kCoarsest = 4;
-constexpr int kMaxPairs = 50;
+constexpr int kCoarsest = 4;          // scale at which an outline is judged
+constexpr int kMaxPairs = 50;         // tried at each scale
 constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
 constexpr Tolerance kSameOutline{2.0, 0.1};  // between a judged outline and its fit

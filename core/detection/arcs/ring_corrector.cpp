@@ -11,7 +11,7 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kMaxPx = 30.0;  // largest semi-minor axis of a corrected ring
 constexpr double kGapPx = 2.4;   // typical gap of a thin ring's maxima, in the refinement's reach
-constexpr double kMinSupport = 0.7;
+constexpr double kMinSupport = 0.7;         // matched share of the next edge
 constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
 
 }  // namespace

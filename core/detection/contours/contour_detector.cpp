@@ -30,13 +30,13 @@ constexpr std::size_t kCornerReach = 5;
 constexpr double kCornerCosine = 0.7;
 constexpr int kMinPartPx = 16;
 
-constexpr std::size_t kMaxDetections = 256;
+constexpr std::size_t kMaxDetections = 256;  // bounds the time
 
 constexpr Tolerance kSameFit{.px = 0.75};
 
-constexpr int kContourSteps = 2;
-constexpr int kEdgeSteps = 2;
-constexpr int kBorderPx = 3;  // reach of the smoothing and gradient kernels
+constexpr int kContourSteps = 2;  // Gauss-Newton steps on the own contour,
+constexpr int kEdgeSteps = 2;     // and on all edges along the ellipse
+constexpr int kBorderPx = 3;      // reach of the smoothing and gradient kernels
 
 // Response of the 3 x 3 Sobel kernels to a slope of one grey level per pixel.
 constexpr double kSobelGain = 8.0;

@@ -11,19 +11,19 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kCells = 64;
+constexpr int kCells = 64;       // side of the patch
 constexpr double kExtent = 2.4;  // half width of the patch [radii]
 constexpr double kCell = 2.0 * kExtent / kCells;
 constexpr double kRadius = 1.0 / kCell;  // of the outer circle [cells]
 constexpr int kMaxShift = static_cast<int>((kExtent - 1.0) * kRadius);
-constexpr int kAngles = 32;
+constexpr int kAngles = 32;  // points of a circle
 constexpr std::array<double, 3> kSizes = {0.88, 1.0, 1.14};
 constexpr double kSaturation = 0.6;   // of gradients, share of the outer circle's contrast
 constexpr std::size_t kFewer = 6;     // point stride of the preliminary test
 constexpr double kWorthwhile = 0.4;   // min share of the best score in that test
 constexpr double kFarPenalty = 0.15;  // share of the score lost at a shift of kMaxShift
-constexpr double kMinScore = 0.3;
-constexpr int kMinVisible = 6;
+constexpr double kMinScore = 0.3;     // agreement, 0 to 1
+constexpr int kMinVisible = 6;        // points of a circle
 
 struct CellGradient {
   float x = 0.0F;

@@ -57,7 +57,7 @@ class EdgeSearch {
   static constexpr std::size_t kCircleSteps = 128;  ///< Resolution of a circle's visible part.
 
  private:
-  static constexpr std::size_t kMaxCircles = 8;
+  static constexpr std::size_t kMaxCircles = 8;  // of a model; sizes a buffer
   using VisibleSteps = std::bitset<kCircleSteps>;
   struct Placement;
 

@@ -9,14 +9,14 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kParts = 8;
+constexpr int kParts = 8;               // of a top view, one per frame
 constexpr int kStraightPixels = 8;      // span of linear interpolation in the top view
 constexpr double kStraightPx = 1.2;     // max distance of a line from its chord
 constexpr double kMinLength = 0.1;      // [radii]
 constexpr double kBesideCircle = 0.05;  // lines this close to a circle throughout are part of it
 constexpr double kMaxRadius = 0.97;     // of a line's middle
 constexpr double kShortened = 0.02;     // cut at both ends, where smoothing displaces the edge
-constexpr std::size_t kCapacity = 4 * LineLearner::kMaxLines;
+constexpr std::size_t kCapacity = 4 * LineLearner::kMaxLines;  // before the longest are kept
 constexpr std::size_t kMaximaOfChain = 10;  // nearly all have more; sizes a buffer
 
 }  // namespace

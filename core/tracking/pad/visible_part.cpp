@@ -9,9 +9,9 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kMarginPx = 3.0;  // from the border
-constexpr double kFarPx = 1e6;
-constexpr int kBorderSteps = 8;  // samples per image side to undistort the border
-constexpr int kHalvings = 6;     // bisection steps for the visible end of a line
+constexpr double kFarPx = 1e6;     // beyond any image
+constexpr int kBorderSteps = 8;    // samples per image side to undistort the border
+constexpr int kHalvings = 6;       // bisection steps for the visible end of a line
 
 // A rectangle of the ideal plane.
 struct IdealRect {
