@@ -13,6 +13,9 @@ namespace ellipse {
 
 class DetectionTrace;
 
+/// Coarsest scale at which a picture is searched on its own.
+inline constexpr int kCoarsestScale = 4;
+
 /// An ellipse that passed every test of a detector.
 struct Detection {
   Ellipse ellipse;               ///< In the ideal plane of the searched picture [px].

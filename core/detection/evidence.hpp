@@ -21,6 +21,9 @@ namespace ellipse {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
+/// From these log odds on an ellipse is certain, and below their negative it is ruled out.
+inline constexpr double kCertainLogOdds = 3.0;
+
 /// Measurements along a candidate's outline: the inputs of the logistic regression.
 enum class Feature : std::size_t {
   kTurnSupport,     ///< Share of the outline's turn inside the picture matched by edges, 0 to 1.

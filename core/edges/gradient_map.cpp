@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/edges/noise.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -13,11 +15,9 @@ using Int = std::int16_t;
 
 constexpr int kPadLeft = 16;   // padding of rows before the first pixel,
 constexpr int kPadRight = 64;  // and after the last one, so that blocks may overrun
-constexpr int kBlock = GradientMap::kBlock;
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kNoiseRows = 16;          // approximate number of sampled rows
-constexpr double kNoiseQuantile = 0.3;  // of the gradient, low enough to exclude edges
+constexpr int kNoiseRows = 16;  // approximate number of sampled rows
 constexpr double kLowOverNoise = 3.0;
 constexpr double kHighOverLow = 2.0;      // [Canny1986]: two to three
 constexpr double kMinLow = 1.25;          // [grey levels / px]
@@ -105,13 +105,14 @@ ELLIPSE_INLINE int mark_maxima_body(
   const Int low = levels.low;
   const Int high = levels.high;
   int count = 0;
-  for (int begin = 0; begin < n; begin += kBlock) {
+  for (int begin = 0; begin < n; begin += GradientMap::kBlock) {
     const Int* __restrict m = rows.here + begin;
     std::uint8_t* __restrict out = codes + begin;
     Int any = 0;
-    for (int i = 0; i < kBlock; ++i) any = static_cast<Int>(any | (m[i] > low ? -1 : 0));
+    for (int i = 0; i < GradientMap::kBlock; ++i)
+      any = static_cast<Int>(any | (m[i] > low ? -1 : 0));
     if (any == 0) {
-      std::memset(out, 0, kBlock);
+      std::memset(out, 0, GradientMap::kBlock);
       continue;
     }
     blocks[count++] = begin;
@@ -119,7 +120,7 @@ ELLIPSE_INLINE int mark_maxima_body(
     const Int* __restrict gy = rows.gy + begin;
     const Int* __restrict up = rows.above + begin;
     const Int* __restrict down = rows.below + begin;
-    for (int i = 0; i < kBlock; ++i) {
+    for (int i = 0; i < GradientMap::kBlock; ++i) {
       const Int ax = static_cast<Int>(gx[i] < 0 ? -gx[i] : gx[i]);
       const Int ay = static_cast<Int>(gy[i] < 0 ? -gy[i] : gy[i]);
       const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient is along the row
@@ -214,12 +215,12 @@ std::int16_t* GradientMap::row_of(std::vector<std::int16_t>& rows, int y) {
 void GradientMap::resize(const ImageView& luma) {
   width_ = luma.width;
   height_ = luma.height;
-  stride_ = (width_ + kPadRight) / kBlock * kBlock;
+  stride_ = (width_ + kPadRight) / GradientMap::kBlock * GradientMap::kBlock;
   const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
   const auto length = static_cast<std::size_t>(width_) + kPadLeft + kPadRight;
   grow(gradients_, pixels);
   grow(maxima_, pixels + kPadRight);
-  grow(blocks_, pixels / kBlock);
+  grow(blocks_, pixels / GradientMap::kBlock);
   grow(smooth_, length);
   grow(difference_, length);
   grow(x_, kRows * length);
@@ -248,8 +249,6 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
       smooth, difference, row_of(x_, y), row_of(y_, y), row_of(magnitude_, y), out, width_);
 }
 
-// The gradient of noise is Rayleigh distributed with the quantile q at sigma sqrt(-2 ln(1 - q))
-// [Rosin1997]; a quantile low enough to exclude edges gives sigma.
 void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
@@ -264,14 +263,9 @@ void GradientMap::measure_noise(const ImageView& luma) {
       ++samples;
     }
   }
-  double quantile = 0.0;
-  int below = 0;
-  for (int bin = 0; bin < kHistogramBins && below <= kNoiseQuantile * samples; ++bin) {
-    below += histogram_[static_cast<std::size_t>(bin)];
-    quantile = (bin + 0.5) * (1 << kHistogramShift);
-  }
-  if (samples == 0) quantile = 0.0;
-  noise_ = std::max(kMinNoise, quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile)));
+  const double quantile =
+      (static_cast<double>(noise_bin(histogram_, samples)) + 0.5) * (1 << kHistogramShift);
+  noise_ = std::max(kMinNoise, noise_of(quantile));
 }
 
 void GradientMap::compute(const Picture& picture, const EdgeThresholds& thresholds) {

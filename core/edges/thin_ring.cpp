@@ -6,11 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/edges/subpixel.hpp"
+
 namespace ellipse {
 namespace {
 
 constexpr std::size_t kDirections = 8;  // over half a turn, see maxima_distances()
-constexpr double kLensBlur = 0.6;       // standard deviation [px], in focus
 constexpr double kWidest = 6.0;         // largest corrected gap [px]
 constexpr std::size_t kWidths = 31;     // in the table, from 0 to kWidest
 constexpr int kPhases = 8;              // sub-pixel positions of the bar to average over
@@ -25,7 +26,7 @@ Eigen::Vector2d direction(std::size_t i) {
 
 // Brightness of a bar, blurred by the lens, at a distance from its middle.
 double bar_at(double distance, double width) {
-  const double scale = 1.0 / (std::numbers::sqrt2 * kLensBlur);
+  const double scale = 1.0 / std::sqrt(2.0 * kLensVariance);
   return 0.5 *
          (std::erf((0.5 * width + distance) * scale) + std::erf((0.5 * width - distance) * scale));
 }

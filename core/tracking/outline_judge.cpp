@@ -11,11 +11,9 @@ namespace ellipse {
 namespace {
 
 constexpr double kJudge_s = 0.15;         // period of evaluation while certain
-constexpr double kSure = 3.0;             // min log odds of certainty
 constexpr double kLessMatched = 0.1;      // drop of the matched share that triggers an evaluation
 constexpr double kEnoughToJudge = 0.5;    // min visible share of the perimeter
 constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
-constexpr int kCoarsestScale = 4;         // of the detector
 
 // Crops a window to an ellipse and its surroundings.
 LumaWindow part_around(const LumaWindow& window, const Ellipse& seen) {
@@ -80,7 +78,7 @@ bool OutlineJudge::is_due(const Target& target) const {
 }
 
 bool OutlineJudge::is_sure() const {
-  return log_odds() >= kSure;
+  return log_odds() >= kCertainLogOdds;
 }
 
 void OutlineJudge::add(double log_odds) {

@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;                // unit of the frame clock
 constexpr double kDetectionPeriod_s = 8.0 * kFrame_s;  // period of detections while tracking
-constexpr int kCheckScale = 4;                 // frame scale of these while the target is certain
-constexpr double kDropLogOdds = -3.0;          // log odds below which the hypothesis is dropped
 constexpr double kMaxAbsenceToKeepId_s = 0.4;  // max absence after which a target keeps its id
 constexpr double kEnoughToLock = 0.45;         // min visible share of the perimeter to lock
 constexpr double kMinPredicted = 0.5;          // min visible share to report a prediction
@@ -112,7 +110,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (needs_detection(target)) target = look(frame, target);
-  if (judge_->log_odds() < kDropLogOdds) pad_tracker_->release();
+  if (judge_->log_odds() < -kCertainLogOdds) pad_tracker_->release();
 
   if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
   if (target) hypothesis_ = target->ellipse;
@@ -189,7 +187,7 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   since_detection_s_ = 0.0;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
     ScopedFrame reduced = frame;
-    reduced.finest_scale = std::max(frame.finest_scale, kCheckScale);
+    reduced.finest_scale = std::max(frame.finest_scale, kCoarsestScale);
     if (!is_rival(detect(reduced))) return followed;
   }
   const std::optional<Target> chosen = detect(frame);

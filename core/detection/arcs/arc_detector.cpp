@@ -14,13 +14,11 @@ namespace ellipse {
 namespace {
 
 constexpr int kScales[] = {2, 4, 1};  // in order of the search
-constexpr int kCoarsest = 4;          // scale at which an outline is judged
 constexpr int kMaxPairs = 50;         // tried at each scale
 constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
 constexpr Tolerance kSameOutline{2.0, 0.1};  // between a judged outline and its fit
 constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis above which half the size suffices
-constexpr double kCertainLogOdds = 3.0;      // log odds of a certain target
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -65,7 +63,7 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
   int scale = 1;
-  while (scale < kCoarsest && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
+  while (scale < kCoarsestScale && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
   GradientMap& map = map_at(scale);
   map.compute(reduced(picture, scale), {thresholds.edge_low, thresholds.edge_high});
   chains_.trace(map);

@@ -9,6 +9,7 @@
 
 #include "core/detection/contours/overlap.hpp"
 #include "core/detection/detection_trace.hpp"
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
@@ -16,7 +17,6 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kSmoothingPx = 1.0;
-constexpr double kNoiseQuantile = 0.3;
 constexpr int kNoiseRowStep = 6;  // samples every second pixel of every sixth row
 constexpr double kHighOverNoise = 5.0;
 constexpr double kLowOverHigh = 0.4;
@@ -49,8 +49,6 @@ int approximate_norm(int x, int y) {
   return larger + 3 * smaller / 8;
 }
 
-// Noise of the gradient, from a quantile low enough to exclude edges. The gradient magnitude of
-// noise is Rayleigh distributed with the quantile q at sigma sqrt(-2 ln(1 - q)) [Rosin1997].
 double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& histogram) {
   histogram.assign(kHistogramBins, 0);
   int samples = 0;
@@ -61,12 +59,7 @@ double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& hi
       ++histogram[std::min(approximate_norm(row_x[x], row_y[x]), kHistogramBins - 1)];
     }
   }
-  int quantile = 0;
-  int below = histogram[0];
-  while (below < kNoiseQuantile * samples && quantile < kHistogramBins - 1) {
-    below += histogram[++quantile];
-  }
-  return quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile));
+  return noise_of(static_cast<double>(noise_bin(histogram, samples)));
 }
 
 // The edge map and its gradient.

@@ -15,7 +15,6 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kMinSupport = 0.5;         // share of the perimeter with a gradient maximum
 constexpr std::size_t kSamples = 48;        // half of the detector's, since this runs in each frame
-constexpr double kThinRingPx = 6.0;         // max width of a ring that needs a blur correction
 constexpr double kBlurBiasShare = 0.2;      // sigma of the blur correction, share of it
 constexpr double kReachOfNextEdgePx = 2.0;  // blur of the ring's inner edge
 constexpr Tolerance kNear{1.0, 0.03};       // max distance from the predicted outline
@@ -51,13 +50,12 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
 std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
                                              const PadView& view,
                                              const PadModel& model,
-                                             double ring_px,
                                              double min_contrast) {
   const PadCircle& outer = model.circles.front();
   auto exact = on_maxima(luma, view, outer, min_contrast);
   const bool is_ring =
       model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
-  if (!exact || !is_ring || ring_px >= kThinRingPx) return exact;
+  if (!exact || !is_ring) return exact;
   const auto inner = on_maxima(luma, view, model.circles[1], min_contrast);
   if (!inner) return exact;
   const Ellipse blurred = exact->ellipse;
@@ -90,7 +88,7 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                     ring_px - kReachOfNextEdgePx,
                                     min_contrast);
   }
-  if (!exact) exact = on_outer_maxima(luma, view, model, ring_px, min_contrast);
+  if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast);
   if (!exact) return std::nullopt;
   return is_same(exact->ellipse, *outer, kNear) ? exact : std::nullopt;
 }

@@ -322,7 +322,7 @@ TEST(EdgeSearch, PlacesInsideThePictureOnly) {
   EdgeSearch search;
   for (const double dx : {-160.0, -90.0, 120.0, 200.0}) {
     const Ellipse e = translated(kPad, dx, 40.0);
-    search.place(model, image_from_pad(e), Picture(320, 240).view(), 96);
+    search.sample(model, image_from_pad(e), Picture(320, 240).view(), 96);
     EXPECT_FALSE(search.samples().empty()) << dx;
     for (const EdgeSample& sample : search.samples()) {
       EXPECT_GE(sample.view.point.minCoeff(), 2.99);
@@ -336,7 +336,7 @@ TEST(EdgeSearch, PlacesInsideThePictureOnly) {
 TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
   const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
   EdgeSearch search;
-  search.place(model, image_from_pad(kPad), Picture(320, 240).view(), 90);
+  search.sample(model, image_from_pad(kPad), Picture(320, 240).view(), 90);
   EXPECT_NEAR(static_cast<double>(search.samples().size()), 90.0, 14.0);
   std::vector<double> outer_angles;
   int inner = 0;
@@ -365,7 +365,7 @@ TEST(EdgeSearch, HoldsAsManyPlacesAsItTells) {
   const Ellipse large{1000.0, 1000.0, 900.0, 850.0, 0.2};
   PadModel model = ring_model();
   for (const double radius : {0.6, 0.4, 0.2}) model.circles.push_back({radius, true, 100.0});
-  search.place(model, image_from_pad(large), Picture(2000, 2000).view(), 100'000);
+  search.sample(model, image_from_pad(large), Picture(2000, 2000).view(), 100'000);
   EXPECT_EQ(search.samples().size(), static_cast<std::size_t>(EdgeSearch::kMaxSamples));
 }
 
@@ -376,8 +376,8 @@ TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
     for (const Vector2d& shift : {Vector2d(2.0, 0.0), Vector2d(-2.0, 0.0), Vector2d(1.4, -1.4)}) {
       const Ellipse expected = translated(kPad, shift.x(), shift.y());
       EdgeSearch search;
-      search.place(model, image_from_pad(expected), picture.view(), 64);
-      search.look(picture.view(), 1.0, 5.0);
+      search.sample(model, image_from_pad(expected), picture.view(), 64);
+      search.search(picture.view(), 1.0, 5.0);
       for (const EdgeSample& sample : search.samples()) {
         ASSERT_TRUE(sample.is_visible);
         ASSERT_EQ(sample.count, 1);
@@ -395,8 +395,8 @@ TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
   PadModel model = disc_model();
   EdgeSearch search;
   const auto met = [&] {
-    search.place(model, image_from_pad(kPad), picture.view(), 64);
-    search.look(picture.view(), 1.0, 6.0);
+    search.sample(model, image_from_pad(kPad), picture.view(), 64);
+    search.search(picture.view(), 1.0, 6.0);
     return std::count_if(search.samples().begin(),
                          search.samples().end(),
                          [](const EdgeSample& sample) { return sample.count > 0; });
@@ -413,10 +413,10 @@ TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
   faint.pad.paint_level = faint.ground.level - 20.0;
   const Picture picture = rendered(faint, kPad);
   EdgeSearch search;
-  search.place(disc_model(), image_from_pad(kPad), picture.view(), 64);
-  search.look(picture.view(), 1.0, 6.0);
+  search.sample(disc_model(), image_from_pad(kPad), picture.view(), 64);
+  search.search(picture.view(), 1.0, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 0);
-  search.look(picture.view(), 0.2, 6.0);
+  search.search(picture.view(), 0.2, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 1);
 }
 
@@ -424,9 +424,9 @@ TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
   const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
   const Ellipse expected = translated(kPad, 7.0, 0.0);
   EdgeSearch search;
-  search.place(disc_model(), image_from_pad(expected), picture.view(), 64);
+  search.sample(disc_model(), image_from_pad(expected), picture.view(), 64);
   const auto met_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
-    search.look(picture.view(), 1.0, 3.0, &covariance, max_px);
+    search.search(picture.view(), 1.0, 3.0, &covariance, max_px);
     int met = 0;
     for (const EdgeSample& sample : search.samples()) {
       met += std::abs(sample.view.normal.x()) > 0.8 && sample.count > 0 ? 1 : 0;
@@ -458,8 +458,8 @@ TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
   model.circles.clear();
   model.lines.push_back({{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, 10.0});
   EdgeSearch search;
-  search.place(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view(), 5);
-  search.look(picture.view(), 1.0, 40.0);
+  search.sample(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view(), 5);
+  search.search(picture.view(), 1.0, 40.0);
   ASSERT_FALSE(search.samples().empty());
   for (const EdgeSample& sample : search.samples()) {
     ASSERT_EQ(sample.count, 3);
@@ -482,8 +482,8 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
   for (int i = 0; i < 200; ++i) {
     const double y = 11'970.0 + 0.1 * i;
     EdgeSearch search;
-    search.place(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view(), 9);
-    search.look(picture.view(), 1.0, 20.0 + 0.2 * i);
+    search.sample(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view(), 9);
+    search.search(picture.view(), 1.0, 20.0 + 0.2 * i);
     for (const EdgeSample& sample : search.samples()) {
       if (sample.count == 0) continue;
       ++met;
@@ -497,8 +497,8 @@ TEST(EdgeSearch, FindsNoPlaceInEmptyAndTinyPictures) {
   EdgeSearch search;
   for (const int size : {0, 1, 2, 6}) {
     const Picture picture(size, size, 90);
-    search.place(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view(), 48);
-    search.look(picture.view(), 1.0, 4.0);
+    search.sample(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view(), 48);
+    search.search(picture.view(), 1.0, 4.0);
     EXPECT_TRUE(search.samples().empty()) << size;
     EXPECT_EQ(search.visible_fraction(), 0.0) << size;
   }
@@ -516,8 +516,8 @@ HomographyPrior weak_prior() {
 struct Looked {
   explicit Looked(const HomographyChange& off, double reach_px = 10.0)
       : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
-    search.place(ring_model(), start, picture.view(), 96);
-    search.look(picture.view(), 1.0, reach_px);
+    search.sample(ring_model(), start, picture.view(), 96);
+    search.search(picture.view(), 1.0, reach_px);
   }
   [[nodiscard]] double error_px(const HomographyChange& change) const {
     return max_difference_px(project_circle(moved(start, change), 1.0).value(), kPad);
@@ -623,8 +623,8 @@ TEST(Support, TellsTheCircleThatIsMissing) {
   PadModel model = ring_model();
   model.circles.push_back({0.4, true, 145.0});
   EdgeSearch search;
-  search.place(model, image_from_pad(kPad), picture.view(), 96);
-  search.look(picture.view(), 1.0, 4.0);
+  search.sample(model, image_from_pad(kPad), picture.view(), 96);
+  search.search(picture.view(), 1.0, 4.0);
   const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
   EXPECT_EQ(support.weakest, 0.0);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
@@ -637,8 +637,8 @@ TEST(Support, TellsTheLight) {
     scene.sensor.gain = gain;
     const Picture picture = rendered(scene, kPad);
     EdgeSearch search;
-    search.place(model, image_from_pad(kPad), picture.view(), 64);
-    search.look(picture.view(), gain, 4.0);
+    search.sample(model, image_from_pad(kPad), picture.view(), 64);
+    search.search(picture.view(), gain, 4.0);
     const HomographySupport support =
         support_of(search.samples(), HomographyChange::Zero(), 1.5, 2);
     // Circles are learned from levels at larger distances than those that a sample compares.
