@@ -34,6 +34,7 @@ void LineLearner::reserve(PadModel& model) {
 // Pixels outside the image are 0, all others at least 1. Interpolates positions linearly over
 // kStraightPixels.
 void LineLearner::take(const ImageView& luma, const PadView& view) {
+  static_assert(kSize % kStraightPixels == 0);
   constexpr float kBorder = 1.01F;  // the .01 covers rounding
   const float right = static_cast<float>(luma.width) - kBorder;
   const float bottom = static_cast<float>(luma.height) - kBorder;
