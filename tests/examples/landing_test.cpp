@@ -186,6 +186,7 @@ class Hover {
       seen.time_s = frame_ / 30.0;
       seen.own = own_;
       if (is_visible) seen.pad = aside_ - own_.position;
+      seen.error = error_;
       seen.visible_fraction = visible_fraction;
       last_ = controller_->update(seen.time_s, own_, seen);
       own_.velocity = last_.velocity;
@@ -193,8 +194,11 @@ class Hover {
     }
   }
 
-  /// From now on the pad is seen so far from where it is.
-  void see_aside(const Vector3d& by) { aside_ = by; }
+  /// From now on the pad is seen this far from its position, with this stated error [m].
+  void see_aside(const Vector3d& by, double error) {
+    aside_ = by;
+    error_ = error;
+  }
 
   [[nodiscard]] Phase phase() const { return controller_->phase(); }
   [[nodiscard]] int climbs() const { return controller_->climbs(); }
@@ -206,6 +210,7 @@ class Hover {
   std::optional<Controller> controller_;
   Command last_;
   Vector3d aside_ = Vector3d::Zero();
+  double error_ = 0.0;
   int frame_ = 0;
 };
 
@@ -232,21 +237,20 @@ TEST(Controller, DoesNotBeginWithAGlimpse) {
   EXPECT_NE(hover.phase(), Phase::kSearch);
 }
 
-// How far it flies aside by a place that is a decimetre off, with so much of the outline in view.
-double led_astray(double visible_fraction) {
+// How far it flies aside for a position that is off by a decimetre and states this error [m].
+double led_astray(double error) {
   Hover hover({0.2, 0.0, 8.0});
   for (int i = 0; i < 100 && hover.position().z() > 1.5; ++i) hover.fly_for(0.1, true);
   EXPECT_EQ(hover.phase(), Phase::kDescend);
   const double before = hover.position().x();
-  hover.see_aside({0.1, 0.0, 0.0});
-  hover.fly_for(0.3, true, visible_fraction);
+  hover.see_aside({0.1, 0.0, 0.0}, error);
+  hover.fly_for(0.3, true);
   return hover.position().x() - before;
 }
 
-TEST(Controller, BelievesLessWhatNoOutlineTells) {
-  EXPECT_GT(led_astray(1.0), 0.02);
-  EXPECT_NEAR(led_astray(0.1), led_astray(1.0), 1e-9);
-  EXPECT_LT(led_astray(0.0), 0.5 * led_astray(1.0));
+TEST(Controller, WeighsAPositionByItsStatedError) {
+  EXPECT_GT(led_astray(0.0), 0.02);
+  EXPECT_LT(led_astray(0.1), 0.5 * led_astray(0.0));
 }
 
 TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {
