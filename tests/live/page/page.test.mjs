@@ -8,7 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { setTimeout } from "node:timers/promises";
-import { kMostMs, openPage, shownBy, startBrowser, startProgram } from "./program.mjs";
+import { kMostMs, openPage, shownBy, startBrowser, startProgram, stopPrograms } from "./program.mjs";
 import "./guide.test.mjs";
 import "./layout.test.mjs";
 import { largestDistance } from "./ring.mjs";
@@ -19,6 +19,7 @@ let browser;
 before(async () => { browser = await startBrowser(); });
 after(async () => {
   await browser.close();
+  await stopPrograms();
   rmSync(process.env.XDG_DATA_HOME, { recursive: true });
 });
 

@@ -9,6 +9,14 @@ import { chromium } from "playwright-core";
 export const kMostMs = 120_000;
 const kTooOften = 429;
 
+/** Started, and not yet ended. */
+const running = new Set();
+
+/** Stops what failed tests have left running: the process of the tests would wait for it. */
+export async function stopPrograms() {
+  await Promise.all([...running].map((program) => program.stop()));
+}
+
 /**
  * Starts the program at a free port. The kernel ends it together with this process: it is not left
  * behind where the tests are killed.
@@ -51,7 +59,10 @@ export async function startProgram(...args) {
     child.kill("SIGINT");
     await once(child, "exit");
   };
-  return { url, ask, stop };
+  const program = { url, ask, stop };
+  running.add(program);
+  child.once("exit", () => running.delete(program));
+  return program;
 }
 
 /** A browser without a screen. */
