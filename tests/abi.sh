@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Compares the binary interface of libgstellipse-1.0 with that of an earlier version: a program that
-# was built against it must run with this one. Prints what changed.
+# Checks the binary interface of libgstellipse-1.0 against an earlier version: a program built
+# against that version must run with this one. Prints the changes.
 #   abi.sh SOURCE BASELINE           fails if a change is incompatible
 #   abi.sh --write SOURCE BASELINE   writes the baseline, as for a release
 set -euo pipefail
@@ -19,7 +19,7 @@ fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Built here, because types are compared by debug information, which a release has not.
+# Builds the library with debug information, which abidiff needs and a release lacks.
 echo '{ global: gst_*; local: *; };' > "$work/symbols.map"
 needs=(gstreamer-1.0 gstreamer-video-1.0 eigen3)
 c++ -std=c++20 -g -O1 -fPIC -shared -I"$source" "$source"/gst/ellipse/*.cpp \
@@ -32,13 +32,13 @@ if $is_writing; then
 fi
 
 gunzip -c "$baseline" > "$work/old.abi"
-# GStreamer's own structures: the baseline may be from an older one.
+# GStreamer's own structures may differ: the baseline may come from an older GStreamer.
 printf '[suppress_type]\n  name_regexp = ^_?GstMeta(Info)?$\n' > "$work/suppressions"
 status=0
 abidiff --suppressions "$work/suppressions" "$work/old.abi" "$work/new.so" > "$work/report" || status=$?
 cat "$work/report"
 [ $((status & 3)) -eq 0 ] || { echo "abi.sh: abidiff failed" >&2; exit 1; }
-# abidiff calls only lost symbols incompatible. The library allocates its structures: they may grow at
-# the end.
+# abidiff reports only removed symbols as incompatible. Structures may grow at the end, because the
+# library allocates them.
 ! grep -E '[1-9][0-9]* Removed|(data member|enumerator) (deletion|change)s?( \(.* filtered\))?:' "$work/report" ||
   { echo "abi.sh: the change is incompatible" >&2; exit 1; }

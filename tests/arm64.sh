@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The project on arm64, cross-built on x86-64 Debian and run under qemu-user. tests/machines.sh runs it
-# in a system of its own, because the libraries of arm64 replace some of the host's packages.
+# Cross-builds the project for arm64 on x86-64 Debian and runs it under qemu-user. tests/machines.sh
+# runs this script in a chroot, because the arm64 libraries replace some of the host's packages.
 #   tests/arm64.sh build          installs what it takes, and builds into build-arm64
 #   tests/arm64.sh test SUITE...  runs suites of meson
 #   tests/arm64.sh neon           fails if a hot loop has no NEON instruction
@@ -32,10 +32,10 @@ build() {
   ninja -C "$folder"
 }
 
-# Loops that are written for vectors, by the function into which the compiler inlines them.
+# Vectorised loops, by the function that the compiler inlines them into.
 hot_loops=(
   'filter_columns(' 'filter_rows(' 'mark_maxima(' 'gradients_along(' 'Scaler::reduce(' 'distort_baseline('
-  'add_line_'  # two versions, of which one may jump to the other
+  'add_line_'  # two versions, one of which may jump to the other
 )
 
 neon() {
@@ -53,11 +53,11 @@ neon() {
   return $status
 }
 
-# What frames of one size cost, in millions of instructions: from 40 frames, less the start.
+# Cost per frame in millions of instructions: 40 frames minus the start.
 cost_of() {
   local counts=()
   for frames in 0 40; do
-    # One line of the log for every instruction.
+    # The log has one line per instruction.
     counts+=("$($qemu -singlestep -d exec,nochain -D /dev/stdout "$folder/tests/frame-cost" \
       "$1" "$2" "$3" $frames | wc -l)")
   done

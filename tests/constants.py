@@ -3,13 +3,13 @@
 """The named numeric constants of core/, without core/scene/.
 
     tests/constants.py check TABLE
-        Fails unless the table in a Markdown file lists them all, with their values.
+        Fails unless the table in a Markdown file lists all of them with their values.
     tests/constants.py vary [--names REGEX] [--methods METHOD,...] [--out FILE] DATASET...
-        Builds a copy in build-sensitivity in which constants come from the environment, changes one
-        at a time by 30 % (a count by at least 1), and judges data sets with ellipse-evaluate. Prints
+        Builds a copy in build-sensitivity that reads constants from the environment, changes one at
+        a time by 30 % (a count by at least 1), and judges data sets with ellipse-evaluate. Prints
         rows of that table: file, constant, value, and the largest change of F1 (or of the share of
-        frames without a false target) at -30 % and at +30 %. Constants that array sizes, templates
-        and other constant expressions need are not varied.
+        frames without a false target) at -30 % and at +30 %. Constants in array sizes, templates and
+        other constant expressions are not varied.
 """
 
 import argparse
@@ -40,7 +40,7 @@ KNOB = """#pragma once
 #include <cstring>
 #include <type_traits>
 namespace ellipse {
-// The value, changed by a factor if the environment has ELLIPSE_KNOB=NAME=FACTOR.
+// The value, multiplied by FACTOR if the environment has ELLIPSE_KNOB=NAME=FACTOR.
 template <class T>
 T knob(const char* name, T value) {
   const char* setting = std::getenv("ELLIPSE_KNOB");
@@ -85,7 +85,7 @@ def find_constants(files):
 
 
 def transformed(file, constants):
-    """The text of a file whose constants that are not fixed are read at the start."""
+    """The text of a file in which varied constants are read from the environment."""
     varied = {c.name for c in constants if c.file == file and not c.is_fixed}
     if not varied:
         return (PROJECT / file).read_text()
@@ -111,7 +111,7 @@ def write(files, constants):
 
 
 def fix_what_fails(output, constants):
-    """Fixes the constants on lines that do not compile. @return how many."""
+    """Fixes the constants on lines that do not compile. @return their number."""
     count = 0
     for file, line in set(re.findall(r"(core/[\w/]+\.[ch]pp):(\d+):\d+: error", output)):
         text = (SOURCE / file).read_text().split("\n")[int(line) - 1]
@@ -126,7 +126,7 @@ def fix_what_fails(output, constants):
 
 
 def fix_as_before(constants):
-    """Fixes what an earlier copy had to leave as it is, which saves the attempts to compile it."""
+    """Fixes the constants that an earlier copy left unvaried, which saves failed builds."""
     for constant in constants:
         copy = SOURCE / constant.file
         if copy.exists():

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints what failed in the last `meson test` of a build folder: failures.py BUILD_FOLDER.
+"""Prints the failures of the last `meson test` of a build folder: failures.py BUILD_FOLDER.
 
-Each failed test with its messages, from what gtest wrote; of a suite that died before it wrote, or
-that is none of gtest's, the test it was in and its last lines.
+Lists each failed test with the messages in gtest's report. For a suite without a report, because it
+crashed or does not use gtest, prints the test that was running and the last lines of output.
 """
 import json
 import pathlib
@@ -24,7 +24,7 @@ def failed_cases(report):
 
 
 def last_words(suite):
-    """What a suite said before it ended."""
+    """The failed and unfinished tests in a suite's output, and its last lines."""
     began = re.findall(r"\[ RUN      \] (\S+)", suite.get("stdout", ""))
     ended = re.findall(r"\[ +(OK|FAILED|SKIPPED) +\] (\S+) \(", suite.get("stdout", ""))
     yield from (f"failed: {case}" for verdict, case in ended if verdict == "FAILED")

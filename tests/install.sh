@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs a build into a folder, and does what the installation says.
+# Installs a build into a folder and follows the installation's instructions.
 #   install.sh SOURCE BUILD
 set -euo pipefail
 source=$1
@@ -12,7 +12,7 @@ fail() {
   exit 1
 }
 
-# What is printed for one prefix, with one variable that is searched in /usr.
+# The output for one prefix and one variable whose default search path is in /usr.
 paths_for() {
   MESON_INSTALL_PREFIX=$1 "$source/gst/print_paths.sh" "$1/lib" \
     GST_PLUGIN_PATH "$1/lib/gstreamer-1.0" /usr/lib/gstreamer-1.0
@@ -24,12 +24,12 @@ paths_for /opt/a | grep -qF 'export LD_LIBRARY_PATH=/opt/a/lib' || fail "does no
 [ -z "$(GST_PLUGIN_PATH=/x:/opt/a/lib/gstreamer-1.0 LD_LIBRARY_PATH=/opt/a/lib paths_for /opt/a)" ] ||
   fail "names what is set already"
 
-# What the tests themselves have set would hide a fault.
+# The tests' own environment would hide an error.
 unset GST_PLUGIN_PATH GST_PRESET_PATH GI_TYPELIB_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH
 export GST_REGISTRY=$work/registry.bin
 printed=$(DESTDIR=$work/root meson install --no-rebuild -C "$build")
 [ -d "$work/root" ] || fail "DESTDIR has nothing in it"
-# For the folder into which DESTDIR has put it.
+# Prepends DESTDIR, where the files are.
 lines=$(grep '^  export ' <<< "$printed" | sed "s|=/|=$work/root/|") || true
 eval "$lines"
 case "$printed" in
@@ -54,7 +54,7 @@ if [ -n "${PKG_CONFIG_PATH:-}" ]; then
     fail "a .pc file wants OpenCV"
 fi
 
-# What reads metadata loads neither OpenCV nor the detector.
+# Programs that read metadata load neither OpenCV nor the detector.
 metadata=$(find "$work/root" -name libgstellipse-1.0.so)
 ldd "$metadata" > "$work/loaded" || fail "libgstellipse-1.0 is not installed"
 ! grep -E 'opencv|libellipse|tbb|lapack' "$work/loaded" || fail "libgstellipse-1.0 loads more than it needs"
@@ -62,7 +62,7 @@ nm -DC --defined-only "$metadata" > "$work/defined"
 grep -q gst_buffer_get_ellipse_meta "$work/defined" || fail "libgstellipse-1.0 has no metadata"
 ! grep 'ellipse::' "$work/defined" || fail "libgstellipse-1.0 exports what libellipse-1.0 has"
 
-# The headers include nothing that is not installed, and nothing of the renderer of scenes.
+# The headers include installed headers only, and nothing of the scene renderer.
 headers=$(find "$work/root" -type d -path '*/include/ellipse-1.0')
 (cd "$headers" && find . -name '*.hpp' -printf '#include "%P"\n') > "$work/all.cpp"
 c++ -std=c++20 -fsyntax-only -I"$headers" $(pkg-config --cflags eigen3) "$work/all.cpp" ||

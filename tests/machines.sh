@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: MIT
 # Builds and tests on bare machines:
 #   tests/machines.sh [--into FOLDER] [bookworm|trixie|arm64]...   all three without a name
-# bookworm, trixie: debootstrap; both commands of the README; the packages, built, and tried in a
-# second bare system. arm64: cross-built on bookworm; the suites core and gst under qemu-user; the
-# hot loops' instructions; what a frame costs.
-# Needs root and debootstrap; 6 GB and half an hour for each. Each machine is a chroot in namespaces
-# of its own, without /dev/pts. FOLDER keeps the machines and their logs; what is there already is
-# used again. Without it they go to a temporary folder, and stay only if something failed.
-# Closes with a table and a line "N passed, N failed, N skipped".
+# bookworm, trixie: debootstrap; both commands of the README; builds the packages and tries them in
+# a second bare system. arm64: cross-build on bookworm; the suites core and gst under qemu-user; the
+# instructions in hot loops; the cost per frame.
+# Needs root and debootstrap, 6 GB and half an hour for each machine. Each machine is a chroot in
+# its own namespaces, without /dev/pts. FOLDER keeps the machines and their logs, and a later run
+# reuses them. Without it they are in a temporary folder, which is kept only after a failure.
+# Ends with a table and a line "N passed, N failed, N skipped".
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 folder=
@@ -20,12 +20,12 @@ usage() {
   exit 2
 }
 
-# inside MACHINE COMMAND...: runs a command there, as root, in the copy of the project.
+# inside MACHINE COMMAND...: runs a command as root in the machine's copy of the project.
 inside() {
   root=$folder/$1
   shift
   local variables=(HOME=/root TERM=dumb LANG=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
-  # The authorities that npm trusts on this machine, beside those it has.
+  # Adds the certificate authorities that npm trusts on this machine.
   if [ -n "${NODE_EXTRA_CA_CERTS:-}" ]; then
     cp "$NODE_EXTRA_CA_CERTS" "$root/root/authorities.pem"
     variables+=(NODE_EXTRA_CA_CERTS=/root/authorities.pem)
@@ -36,13 +36,13 @@ inside() {
   ' - "${#variables[@]}" "${variables[@]}" "$@"
 }
 
-# step MACHINE NAME COMMAND...: a row of the table.
+# step MACHINE NAME COMMAND...: runs a command and adds a row to the table.
 step() {
   local machine=$1 name=$2 begin=$SECONDS result=passed
   shift 2
   local log=$folder/$machine-$name.log
   echo "machines.sh: $machine: $name" >&2
-  # Not in a condition: there set -e is off.
+  # Not in a condition: set -e would have no effect there.
   set +e
   (set -e; "$@") > "$log" 2>&1
   local status=$?

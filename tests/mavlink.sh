@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Runs the tests of examples/mavlink with the packages of its lock file, in a folder of its own.
+# Runs the tests of examples/mavlink in a folder with the packages of its lock file.
 #   mavlink.sh SOURCE FOLDER
 set -euo pipefail
 skip() {
@@ -11,7 +11,7 @@ command -v npm > /dev/null || skip "there is no npm"
 mkdir -p "$2"
 cp "$1"/*.js "$1"/*.json "$2"
 cd "$2"
-# What is there already is not asked of the network again.
+# Installed packages are not downloaded again.
 if ! cmp -s package-lock.json node_modules/.lock; then
   npm ci --no-audit --no-fund --loglevel=error --fetch-retries=5 > npm.log 2>&1 || skip "npm ci failed, see $2/npm.log"
   cp package-lock.json node_modules/.lock

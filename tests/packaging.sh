@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Compares what meson installs with what the Debian packages contain.
+# Compares the files that meson installs with those in the Debian packages.
 #   packaging.sh SOURCE BUILD VERSION
 set -euo pipefail
 debian=$1/examples/packaging/debian
@@ -14,12 +14,12 @@ fault() {
   faults=$((faults + 1))
 }
 
-# patterns FILE...: the files and folders that they list, without comments.
+# patterns FILE...: the listed files and folders, without comments.
 patterns() {
   sed 's/#.*//' "$@" | grep -v '^ *$'
 }
 
-# Installs as the packages are, under /usr.
+# Installs under /usr, as the packages do.
 DESTDIR=$work/root meson install --no-rebuild --quiet -C "$build"
 prefix=$(dirname "$(dirname "$(find "$work/root" -name ellipse-live -path '*/bin/*')")")
 mv "$prefix" "$work/usr"
@@ -29,7 +29,7 @@ if ! compgen -G 'usr/lib/*/libgstellipse-1.0.so' > /dev/null; then
   exit 77
 fi
 
-# Every file is in exactly one package, or said not to be in any.
+# Every file is in exactly one package or listed in not-installed.
 for list in "$debian"/*.install; do
   for pattern in $(patterns "$list"); do
     find $pattern ! -type d > matched 2> /dev/null || true

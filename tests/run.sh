@@ -6,8 +6,8 @@
 #   ./tests/run.sh --sanitize=thread   pipelines under ThreadSanitizer
 #   ./tests/run.sh --coverage          all, and the lines of core/ and gst/ that they reach: 90 %
 #   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin; lint; spelling
-# Each of them takes --werror in front: a warning of the compiler is an error then, as in .ci/run.
-# Closes with what failed, and a line "N passed, N failed, N skipped".
+# Each accepts --werror in front, which turns compiler warnings into errors, as .ci/run does.
+# Ends with the failures and a line "N passed, N failed, N skipped".
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 least_coverage=90
@@ -17,8 +17,8 @@ skipped=0
 failures=()
 werror=false
 
-# build FOLDER OPTION...: sets up, and builds. A folder that is set up already is set up again, because
-# packages may have been installed since: demo.sh needs fewer.
+# build FOLDER OPTION...: configures and builds. Reconfigures an existing folder, because packages
+# may have been installed since: demo.sh needs fewer.
 build() {
   local folder="$project/$1"
   shift
@@ -30,13 +30,13 @@ build() {
   ninja -C "$folder"
 }
 
-# Adds up one attribute of what each suite in a folder wrote.
+# Sums one attribute over the reports of all suites in a folder.
 count() {
   cat "$1"/*.xml 2> /dev/null | grep -E '^<testsuites ' | grep -oE " $2=\"[0-9]+\"" |
     grep -oE '[0-9]+' | awk '{ sum += $1 } END { print sum + 0 }' || true
 }
 
-# run FOLDER ARGUMENT...: runs tests, and counts them.
+# run FOLDER ARGUMENT...: runs and counts tests.
 run() {
   local folder="$project/$1"
   shift
@@ -44,10 +44,10 @@ run() {
   rm -f "$folder"/*.xml
   meson test -C "$folder" --print-errorlogs "$@" || status=$?
   local total bad idle
-  total=$(($(count "$folder" tests) - $(count "$folder" disabled)))  # those that others run
+  total=$(($(count "$folder" tests) - $(count "$folder" disabled)))  # disabled: run by others
   bad=$(($(count "$folder" failures) + $(count "$folder" errors)))
   idle=$(cat "$folder"/*.xml 2> /dev/null | grep -c 'result="skipped"' || true)
-  # A suite that died wrote nothing: that is a failure too.
+  # A suite that crashed has no report; it counts as a failure.
   if [ "$status" -ne 0 ]; then
     failures+=("$("$project/tests/failures.py" "$folder")")
     if [ "$bad" -eq 0 ]; then bad=1; fi
@@ -59,7 +59,7 @@ run() {
   skipped=$((skipped + idle))
 }
 
-# check COMMAND...: one that counts as a test.
+# check COMMAND...: runs a command that counts as one test.
 check() {
   echo "run.sh: $*"
   if "$@"; then
@@ -84,14 +84,14 @@ case "${1:-}" in
     export ASAN_OPTIONS=detect_leaks=1:fast_unwind_on_malloc=0
     export LSAN_OPTIONS=suppressions="$project/tests/lsan.supp":print_suppressions=0
     export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-    # With them gcc warns of values that it cannot follow, inside the standard library.
+    # The sanitizers cause false gcc warnings inside the standard library.
     build build-sanitize -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
       -Dcpp_args=-Wno-maybe-uninitialized
     run build-sanitize --timeout-multiplier 3 --no-suite long
     ;;
   --sanitize=thread)
-    # GLib, GStreamer and OpenCV are not instrumented: what they do by themselves is not judged, and
-    # only malloc tells that a piece of memory has a new life.
+    # GLib, GStreamer and OpenCV are not instrumented: their own accesses are ignored.
+    # ThreadSanitizer recognises reused memory through malloc only.
     export G_SLICE=always-malloc
     export TSAN_OPTIONS=ignore_noninstrumented_modules=1:suppressions="$project/tests/tsan.supp"
     build build-thread -Dbuildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
@@ -99,8 +99,8 @@ case "${1:-}" in
     run build-thread --timeout-multiplier 3 gst
     ;;
   --coverage)
-    # Counting lines makes gcc warn of what is uninitialised in Eigen. Threads that count together
-    # would leave counts below 0.
+    # Coverage makes gcc warn of uninitialised values in Eigen. Without atomic updates, concurrent
+    # threads would leave negative counts.
     build build-coverage -Dbuildtype=debug -Doptimization=1 -Db_coverage=true -Dwerror=false \
       -Dexamples=disabled -Dcpp_args=-fprofile-update=atomic
     find "$project/build-coverage" -name '*.gcda' -delete
@@ -110,7 +110,7 @@ case "${1:-}" in
     ;;
   --long)
     check build build
-    export CC=clang CXX=clang++  # of a folder that is not set up yet
+    export CC=clang CXX=clang++  # for the first configuration of the folder
     check build build-clang
     unset CC CXX
     run build-clang core gst
@@ -125,7 +125,7 @@ case "${1:-}" in
     exit 2
     ;;
 esac
-# Once more at the end: the logs above are long, and are cut.
+# Repeated at the end, because the logs above are long and may be truncated.
 [ ${#failures[@]} -eq 0 ] || printf '%s\n' "${failures[@]}"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -10,7 +10,7 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
-// glibc's own functions under the names that remain theirs.
+// glibc also exports its functions under these names, which this file does not replace.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 void* __libc_malloc(std::size_t size);
@@ -23,7 +23,7 @@ void __libc_free(void* block);
 
 namespace {
 
-// No constructor runs for these: they are there before the first allocation of the program.
+// Constant-initialised: they must be valid before the program's first allocation.
 constinit std::atomic<bool> is_counting{false};
 constinit std::atomic<std::int64_t> allocations{0};
 constinit std::atomic<std::int64_t> bytes_in_use{0};
@@ -48,7 +48,7 @@ void discount(void* block) {
 
 }  // namespace
 
-// operator new of libstdc++ and g_malloc of GLib call these.
+// Replacements of glibc's functions; operator new of libstdc++ and g_malloc of GLib call them.
 extern "C" {
 
 void* malloc(std::size_t size) noexcept {
@@ -120,7 +120,7 @@ std::int64_t HeapMeter::peak_bytes() const {
 }
 
 bool counts_allocations() {
-  // Volatile: the compiler may leave out a pair of malloc and free that nobody sees.
+  // Volatile: the compiler may otherwise remove an unused pair of malloc and free.
   const bool counts_malloc = is_counted([](std::size_t bytes) {
     void* volatile block = std::malloc(bytes);
     std::free(block);

@@ -4,11 +4,11 @@
 
 namespace bench {
 
-/// Counts what is asked of the heap while it lives, by all threads and all libraries: a program
-/// that contains allocations.cpp has its malloc, calloc, realloc, free, ... in place of glibc's.
-/// One at a time.
+/// Counts heap allocations of all threads and libraries while it exists. A program that links
+/// allocations.cpp uses its malloc, calloc, realloc, free, ... in place of glibc's. One meter at a
+/// time.
 ///
-/// Memory that was there before and is freed meanwhile lowers the bytes in use.
+/// Freeing a block that was allocated before the meter started lowers the bytes in use.
 class HeapMeter {
  public:
   HeapMeter();
@@ -16,14 +16,14 @@ class HeapMeter {
   HeapMeter(const HeapMeter&) = delete;
   HeapMeter& operator=(const HeapMeter&) = delete;
 
-  /// Since the start. A realloc counts as one.
+  /// Allocations since the start. A realloc counts as one.
   [[nodiscard]] std::int64_t allocations() const;
-  /// The most bytes in use at a time beyond those at the start; as large as the heap made them.
+  /// Maximum of the bytes in use above those at the start, by the usable size of each block.
   [[nodiscard]] std::int64_t peak_bytes() const;
 };
 
-/// Whether allocations of this program and of its shared libraries reach the meter. A program that
-/// prints their number first makes sure of it.
+/// Whether the meter sees the allocations of this program and of its shared libraries. A program
+/// checks this before it prints their number.
 [[nodiscard]] bool counts_allocations();
 
 }  // namespace bench

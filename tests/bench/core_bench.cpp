@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Every stage of the detector and the tracker beside what any method on contours pays for its edges
-// and contours alone, and what each asks of the heap.
+// Compares every stage of the detector and the tracker with the edge and contour extraction that
+// any contour-based method needs, and counts its heap allocations.
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -46,7 +46,7 @@ const PackedFormat kPackedFormats[] = {
     {"BGRx", {ellipse::PixelLayout::Kind::kRgb, 4, 0, 2, 1, 0}},
 };
 
-// Each byte of a pixel has its luma.
+// Every byte of a pixel holds its luma.
 std::vector<cv::Mat> packed(const Frames& frames, int bytes_per_pixel) {
   std::vector<cv::Mat> pictures;
   for (const Frame& frame : frames) {
@@ -91,7 +91,7 @@ void render(State& state, const Frames& frames) {
   });
 }
 
-// Stages that work on one contour: on the target's own in each frame.
+// Stages that process one contour: the target's, in each frame.
 
 struct TargetEdge {
   std::vector<cv::Point> contour;
@@ -150,7 +150,8 @@ double support_perimeter(const TargetEdge& edge) {
       .ellipse_overlap();
 }
 
-// Among as many as a detector returns at most, in pairs around as many centres.
+// Selects from the maximum number of detections that a detector returns, as pairs around 128
+// centres.
 void select_among_many(State& state, const Frames& frames) {
   constexpr int kPairs = 128;
   std::vector<ellipse::Detection> detections;
@@ -163,7 +164,7 @@ void select_among_many(State& state, const Frames& frames) {
   });
 }
 
-// The whole
+// Whole detectors and trackers
 
 void detect_contours(State& state, const Frames& frames) {
   bench::FoundShare found;
@@ -213,7 +214,7 @@ void add_stages() {
   bench::add_benchmark("render", render);
 }
 
-// A kind of detector or tracking that the settings know is measured without being named here.
+// Measures every detector and tracking mode in the settings' tables; none is named here.
 void add_trackers() {
   bench::add_benchmark("detect/contours", detect_contours);
   for (const char* detector : ellipse::detector_nicks()) {
@@ -228,7 +229,7 @@ void add_trackers() {
   }
 }
 
-// What the target's pose costs, and a lens that is distorted: so weakly that it shows the same
+// Cost of the target's pose and of a distorted lens. The distortion is weak enough for the same
 // frames.
 void add_cameras() {
   ellipse::TrackerSettings settings;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Whole elements from buffer to buffer, beside edges and contours alone; overlays in a small frame
-// and in a large one. The rows "identity" and "ellipseoverlay/none" are what the pads and the
-// harness around an element cost.
+// Measures whole elements from buffer to buffer against edge and contour extraction alone, and
+// overlays on a small and a large frame. The rows "identity" and "ellipseoverlay/none" are the cost
+// of the pads and the harness.
 #include <gst/check/gstharness.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ Owned<GstHarness> harness_of(const std::string& element, const std::string& caps
   return harness;
 }
 
-// Each frame travels in a new buffer around memory that is there already, as from a camera's pool.
+// Every frame is a new buffer around existing memory, as from a camera's pool.
 void run_element(State& state,
                  const Frames& frames,
                  const std::string& element,
@@ -92,7 +92,7 @@ void add_elements() {
   }
 }
 
-// One buffer after another through an element, a copy of each around the same memory.
+// Pushes copies of buffers, which share their memory, through an element.
 class BufferLoop {
  public:
   BufferLoop(const std::string& element, const std::string& caps)
@@ -111,7 +111,7 @@ class BufferLoop {
   Owned<GstHarness> harness_;
 };
 
-// A tracker on the same buffers without an element around it.
+// Runs a tracker on the same buffers without an element.
 class CoreLoop {
  public:
   explicit CoreLoop(const GstVideoInfo& info) : info_(info) {}
@@ -129,8 +129,8 @@ class CoreLoop {
   ellipse::Tracker tracker_;
 };
 
-// The shortest times of each turn of a round, after which frames and looks of the detector come as
-// before: what else the machine does meanwhile is left out.
+// Minimum time of each turn of a round, which rejects interference from other processes. Frames and
+// detector runs repeat after one round.
 class Round {
  public:
   Round() { shortest_s_.fill(std::numeric_limits<double>::max()); }
@@ -144,11 +144,11 @@ class Round {
   }
 
  private:
-  std::array<double, 40> shortest_s_;  // 10 frames there and back, a look at every eighth
+  std::array<double, 40> shortest_s_;  // the frames repeat after 10, detector runs after 8
 };
 
-// A tracker, an element around another one, and an element that does nothing. Where their memory
-// comes to lie makes the same tracker faster or slower by some percent: new ones every few rounds.
+// A tracker, an element with a tracker, and an element that does nothing. The placement in memory
+// changes the speed of the same tracker by some percent, so they are replaced every few rounds.
 struct Contenders {
   CoreLoop core;
   BufferLoop element;
@@ -162,8 +162,8 @@ struct Contenders {
 
 constexpr std::uint64_t kTurnsTogether = 200;
 
-// "ratio_core" is what the element takes, of what its tracker alone takes beside it;
-// "ratio_less_pads" the same without what "identity" takes.
+// "ratio_core" is the element's time divided by its tracker's time; "ratio_less_pads" subtracts the
+// time of "identity" first.
 void run_beside_core(State& state, const std::string& format, const bench::Size& size) {
   const Frames& frames = bench::frames_of(size);
   const std::vector<Owned<GstBuffer>> buffers = buffers_of(frames, format);
@@ -177,7 +177,7 @@ void run_beside_core(State& state, const std::string& format, const bench::Size&
     auto& [core, element, pads] = *contenders;
     GstBuffer* buffer = buffers[bench::there_and_back(turn, frames.size())].get();
     const GstClockTime pts = gst_util_uint64_scale(turn, GST_SECOND, 30);
-    // Whoever comes second finds the pixels in the cache.
+    // The second to run finds the pixels in the cache.
     const bool is_core_first = turn / 3 % 2 == 0;
     if (is_core_first) of_core.add(turn, core.run_s(buffer, pts));
     const double elapsed_s = element.run_s(buffer, pts);
@@ -204,7 +204,7 @@ void add_beside_core() {
   }
 }
 
-// One buffer that goes through an overlay again and again, with the same ellipse in its middle.
+// Pushes one buffer through an overlay repeatedly, with the same ellipse at its centre.
 class OverlayLoop {
  public:
   OverlayLoop(const std::string& format, const bench::Size& size, bool is_composed)
@@ -244,7 +244,7 @@ class OverlayLoop {
   Owned<GstBuffer> buffer_;
 };
 
-// The time is the small frame's; "ratio_4k" is what the large one takes, measured beside it.
+// Reports the time of the small frame; "ratio_4k" is the large frame's time divided by it.
 void run_overlay(State& state, const std::string& format, const char* parts, bool is_composed) {
   OverlayLoop small(format, bench::kSizes.front(), is_composed);
   OverlayLoop large(format, bench::kSizes.back(), is_composed);
@@ -283,7 +283,7 @@ void add_overlays() {
   }
 }
 
-// Before 2.76 GLib keeps small pieces to itself, and the heap would seem to be at rest.
+// Before 2.76 GLib's slice allocator keeps small blocks, which hides allocations from the heap.
 bool counts_slices() {
   const bench::HeapMeter meter;
   for (int i = 0; i < 2; ++i) g_slice_free1(64, g_slice_alloc(64));

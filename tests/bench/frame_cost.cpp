@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Processes a number of equal frames, for tools that count instructions: the difference between two
-// numbers of frames is what the frames cost.
+// Processes a number of equal frames for tools that count instructions: the difference between two
+// runs is the cost of the additional frames.
 //   frame-cost none|edges WIDTH HEIGHT FRAMES
 #include <cstdio>
 #include <cstdlib>

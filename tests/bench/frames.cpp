@@ -39,7 +39,7 @@ std::size_t period(const std::vector<Frame>& frames) {
   return 2 * frames.size() - 2;
 }
 
-// The first round lets everything grow to its size, the second shows what is left.
+// The buffers grow in the first round; the second measures the steady state.
 Work measure_heap(benchmark::State& state,
                   const std::vector<Frame>& frames,
                   const std::function<Work()>& make) {
@@ -60,8 +60,8 @@ Work measure_heap(benchmark::State& state,
   return work;
 }
 
-// Fixed: a time to reach would be the work's own, and with a stage of microseconds the reference
-// beside it would run for minutes.
+// A fixed count: with a minimum time for the work, a stage of microseconds would run the reference
+// beside it for minutes.
 std::int64_t iterations_at(const Size& size) {
   const std::int64_t pixels = std::int64_t{size.width} * size.height;
   return std::clamp<std::int64_t>(kPixelsPerBenchmark / pixels, 12, 200);

@@ -16,7 +16,7 @@
 
 namespace bench {
 
-/// Of a picture [px].
+/// Size of a picture [px].
 struct Size {
   int width = 0;
   int height = 0;
@@ -31,31 +31,31 @@ inline constexpr std::array kSizes{
 
 inline constexpr double kFrameInterval_s = 1.0 / 30.0;
 
-/// One frame of the scene "approach" and what the measurements need to know of it.
+/// One frame of the scene "approach" with the inputs of the measurements.
 struct Frame {
   support::Picture picture;
   double time_s = 0.0;
   ellipse::Truth truth = {};
-  cv::Mat smooth = {};                             ///< The picture as the reference gets it.
-  ellipse::EdgeThresholds chosen_thresholds = {};  ///< By ContourDetector.
+  cv::Mat smooth = {};                             ///< The reference's input.
+  ellipse::EdgeThresholds chosen_thresholds = {};  ///< Chosen by ContourDetector.
 };
 
-/// A few frames that follow each other, rendered at the first call for a size and kept.
+/// Consecutive frames, rendered at the first call for a size and cached.
 [[nodiscard]] const std::vector<Frame>& frames_of(const Size& size);
 
 [[nodiscard]] ellipse::Scene scene();
 
-/// A view of its pixels as OpenCV sees them.
+/// A view of the picture's pixels for OpenCV.
 [[nodiscard]] cv::Mat mat_of(const support::Picture& picture);
 
-/// What any method on contours pays: cv::Canny and cv::findContours on a smoothed picture.
+/// The cost of any contour-based method: cv::Canny and cv::findContours on a smoothed picture.
 class Reference {
  public:
   using Contours = std::vector<std::vector<cv::Point>>;
 
-  /// With the thresholds 40 and 80.
+  /// Uses the thresholds 40 and 80.
   void run(const Frame& frame);
-  /// With those that the detector has chosen for the frame, and its norm of the gradient.
+  /// Uses the thresholds that the detector chose for the frame, and its gradient norm.
   void run_same_edges(const Frame& frame);
 
   [[nodiscard]] const cv::Mat& edges() const { return edges_; }
@@ -66,32 +66,33 @@ class Reference {
   Contours contours_;
 };
 
-/// The frames forwards and backwards without end, 0 1 2 3 2 1 0 1 ...: no jump loses a target.
+/// Index of a frame when frames run forwards and backwards, 0 1 2 3 2 1 0 1 ...; no jump loses the
+/// target.
 [[nodiscard]] std::size_t there_and_back(std::size_t turn, std::size_t count);
 
-/// How long a call takes [s].
+/// Duration of a call [s].
 [[nodiscard]] double seconds(const std::function<void()>& call);
 
-/// What is measured, on the frame of this number.
+/// The measured work on the frame with this number.
 using Work = std::function<void(std::size_t frame)>;
 
-/// Whether to compare with the reference on the detector's own edges also.
+/// Whether to compare with the reference on the detector's own edges too.
 enum class SameEdges { kNo, kYes };
 
-/// Measures the work that `make` returns. Counts what it asks of the heap, then its time beside the
-/// reference's, frame by frame in turn, so that both meet the same machine in the same mood.
-/// OpenCV runs in one thread.
+/// Measures the work that `make` returns. Counts its heap allocations, then alternates it with the
+/// reference frame by frame, so that the machine's load affects both alike. OpenCV runs in one
+/// thread.
 ///
-/// The frames come as by there_and_back().
-/// Counters: "ratio" and, where asked for, "ratio_same_edges" of the times; "allocations" per frame
-/// once everything has its size; "peak_mb" of the heap and "bytes_per_pixel" from the beginning on.
+/// Frames follow the order of there_and_back().
+/// Counters: "ratio" and, on request, "ratio_same_edges" of the times; "allocations" per frame in
+/// the steady state; "peak_mb" of the heap and "bytes_per_pixel" since the start.
 void compare(benchmark::State& state,
              const std::vector<Frame>& frames,
              const std::function<Work()>& make,
              SameEdges same_edges = SameEdges::kNo);
 
-/// How often a target was found: the share of frames, as the counter "found". What finds nothing
-/// may be fast.
+/// Share of frames with a target, reported as the counter "found". Work that finds nothing may be
+/// fast.
 class FoundShare {
  public:
   void add(bool is_found);
@@ -102,11 +103,11 @@ class FoundShare {
   int found_ = 0;
 };
 
-/// Registers one benchmark per size, "name/640x360" and so on.
+/// Registers one benchmark per size, "name/640x360" etc.
 using Benchmark = std::function<void(benchmark::State&, const std::vector<Frame>&)>;
 void add_benchmark(const std::string& name, const Benchmark& run);
 
-/// Leaves the program where allocations are not counted, then runs what is registered.
+/// Exits if allocations are not counted, otherwise runs the registered benchmarks.
 int run_benchmarks(int argc, char** argv);
 
 }  // namespace bench

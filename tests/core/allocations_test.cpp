@@ -39,7 +39,7 @@ std::int64_t allocations_of(const Call& call) {
   return meter.allocations();
 }
 
-// Allocations of the last of four calls; the first three let the buffers grow.
+// Allocations in the last of four calls; the buffers grow in the first three.
 template <class Call>
 std::int64_t steady_allocations_of(const Call& call) {
   for (int i = 0; i < 3; ++i) call();
@@ -137,7 +137,7 @@ TEST_F(Allocations, NoneInScaler) {
 TEST_F(Allocations, NoneInArcDetector) {
   for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
     ArcDetector detector;
-    for (const int least_contour : {50, 20}) {  // at half the size first, and not
+    for (const int least_contour : {50, 20}) {  // the default, and shorter
       Thresholds thresholds;
       thresholds.min_contour_size = least_contour;
       const auto detect = [&] { return detector.detect(picture.view(), thresholds).size(); };
@@ -156,7 +156,7 @@ TEST_F(Allocations, NoneInRendererOfAnyScene) {
   }
 }
 
-// The calls of OpenCV in [Keipour2021] Algorithm 1 as the detector makes them, and nothing else.
+// The OpenCV calls of [Keipour2021] Algorithm 1 as the detector makes them, without the rest.
 class OpenCvCalls {
  public:
   void run(const Picture& picture, const EdgeThresholds& edges) {
@@ -192,7 +192,7 @@ TEST_F(Allocations, OfContourDetectorAreThoseOfOpenCv) {
   }
 }
 
-// A detector without allocations, which leaves only those of the tracker.
+// A detector without allocations, so that the tracker's remain.
 class OneEllipse final : public Detector {
  public:
   std::span<const Detection> detect(const ellipse::Picture&, const Thresholds&) override {
@@ -267,7 +267,7 @@ TEST_F(Allocations, NoneWhereEdgesAreNotMet) {
   }
 }
 
-// Counts in the second run over the same frames, when the detector's buffers have grown.
+// Counts in the second run over the same frames, after the detector's buffers have grown.
 TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
   constexpr int kFirstFrames = 10;  // in which it locks
   TrackerSettings settings;
@@ -291,7 +291,7 @@ TEST_F(Allocations, NoneInTrackerThatFollowsEdges) {
   }
 }
 
-// A lens so weak that the films need no distortion.
+// A lens weak enough that the films need no distortion.
 TEST_F(Allocations, NoneThroughALens) {
   TrackerSettings settings;
   settings.camera = Camera::with_hfov(1.012, 640, 360);

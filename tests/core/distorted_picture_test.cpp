@@ -60,7 +60,7 @@ TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
   }
 }
 
-// Without the lens, the ellipse in the picture differs from that in the ideal plane.
+// Without a lens model, the detected ellipse differs from that in the ideal plane.
 TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
   ArcDetector detector;
   const Shot seen = shot(1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What must be the same on every processor.
+// Results that must be the same on every processor.
 #include <gtest/gtest.h>
 
 #include <array>

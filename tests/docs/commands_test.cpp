@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The command lines of the documents, read from them, run as they stand there, and judged by what
-// they leave. docs/cookbook.md says what is put in the place of devices.
+// Runs the command lines of the documents as they are written and checks the results.
+// docs/cookbook.md says what replaces devices.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ using recipes::json_lines_of;
 using recipes::Recipe;
 using support::ShellJob;
 
-constexpr std::size_t kFrames = 60;  // of whatever stands for a device
+constexpr std::size_t kFrames = 60;  // of the source that replaces a device
 constexpr char kCamera[] = "ellipsetestsrc is-live=true num-buffers=60";
 
 const Document& cookbook() {
@@ -72,7 +72,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     held_.clear();
   }
 
-  // Nothing of an earlier recipe but what it may work with.
+  // A recipe starts with the shared input files only, without results of earlier recipes.
   Commands() {
     fs::copy(
         work_->file(""), file(""), fs::copy_options::recursive | fs::copy_options::copy_symlinks);
@@ -81,7 +81,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
   static const Document& document() { return *GetParam().first; }
   static const Recipe& recipe() { return *GetParam().second; }
 
-  // As the table in the cook-book says it.
+  // Replaces devices as the table in the cookbook says.
   static std::string in_the_tests(std::string text) {
     const std::regex jpeg("v4l2src device=/dev/video\\d ! image/jpeg");
     text = std::regex_replace(text, jpeg, std::string(kCamera) + " ! jpegenc ! image/jpeg");
@@ -105,7 +105,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
 
   std::string file(const std::string& name) const { return folder_.file(name); }
 
-  // Of what crosses a network, or may drop old frames, a part may be missing.
+  // A network or a leaky queue may lose frames.
   static void expect_targets(const std::string& text, std::size_t frames, bool may_drop) {
     const std::vector<recipes::JsonLine> lines = json_lines_of(text);
     if (may_drop) {
@@ -119,7 +119,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     EXPECT_GE(found, std::floor(0.5 * static_cast<double>(lines.size()))) << text;
   }
 
-  // The lines of a tracker that looks at what was written.
+  // JSON lines of a tracker that reads back what was written.
   std::string view_in(const std::string& source) const {
     const std::string failure =
         support::run_pipeline(source + " ! videoconvert ! ellipsetrack ! ellipsejson ! " +
@@ -128,7 +128,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     return support::contents_of(file("seen-again.ndjson"));
   }
 
-  // The files that stand in a command line. @return their number.
+  // Checks the files named in a command line. @return their number.
   std::size_t check_files(const std::string& text) const {
     const std::size_t frames = frames_of(text);
     const bool may_drop = text.find("leaky") != std::string::npos ||
@@ -151,7 +151,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
                                    (is_jpeg ? " caps=image/jpeg" : " caps=image/png") +
                                    ",framerate=30/1 ! " + (is_jpeg ? "jpegdec" : "pngdec");
         expect_targets(view_in(source), frames, may_drop);
-      } else if (!name.ends_with(".ts")) {  // those of a playlist
+      } else if (!name.ends_with(".ts")) {  // segments of a playlist
         --count;
       }
     }
@@ -175,7 +175,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     expect_targets(view_in("filesrc location=" + file("whole.ts") + " ! decodebin"), frames, false);
   }
 
-  // Of a recording: each line has the time and the target of a frame of the video.
+  // Checks a recording: each line has the time and the target of a frame of the video.
   void check_clock(const std::string& video, const std::string& written) const {
     const auto seen = json_lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
     const auto lines = json_lines_of(support::contents_of(file(written)));
@@ -187,7 +187,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     }
   }
 
-  // @return The number of results that were looked at.
+  // @return The number of results that were checked.
   std::size_t check(const Recipe& recipe, const ShellJob& job) const {
     const std::string text = in_the_tests(recipe.text);
     SCOPED_TRACE(text);
@@ -213,8 +213,8 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
     }
   }
 
-  // Until what is on its way has arrived: nothing waits in a socket, and for a second nothing more
-  // is written. At most a minute.
+  // Waits until all data has arrived: no socket has unread bytes and no output grows for one
+  // second. Gives up after a minute.
   static void wait_until_received(const Jobs& jobs) {
     std::size_t written = 0;
     for (int i = 0, quiet = 0; i < 1200 && quiet < 20; ++i) {
@@ -307,7 +307,7 @@ TEST(Documents, HaveNobodyWaitForWhatNeverComes) {
 }
 
 TEST(Documents, AreReadWhole) {
-  // Fewer would mean that a document was not found, or is written in a way that is not understood.
+  // Fewer means that a document was not found or not parsed.
   EXPECT_GE(cookbook().recipes.size(), 20U);
   EXPECT_EQ(cookbook().files.size(), 4U);
   EXPECT_GE(readme().recipes.size(), 4U);

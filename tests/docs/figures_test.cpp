@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The command lines of the documents that lead from a case or a symptom to a setting: each says in
-// a comment how many of its frames get a target.
+// Checks the command lines of the documents that lead from a case or a symptom to a setting. A
+// comment beside each says how many of its frames have a target.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Command {
   Recipe recipe;
 };
 
-// Those on rendered scenes: others read the files of the reader.
+// Commands on rendered scenes; others need the reader's files.
 std::vector<Command> commands() {
   std::vector<Command> all;
   for (const char* name : {"troubleshooting", "settings-by-case"}) {
@@ -39,7 +39,7 @@ std::vector<Command> commands() {
 
 class Figures : public testing::TestWithParam<Command> {};
 
-// Compilers differ in the last bits, which decides about a target near a limit.
+// Compilers differ in the last bits, which decide about a target near a limit.
 TEST_P(Figures, AreAsTheDocumentSays) {
   const std::string& text = GetParam().recipe.text;
   const support::TemporaryFolder folder;

@@ -10,7 +10,7 @@
 
 namespace recipes {
 
-/// What stands in a line of JSON, of the target that was found last.
+/// The fields of a JSON line, of its last target.
 struct JsonLine {
   double pts_ns = -1.0;
   bool has_target = false;
@@ -18,7 +18,7 @@ struct JsonLine {
   double cy = 0.0;
 };
 
-/// The lines of a pipeline's output; fails the test at one that is no JSON.
+/// Parses the lines of a pipeline's output; fails the test at a line that is not JSON.
 inline std::vector<JsonLine> json_lines_of(const std::string& text) {
   std::vector<JsonLine> lines;
   for (const auto& parsed : support::parse_ndjson(std::istringstream(text))) {

@@ -7,29 +7,29 @@
 #include <string>
 #include <vector>
 
-// The command lines of a document, as its readers find them.
+// Reads the command lines of a document.
 namespace recipes {
 
 /// One block of command lines.
 struct Recipe {
   std::string section;
   std::string text;
-  std::string shown;              ///< What the document says that it writes; empty: nothing of it.
-  bool waits_for_ctrl_c = false;  ///< Serves or receives, beside another one with the same port.
-  bool is_left_out = false;       ///< Says so in front of the block.
+  std::string shown;              ///< Output according to the document; empty: none given.
+  bool waits_for_ctrl_c = false;  ///< Serves or receives for other recipes with the same port.
+  bool is_left_out = false;       ///< Marked as not run in front of the block.
 };
 
 struct Document {
   std::vector<Recipe> recipes;
-  std::map<std::string, std::string> files;  ///< Programs by the name in the sentence before them.
+  std::map<std::string, std::string> files;  ///< Programs by the name in the sentence above.
 };
 
-/// Reads a Markdown document: a test that it cannot be opened is up to the caller.
+/// Reads a Markdown document. The caller checks that it could be opened.
 inline Document read(const std::string& path) {
   Document document;
   std::ifstream in(path);
   std::string section;
-  std::string before;  // the paragraph in front of a block
+  std::string before;  // the paragraph above a block
   bool is_below_recipe = false;
   for (std::string line; std::getline(in, line);) {
     const std::size_t indent = line.find_first_not_of(' ');
@@ -62,7 +62,7 @@ inline Document read(const std::string& path) {
   return document;
 }
 
-/// Every first group of a pattern in a text.
+/// The first group of each match of a pattern in a text.
 inline std::vector<std::string> all_of(const std::string& text, const std::string& pattern) {
   const std::regex regex(pattern);
   std::vector<std::string> found;
@@ -74,7 +74,7 @@ inline std::vector<std::string> all_of(const std::string& text, const std::strin
   return found;
 }
 
-/// The ports that a recipe names, itself or in the programs that it starts.
+/// The ports that occur in a recipe or in the programs that it starts.
 inline std::vector<std::string> ports_of(const Recipe& recipe, const Document& document) {
   std::string text = recipe.text;
   for (const auto& [name, program] : document.files) {

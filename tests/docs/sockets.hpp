@@ -9,12 +9,12 @@
 
 namespace support {
 
-/// A socket of this machine, as the kernel's tables tell of it.
+/// A socket of this machine, from the kernel's tables.
 struct SocketState {
   std::string here;    ///< Address and port, in hexadecimal.
-  std::string there;   ///< Of the other end.
+  std::string there;   ///< The other end's.
   std::string state;   ///< 01: connected; 0A: listens; 07: open, of UDP.
-  std::string queues;  ///< Bytes that wait to be sent, and to be read.
+  std::string queues;  ///< Bytes waiting to be sent and to be read.
 };
 
 inline std::vector<SocketState> all_sockets() {
@@ -22,7 +22,7 @@ inline std::vector<SocketState> all_sockets() {
   for (const char* table : {"udp", "udp6", "tcp", "tcp6"}) {
     std::ifstream in(std::string("/proc/net/") + table);
     std::string rest;
-    std::getline(in, rest);  // what the columns are
+    std::getline(in, rest);  // column names
     std::string number;
     SocketState one;
     while (in >> number >> one.here >> one.there >> one.state >> one.queues &&
@@ -33,7 +33,7 @@ inline std::vector<SocketState> all_sockets() {
   return all;
 }
 
-/// How the tables write a port, behind its address.
+/// A port as the tables write it, behind its address.
 inline std::string port_as_shown(int port) {
   gchar* hexadecimal = g_strdup_printf(":%04X", static_cast<guint>(port));
   const std::string text = hexadecimal;
@@ -41,7 +41,7 @@ inline std::string port_as_shown(int port) {
   return text;
 }
 
-/// Whether somebody listens at a port of this machine, or is connected to it.
+/// Whether a program listens at a port of this machine or is connected to it.
 inline bool is_port_open(int port, bool is_connected) {
   const std::string end = port_as_shown(port);
   const std::vector<SocketState> all = all_sockets();
@@ -51,7 +51,7 @@ inline bool is_port_open(int port, bool is_connected) {
   });
 }
 
-/// Whether nothing is on its way from or to a port of this machine.
+/// Whether no bytes are waiting to or from a port of this machine.
 inline bool is_all_read(int port) {
   const std::string end = port_as_shown(port);
   const std::vector<SocketState> all = all_sockets();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Frames with several true ellipses: what is right, and how all of them compare.
+// Frames with several true ellipses: correct answers, and the comparison of all ellipses.
 #include "examples/evaluate/all_ellipses.hpp"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(SeveralEllipses, AreMissedUnlessAllAreHardlyVisible) {
 }
 
 TEST(Matching, GivesUpAHeavyPairForTwoLighterOnes) {
-  // Greedy takes 0-0, after which 1 has no partner.
+  // Greedy matching takes 0-0 and leaves 1 without a partner.
   const auto matches = match_one_to_one(2, 2, {{0, 0, 0.95}, {0, 1, 0.81}, {1, 0, 0.82}});
   EXPECT_EQ(matches, (std::vector<std::optional<std::size_t>>{1, 0}));
 }
@@ -58,7 +58,8 @@ TEST(Matching, TakesTheHeaviestOfThoseWithTheMostPairs) {
 }
 
 TEST(Matching, FollowsLongAlternatingPaths) {
-  // Each left takes its own right before the last one comes, who has only the first.
+  // Each left node first takes its own right node; the last left node has an edge to the first
+  // only.
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < 20; ++i) edges.push_back({i, i, 1.0});
   for (std::size_t i = 0; i < 20; ++i) edges.push_back({i, i + 1, 0.8});
@@ -69,13 +70,13 @@ TEST(Matching, FollowsLongAlternatingPaths) {
 }
 
 TEST(AllEllipses, AreMatchedOneToOne) {
-  // The left one twice, something that is not there, the right one not at all.
+  // The left ellipse twice, an ellipse that does not exist, and no right ellipse.
   const std::vector<ellipse::Ellipse> found = {moved(kLeft, 3.0), kLeft, kElsewhere};
   const AllResult result = compare_all(found, both(), kFrame);
   EXPECT_EQ(result.counts.right, 1);
   EXPECT_EQ(result.counts.mistaken, 2);
   EXPECT_EQ(result.counts.missed, 1);
-  EXPECT_EQ(result.centre_errors_px, std::vector<double>{0.0});  // of the better one
+  EXPECT_EQ(result.centre_errors_px, std::vector<double>{0.0});  // of the better match
 }
 
 TEST(AllEllipses, HaveErrorsOfCentreAndAxes) {

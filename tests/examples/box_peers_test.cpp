@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The packaged trackers of boxes: told their target, they follow it as far as they can.
+// The packaged box trackers: initialised with the true target, they follow it.
 #include "examples/evaluate/box_peers.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ ellipse::Scene marked_pad() {
   return scene;
 }
 
-// A sequence in which the pad is where it is put.
+// Frames with the pad at given positions.
 class EachBoxPeer : public testing::TestWithParam<const char*> {
  protected:
   EachBoxPeer() : method_(make_method(GetParam(), {})) { method_->start(nullptr); }
@@ -116,7 +116,7 @@ TEST_P(EachBoxPeer, StartsAfreshWithEachSequence) {
 
 TEST_P(EachBoxPeer, IsToldAgainAfterItReportedALoss) {
   ASSERT_TRUE(see(kStart).is_given);
-  ASSERT_TRUE(see(kStart).target);  // KCF's first update does not look
+  ASSERT_TRUE(see(kStart).target);  // KCF's first update does not search
   ASSERT_FALSE(see_noise().target);
   EXPECT_FALSE(see_noise().target);
   EXPECT_TRUE(see(kStart).is_given);

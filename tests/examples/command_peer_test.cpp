@@ -25,7 +25,7 @@ class CommandPeer : public testing::Test {
   }
   [[nodiscard]] std::string command() const { return "/bin/sh '" + script_ + "' x"; }
 
-  // What it says where the script's answer is no good; it names the command.
+  // The error for an invalid answer of the script; it names the command.
   std::string error(const std::string& text) {
     try {
       (void)run(text, {"a.png", "b.png"});
@@ -65,7 +65,7 @@ TEST_F(CommandPeer, AnswersLineByLine) {
   EXPECT_GT(answer.detections[0].score, 0.0);
 }
 
-// More than pipes hold, in both directions.
+// Exceeds the capacity of a pipe in both directions.
 TEST_F(CommandPeer, AnswersThousandsAtOnceOrAfterReadingAll) {
   std::vector<fs::path> images;
   for (int i = 0; i < 5000; ++i) {

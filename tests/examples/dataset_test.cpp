@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Data sets, the twin and the reading of pictures.
+// Data sets, the twin and reading pictures.
 #include "examples/evaluate/dataset.hpp"
 
 #include <gst/gst.h>
@@ -49,7 +49,7 @@ class DatasetFiles : public testing::Test {
     fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name) << text;
   }
-  // Pictures that are there, but are not read.
+  // Creates picture files that are never read.
   void touch(const std::vector<std::string>& names) const {
     for (const std::string& name : names) write(name, "");
   }
@@ -127,7 +127,7 @@ TEST_F(DatasetFiles, NamesFileAndLineOfWhatIsBroken) {
         "c.jpg,1,2\n"
         "d.jpg,1,2,20,10,0\n");
   const Dataset dataset = read_dataset(folder_);
-  ASSERT_EQ(dataset.problems.size(), 4U);  // and c.jpg has no line that could be read
+  ASSERT_EQ(dataset.problems.size(), 4U);  // and c.jpg has no valid line
   EXPECT_NE(dataset.problems[0].find("gt.csv:2: semi_major"), std::string::npos);
   EXPECT_NE(dataset.problems[1].find("gt.csv:3: the axes"), std::string::npos);
   EXPECT_NE(dataset.problems[2].find("gt.csv:4: 3 fields"), std::string::npos);
@@ -178,7 +178,7 @@ TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
   write_dataset(twin, folder_, [](const Frame& /*frame*/) { return true; });
   const std::vector<Sequence> again = read_dataset(folder_).sequences;
   ASSERT_EQ(again.size(), 2U);
-  std::swap(twin[0], twin[1]);  // in the order of their names
+  std::swap(twin[0], twin[1]);  // sorted by name
   for (std::size_t i = 0; i < again.size(); ++i) {
     ASSERT_EQ(again[i].frames.size(), 3U);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -195,7 +195,7 @@ TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
 }
 
 TEST(Twin, HasTheSizeOfThePapersDataSet) {
-  std::map<std::string, std::pair<int, int>> counts;  // frames, with the target
+  std::map<std::string, std::pair<int, int>> counts;  // frames, frames with the target
   for (const Sequence& sequence : make_twin()) {
     for (const Frame& frame : sequence.frames) {
       ++counts[sequence.dataset].first;
@@ -207,7 +207,7 @@ TEST(Twin, HasTheSizeOfThePapersDataSet) {
 }
 
 TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
-  // The target's outline is where the picture changes.
+  // The picture has its contrast along the target's outline.
   const Sequence sequence = make_twin()[0];
   const Frame& frame = sequence.frames[70];
   const cv::Mat picture = sequence.pictures->picture(frame);
@@ -249,7 +249,7 @@ TEST(Scenes, AreWholeSequencesOfTheCatalog) {
   const cv::Mat first = scenes[0].pictures->picture(scenes[0].frames[0]);
   const cv::Mat last = scenes[0].pictures->picture(scenes[0].frames[29]);
   EXPECT_GT(cv::norm(first, last, cv::NORM_INF), 0.0);
-  // Also after the last frame, when the renderer is given up.
+  // The first frame again, after the last one, when the renderer has been released.
   EXPECT_EQ(cv::norm(first, scenes[0].pictures->picture(scenes[0].frames[0]), cv::NORM_INF), 0.0);
   EXPECT_THROW((void)make_scenes({5}, {0.01, 15.0}), std::invalid_argument);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Frames that a lens distorts, and how answers are judged on them.
+// Frames distorted by a lens, and the judging of answers on them.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -43,7 +43,7 @@ TEST(Distorted, AreTheScenesThroughEachLens) {
     ASSERT_TRUE(sequence.distortion);
     lenses.insert(sequence.distortion.get());
   }
-  EXPECT_EQ(lenses.size(), ellipse::lens_catalog().size());  // shared: each looks up all pixels
+  EXPECT_EQ(lenses.size(), ellipse::lens_catalog().size());  // shared: each has a pixel table
 }
 
 TEST(Distorted, AreNamedBySeeds) {
@@ -54,7 +54,7 @@ TEST(Distorted, AreNamedBySeeds) {
   EXPECT_THROW((void)scene_seeds("distorted:x", "distorted"), std::invalid_argument);
 }
 
-// Of a pad that leaves the picture: also with half of it in view.
+// The pad leaves the picture; frames with half of it in view also have a truth.
 TEST(Distorted, TruthsAreOfTheIdealPlaneInFramesAndMissingFromEmptyOnes) {
   for (const char* name : {"reenter-barrel-7", "reenter-fisheye-7"}) {
     int in_part = 0;
@@ -83,7 +83,7 @@ TEST(DistortedFrame, CountsAsARectangleWhereTheLensHardlyBends) {
 
 TEST(DistortedFrame, SeesWhatTheIdealPlanesRectangleDoesNotHold) {
   const DistortedFrame frame(camera_with("fisheye"));
-  // Shown near the picture's right border, far out in the ideal plane.
+  // Near the picture's right border, far out in the ideal plane.
   const ellipse::Ellipse far_out{780.0, 180.0, 60.0, 40.0, 0.0};
   EXPECT_EQ(ellipse::iou_inside(far_out, far_out, 640, 360), 0.0);
   EXPECT_EQ(frame.iou(far_out, far_out), 1.0);
@@ -97,13 +97,13 @@ TEST(DistortedFrame, LeadsThereAndBack) {
       const auto shown = frame.to_picture(ideal);
       ASSERT_TRUE(shown) << lens;
       EXPECT_GT(max_difference_px(*shown, ideal), 0.5) << lens;
-      // Not the same to the last: what is distorted is no ellipse.
+      // Not exactly equal: a distorted ellipse is no ellipse.
       EXPECT_LT(max_difference_px(frame.to_ideal(*shown), ideal), 0.5) << lens;
     }
   }
 }
 
-// Says the truth, of the picture or of the ideal plane.
+// Answers with the truth, in the picture or in the ideal plane.
 class Truthful : public Method {
  public:
   Truthful(const char* name, bool knows_lens, bool means_ideal)
@@ -145,10 +145,10 @@ TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {
     off += result(2).outcome == Outcome::kTruePositive && result(2).centre_error_px < 2.0 ? 0 : 1;
   }
   EXPECT_GT(judged, 5);
-  EXPECT_GT(off, 3);  // the pad is off the middle
+  EXPECT_GT(off, 3);  // the pad is off centre
 }
 
-// Ours know the lens, those that are told a box are told it in the picture.
+// Our methods know the lens; box trackers are initialised in the picture.
 TEST(Distorted, MethodsFollowThroughALens) {
   std::vector<Sequence> sequences;
   sequences.push_back(distorted("hover-fisheye-7", {0.5, 10.0}));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is made of the answers: measures, tables, report, sweeps.
+// Processing of the answers: measures, tables, report, sweeps.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST(Measures, JudgesEachOutcome) {
   EXPECT_EQ(of(std::optional<ellipse::Ellipse>(), truth_of(kTarget)), Outcome::kFalseNegative);
   EXPECT_EQ(of(std::optional(other), Truth{}), Outcome::kFalsePositive);
   EXPECT_EQ(of(std::optional<ellipse::Ellipse>(), Truth{}), Outcome::kTrueNegative);
-  // Hardly visible: it may be missed, and a miss or a hit counts, but not a wrong answer.
+  // Hardly visible: a hit counts, a miss is a true negative, a wrong answer is not judged.
   EXPECT_EQ(of(std::optional<ellipse::Ellipse>(), truth_of(kTarget, 0.2)), Outcome::kTrueNegative);
   EXPECT_EQ(of(std::optional(other), truth_of(kTarget, 0.2)), Outcome::kNotJudged);
   EXPECT_EQ(of(std::optional(kTarget), Truth{{}, {}, false}), Outcome::kNotJudged);
@@ -99,7 +99,7 @@ TEST(Measures, AreThePapers) {
   EXPECT_TRUE(std::isnan(Measures().accuracy()));
 }
 
-// Frames of one grey level each, so that a method can know which one it sees.
+// Frames of one grey level each, so that a method can identify the frame.
 class GreyPictures : public PictureSource {
  public:
   cv::Mat picture(const Frame& frame) override {
@@ -108,7 +108,7 @@ class GreyPictures : public PictureSource {
   }
 };
 
-// Gives the answers that it is told to give.
+// Returns prepared answers.
 class Scripted : public Method {
  public:
   explicit Scripted(std::vector<std::optional<ellipse::Ellipse>> answers)
@@ -231,7 +231,7 @@ TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
                            "data:image/jpeg;base64,"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
-  EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // nothing is fetched
+  EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // loads nothing remote
 }
 
 TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
@@ -305,7 +305,7 @@ TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
   EXPECT_EQ(method_names().front(), "arcs+edges");
   for (const std::string& name : method_names()) EXPECT_EQ(make_method(name, {})->name(), name);
   EXPECT_THROW((void)make_method("magic", {}), std::invalid_argument);
-  // Those that are told the truth are there by their names only.
+  // unaided_method_names() excludes the box trackers, which are given the truth.
   EXPECT_EQ(method_names().size(), unaided_method_names().size() + box_peer_names().size());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The table by which the detector decides, fitted to labelled frames.
+// The detector's evidence table, fitted to labelled frames.
 #include "examples/evaluate/evidence_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ std::vector<Sequence> frames_to_fit() {
 
 struct Answers {
   int targets = 0;
-  int right = 0;  // of them
+  int right = 0;  // of the targets
 };
 
 Answers answers_on(const std::vector<Sequence>& sequences,

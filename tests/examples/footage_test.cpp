@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Data sets as footage comes: videos, several ellipses in an image, frames to be ignored.
+// Data sets from footage: videos, several ellipses in an image, ignored frames.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class Footage : public testing::Test {
     fs::create_directories(file(name).parent_path());
     std::ofstream(file(name)) << text;
   }
-  // Frames that differ, 25 a second.
+  // A video of distinct frames, 25 per second.
   void write_video(const std::string& name, int frames) const {
     const std::string pipeline =
         "GST_PLUGIN_PATH= GST_REGISTRY=" + folder_.file("registry") +
@@ -120,7 +120,7 @@ TEST_F(Footage, FramesOfAVideoAreNamedByTheirNumber) {
   const cv::Mat third = eye.pictures->picture(eye.frames[1]);
   EXPECT_EQ(first.size(), cv::Size(64, 48));
   EXPECT_GT(cv::norm(first, third, cv::NORM_INF), 50.0);
-  // Also backwards.
+  // Seeks backwards too.
   EXPECT_EQ(cv::norm(first, eye.pictures->picture(eye.frames[0]), cv::NORM_INF), 0.0);
 }
 

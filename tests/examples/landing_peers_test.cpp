@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The peers that land beside ellipsetrack, each on the pad made for it.
+// The landing peers beside ellipsetrack, each on its own pad.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using landing::Motion;
 using landing::Platform;
 using landing::Rig;
 
-constexpr int kSearch = 16;  // pictures in which WhyCon has tried all its thresholds
+constexpr int kSearch = 16;  // frames that WhyCon needs to try all its thresholds
 
 std::vector<std::string> built_in_peers() {
   std::vector<std::string> peers = {"whycon"};
@@ -39,7 +39,7 @@ ellipse::Scene scene_with(const std::string& method, const char* name) {
   return scene;
 }
 
-// The vehicle is tilted and off the pad's middle; its height is above the pad.
+// The vehicle is tilted and off the pad's centre; its height is above the pad.
 struct Hover {
   Rig rig;
   Motion vehicle;
@@ -57,7 +57,7 @@ struct Hover {
     return rig.pad_radius * (rig.camera.matrix().inverse() * view().image_from_pad.col(2));
   }
 
-  // What is seen in the last of some pictures of the scene.
+  // The result on the last of several frames of the scene.
   [[nodiscard]] Look look(const std::string& method, const ellipse::Scene& scene) const {
     ellipse::SceneRenderer renderer(scene);
     const auto eye = landing::eye_of(method, rig, scene_with(method, "approach").pad, 30);
@@ -108,7 +108,7 @@ TEST(LandingPeers, LandOnTheMovingPad) {
   }
 }
 
-// Sheets get no shadows from the renderer; the tag's pad must lie in the same light as others.
+// The renderer casts no shadows on sheets; the tag's pad must have the same light as the others.
 TEST(LandingPeers, SeeTheTagInTheShadowsOfTheOtherPads) {
   if (!landing::has_apriltag()) GTEST_SKIP() << "built without apriltag";
   const auto picture_of = [](ellipse::Scene scene) {

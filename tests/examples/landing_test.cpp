@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The landing's parts, and whole landings through real pipelines.
+// The parts of the landing, and whole landings through real pipelines.
 #include "examples/landing/landing.hpp"
 
 #include <gtest/gtest.h>
@@ -67,8 +67,8 @@ TEST(Vehicle, HoldsItsPlaceInGustsWithinTheirReach) {
     squared += vehicle.truth().velocity.head<2>().squaredNorm();
   }
   const double speed = std::sqrt(squared / kSteps);
-  EXPECT_GT(speed, 0.02);  // they are felt
-  EXPECT_LT(speed, 0.3);   // and mostly held
+  EXPECT_GT(speed, 0.02);  // gusts act
+  EXPECT_LT(speed, 0.3);   // and are mostly compensated
 }
 
 TEST(Vehicle, IsTheSameForTheSameSeed) {
@@ -123,7 +123,7 @@ TEST(CameraView, FindsTheWayBackToThePad) {
       Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitX());
   const Platform platform(Course::kStraight, 0.0, 0.0);
   const Eigen::Matrix3d view = view_of(rig, vehicle, platform).image_from_pad;
-  // The third column is the pad's centre, in radii, behind the camera's matrix.
+  // The third column is the pad's centre in radii, multiplied by the camera matrix.
   const Vector3d in_camera = rig.pad_radius * (rig.camera.matrix().inverse() * view.col(2));
   const Vector3d pad = vehicle.position + pad_from_body(rig, vehicle, in_camera);
   EXPECT_NEAR(pad.norm(), 0.0, 1e-9);
@@ -152,13 +152,13 @@ TEST(TargetFilter, BelievesTheRadioWhereWhatWasSeenIsFarFromIt) {
   filter.hear(1.0, {0.0, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
   EXPECT_NEAR(filter.at(1.0).position.x(), 0.0, 1e-9);
   EXPECT_NEAR(filter.at(1.0).velocity.x(), 1.0, 1e-9);
-  // Where it agrees roughly, what was seen is better.
+  // When the radio agrees roughly, the visual estimate is more accurate.
   filter.hear(2.0, {2.5, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
   EXPECT_NEAR(filter.at(2.0).position.x(), 1.0, 1e-9);
 }
 
-// A few pictures took the pad to climb, and then it was gone: a minute later it is taken again
-// where it is, though dead reckoning has risen by some metres.
+// A few frames show a climbing pad, then it is lost. A minute later the filter accepts the pad at
+// its true position, although dead reckoning has risen by some metres.
 TEST(TargetFilter, DoesNotBelieveAClimbForLong) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1);
   for (int i = 0; i < 15; ++i) {
@@ -170,7 +170,7 @@ TEST(TargetFilter, DoesNotBelieveAClimbForLong) {
   EXPECT_TRUE(filter.see(60.1, {0.2, 0.1, 3.0}, 0.05));
 }
 
-// A vehicle that follows its commands at once, over a pad that stands still.
+// A vehicle that follows its commands without delay, over a static pad.
 class Hover {
  public:
   explicit Hover(const Vector3d& position) {
@@ -194,7 +194,7 @@ class Hover {
     }
   }
 
-  /// From now on the pad is seen this far from its position, with this stated error [m].
+  /// Offsets the measured position of the pad from now on, with this stated error [m].
   void see_aside(const Vector3d& by, double error) {
     aside_ = by;
     error_ = error;
@@ -233,11 +233,11 @@ TEST(Controller, DoesNotBeginWithAGlimpse) {
   EXPECT_EQ(hover.phase(), Phase::kSearch);
   hover.fly_for(0.5, true, 0.8);
   EXPECT_EQ(hover.phase(), Phase::kApproach);
-  hover.fly_for(3.0, true, 0.4);  // what is known is followed to the border
+  hover.fly_for(3.0, true, 0.4);  // a known target is followed while less of it is visible
   EXPECT_NE(hover.phase(), Phase::kSearch);
 }
 
-// How far it flies aside for a position that is off by a decimetre and states this error [m].
+// Lateral motion caused by a position that is off by 0.1 m and states this error [m].
 double led_astray(double error) {
   Hover hover({0.2, 0.0, 8.0});
   for (int i = 0; i < 100 && hover.position().z() > 1.5; ++i) hover.fly_for(0.1, true);
@@ -258,7 +258,7 @@ TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {
   for (int i = 0; i < 100 && hover.position().z() > 3.0; ++i) hover.fly_for(0.1, true);
   ASSERT_EQ(hover.phase(), Phase::kDescend);
   hover.fly_for(0.4, false);
-  EXPECT_EQ(hover.phase(), Phase::kDescend);  // a glance away is no harm
+  EXPECT_EQ(hover.phase(), Phase::kDescend);  // a short loss is tolerated
   hover.fly_for(0.4, false);
   EXPECT_EQ(hover.phase(), Phase::kClimb);
   EXPECT_GT(hover.last().velocity.z(), 1.0);
@@ -285,7 +285,7 @@ TEST(Landing, EndsOnTheMovingPadAndAgainTheSame) {
   EXPECT_GT(outcome.frames[static_cast<std::size_t>(Phase::kDescend)], 30);
 
   const Outcome again = landing::fly(short_flight());
-  EXPECT_EQ(again.off, outcome.off);  // to the last bit
+  EXPECT_EQ(again.off, outcome.off);  // bit for bit
   EXPECT_EQ(again.time_s, outcome.time_s);
   EXPECT_EQ(again.moments.size(), outcome.moments.size());
 }
@@ -298,7 +298,7 @@ TEST(Landing, BreaksOffWhereThePadIsHiddenAndTriesAgain) {
   EXPECT_GE(outcome.climbs, 1);
   ASSERT_TRUE(outcome.has_touched_down);
   EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
-  // It was up again before it came down.
+  // It climbed again before it landed.
   double highest = 0.0;
   bool was_low = false;
   for (const landing::Moment& moment : outcome.moments) {
@@ -332,7 +332,7 @@ TEST(Report, CountsLandingsByMethodAndSpeed) {
   EXPECT_EQ(table.rows[0].back(), "1");
 }
 
-// No thread waits for a pipeline that cannot go on.
+// A pipeline that cannot start leaves no thread waiting.
 TEST(LandingPipeline, SaysWhatCannotStart) {
   landing::Pipeline pipeline("videotestsrc ! filesink location=/no/such/folder/file");
   EXPECT_THROW(pipeline.play(), std::runtime_error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Choices that are judged on sources which they have not seen.
+// Choices that are judged on sources they were not made on.
 #include "examples/evaluate/leave_one_out.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ bool go_on(const Frame& /*frame*/) {
   return true;
 }
 
-// Three frames of the twin, under other names of data sets.
+// Three frames of the twin under several data set names.
 std::vector<Sequence> sources(const std::vector<std::string>& names) {
   Sequence sequence = make_twin()[0];
   sequence.frames.resize(3);
@@ -33,7 +33,7 @@ std::vector<Sequence> sources(const std::vector<std::string>& names) {
   return all;
 }
 
-// Remembers what it was shown. A choice of which the left-out source is no part finds nothing.
+// Records the sources it is given. A choice made on fewer than three sources finds nothing.
 class Watched : public Chooser {
  public:
   Choice choose(const std::vector<std::string>& sources) override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The packaged peers: each finds what it can find, and survives what it cannot.
+// The packaged peers: each finds its kind of target and survives other input.
 #include "examples/evaluate/peers.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@
 #include "examples/evaluate/randomized_hough.hpp"
 #include "tests/support/picture.hpp"
 
-// OpenCV 4.6's EdgeDrawing frees with delete what it got with new[]. Read by AddressSanitizer only.
+// OpenCV 4.6's EdgeDrawing frees with delete what it allocated with new[]. Only AddressSanitizer
+// calls this function.
 extern "C" const char* __asan_default_options();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __asan_default_options() {  // NOLINT(bugprone-reserved-identifier)
   return "alloc_dealloc_mismatch=0";
@@ -56,7 +57,7 @@ double angle_between(double a_rad, double b_rad) {
 
 class EachPeer : public testing::TestWithParam<const char*> {
  protected:
-  // What it can find at all.
+  // The target that the peer can detect.
   [[nodiscard]] ellipse::Ellipse target() const {
     return GetParam() == std::string("hough-circles") ? kCircle : kEllipse;
   }
@@ -181,7 +182,7 @@ TEST(Peers, AnUnknownOneIsNamed) {
   }
 }
 
-// It answers in two forms, of which the one for circles has no axes.
+// It returns circles and ellipses in separate forms; that of circles has no axes.
 TEST(EdgeDrawing, FindsCirclesAndEllipses) {
   for (const ellipse::Ellipse& target : {kCircle, kEllipse}) {
     const support::Picture picture = support::rendered(support::plain_ring(), target);

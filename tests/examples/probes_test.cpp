@@ -43,7 +43,7 @@ class Reader : public testing::TestWithParam<const char*> {
 
   fs::path picture() const { return folder_ / "centre.png"; }
 
-  // What starts it on a source.
+  // The command line that runs it on a source.
   std::string command(const std::string& program, const std::string& source) const {
     const std::string file = is_script(program) ? std::string(std::getenv("ELLIPSE_PYTHON")) + " " +
                                                       std::getenv("ELLIPSE_SCRIPTS")
@@ -88,7 +88,7 @@ TEST_P(Reader, SaysThatThePluginIsMissing) {
             "there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
 }
 
-// Modules of these names that cannot be imported stand before the real ones.
+// Modules of these names that fail to import come before the real ones in the path.
 TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
   if (!is_script(GetParam())) GTEST_SKIP() << "no Python";
   for (const std::string module : {"gi", "matplotlib"}) {
@@ -109,7 +109,7 @@ TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
 }
 
 TEST_P(Reader, EndsWellAtAnInterrupt) {
-  // It runs once its first frame has left a trace.
+  // It runs once its first frame has been written.
   const std::string trace = (folder_ / "trace").string();
   const std::string start =
       command(GetParam(),
@@ -159,7 +159,7 @@ std::vector<Printed> printed(const std::string& text, const std::string& role) {
   return all;
 }
 
-// Of the source's first scene, at its own size and rate.
+// The truth of the source's first scene, at its own size and rate.
 ellipse::Ellipse rendered(int frame) {
   constexpr int kWidth = 640;
   constexpr int kHeight = 360;
@@ -202,7 +202,7 @@ TEST_P(Probe, PrintsWhatItsTwinPrints) {
 
 class LivePlot : public Reader {
  protected:
-  // How many of the picture's pixels have the colour of the target's line.
+  // Number of the picture's pixels in the colour of the target's line.
   int green_pixels() const {
     const cv::Mat image = cv::imread(picture().string());
     cv::Mat is_green;
@@ -233,7 +233,7 @@ TEST_P(LivePlot, HasNoLineWhereNothingWasFound) {
   const Outcome outcome = run("videotestsrc pattern=black num-buffers=2");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_EQ(outcome.text, "2 frames, target in 0\n");
-  EXPECT_LT(green_pixels(), 200);  // that of the legend
+  EXPECT_LT(green_pixels(), 200);  // the legend has some
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace programs {
 
 using support::Outcome;
 
-/// Runs a command line of the shell to its end, its standard error with its standard output.
+/// Runs a shell command line to its end and captures its standard output and error.
 inline Outcome run(const std::string& command) {
   return support::run_shell("{ " + command + "; } 2>&1");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The example programs as people start them.
+// The example programs on the command line.
 #include "tests/examples/programs.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST_F(Programs, DemoWritesVideoTextAndContactSheet) {
   for (const char* name : {"annotated.mkv", "targets.ndjson", "contact_sheet.png"}) {
     EXPECT_GT(fs::file_size(folder_ / name), 1000U) << name;
   }
-  // What it has written it can also read.
+  // It can read what it has written.
   const fs::path again = folder_ / "again";
   const Outcome second =
       run("ellipse-demo",
@@ -58,8 +58,8 @@ TEST_F(Programs, DemoWritesVideoTextAndContactSheet) {
   EXPECT_TRUE(fs::exists(again / "contact_sheet.png"));
 }
 
-// As cameras and telephones write it: by a program that looks for no plugin of ours, which it could
-// not load where a sanitizer is in it.
+// A file as cameras and phones record it. The program that writes it gets no plugin path: it could
+// not load a plugin built with a sanitizer.
 TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
   const std::string video = (folder_ / "video.mp4").string();
   ASSERT_EQ(programs::run("GST_PLUGIN_PATH= GST_REGISTRY=" + (folder_ / "registry").string() +
@@ -73,7 +73,7 @@ TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
   EXPECT_NE(demo.text.find("frames                      20"), std::string::npos) << demo.text;
 }
 
-// A check of a range alone lets "nan" pass.
+// A range check alone accepts "nan".
 TEST_F(Programs, NumbersThatAreNotFiniteAreRefusedByName) {
   const std::string evaluate = "ellipse-evaluate scenes:1 ";
   const std::pair<std::string, std::string> commands[] = {{"ellipse-landing ", "--speed"},
@@ -139,7 +139,7 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
       << outcome.text;
 }
 
-// CSRT takes its time, so that the program is not at its end before the key is pressed.
+// CSRT is slow, so the program still runs when the key is pressed.
 TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
   const fs::path json = folder_ / "json";
   support::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
@@ -148,7 +148,7 @@ TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
                               "--json",
                               json.string()});
   if (terminal.is_missing()) GTEST_SKIP() << terminal.reason();
-  ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frames
+  ASSERT_TRUE(terminal.read_until("] 3/")) << terminal.text();  // frame count
   terminal.type('\x03');
   EXPECT_EQ(terminal.wait_for_end(), 130);
   const std::string& shown = terminal.text();
@@ -184,7 +184,7 @@ TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
   }
   EXPECT_EQ(unkept.text.find("arcs+edges on"), std::string::npos) << unkept.text;
   EXPECT_EQ(run("ellipse-evaluate", both + "--max-false 2").status, 0);
-  EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a share, no percentage
+  EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a fraction, not a percent
 }
 
 TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
@@ -227,7 +227,7 @@ TEST_F(Programs, EvaluateReadsAFolderOfDataSetsIntoOneTable) {
           (folder_ / "sets").string() +
               " --all --methods arcs+edges,arcs+none,canny-fit --report " + page.string());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
-  // The second set has the name of the first: the twin's.
+  // The second set has the same name as the first, "twin".
   for (const char* part : {"\nF1 by source",
                            "\ntwin                ",
                            "sets/two:twin",
@@ -249,7 +249,7 @@ TEST_F(Programs, EvaluateChoosesOnOtherSources) {
   const std::string sets = (folder_ / "one").string() + " " + (folder_ / "two").string();
   std::ofstream(folder_ / "apart.txt") << "first: twi?\n";
   const std::string choose = "--leave-one-out " + sets + " --choose min-axis=600:5 ";
-  // By default all rendered sources are of one group.
+  // By default all rendered sources form one group.
   const Outcome together = run("ellipse-evaluate", choose);
   EXPECT_EQ(together.status, 1) << together.text;
   EXPECT_NE(together.text.find("\"rendered\""), std::string::npos) << together.text;
@@ -322,7 +322,7 @@ TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
 
 constexpr const char* kShortLanding = "ellipse-landing --runs 1 --speed 0 --width 160 ";
 
-// Where the program would wait for ever it is ended, with status 124.
+// timeout ends a program that would wait forever, with status 124.
 Outcome run_bounded(const std::string& arguments) {
   return programs::run("timeout 300 " + std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/" +
                        arguments);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Intervals of figures, and differences that may be claimed.
+// Intervals of measures, and significant differences.
 #include "examples/evaluate/resampling.hpp"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ constexpr FrameCounts kMissed{1, 0, 0, 1};
 
 const SourceFrames kVideo{{600}, 30.0};
 
-// Every n-th frame is missed.
+// Misses every n-th frame.
 std::vector<FrameCounts> missing_each(std::size_t nth, std::size_t frames = 600) {
   std::vector<FrameCounts> counts(frames, kRight);
   for (std::size_t i = 0; i < frames; i += nth) counts[i] = kMissed;
   return counts;
 }
 
-// The first frames of a video are missed.
+// Misses the first frames of a video.
 std::vector<FrameCounts> missing_first(std::size_t missed, std::size_t frames = 600) {
   std::vector<FrameCounts> counts(frames, kRight);
   std::fill_n(counts.begin(), missed, kMissed);
@@ -52,7 +52,7 @@ TEST(Resampling, BlocksLastAsLongAsErrorsDo) {
 }
 
 TEST(Resampling, IntervalsAreWiderWhereErrorsComeTogether) {
-  const auto spread = missing_each(11);  // 55
+  const auto spread = missing_each(11);  // 55 misses
   const auto together = missing_first(55);
   const Interval narrow = grade_interval(kVideo, scheme_for(kVideo, spread), spread);
   const Interval wide = grade_interval(kVideo, scheme_for(kVideo, together), together);
@@ -70,7 +70,7 @@ TEST(Resampling, WithoutAnErrorThereIsNoInterval) {
 }
 
 TEST(Resampling, IntervalsHoldTheTruthNineteenTimesInTwenty) {
-  // Sequences whose own share of misses varies, so that frames would be no independent draws.
+  // Sequences with different miss rates, whose frames are not independent draws.
   ellipse::Random random(3);
   constexpr int kSources = 200;
   int held = 0;
@@ -102,7 +102,7 @@ TEST(Resampling, ClaimsADifferenceThatLastsAndNoneOfOneMoment) {
 }
 
 TEST(Resampling, ComparesByTheSameFrames) {
-  // Both fail in the hard half; one in a few frames more. Unpaired, the intervals overlap.
+  // Both fail in the hard half, one in a few more frames. Unpaired, the intervals overlap.
   auto a = missing_first(300);
   auto b = a;
   for (std::size_t i = 300; i < 600; i += 15) b[i] = kMissed;

@@ -33,7 +33,7 @@ Sequence sequence_of(const std::string& dataset, std::size_t frames) {
   return sequence;
 }
 
-// Two sources, "eye" with a target and "road" without; our method and two peers.
+// Two sources, "eye" with a target and "road" without; one of our methods and two peers.
 class SourceTables : public testing::Test {
  protected:
   SourceTables() {
@@ -47,7 +47,7 @@ class SourceTables : public testing::Test {
     add("contours+none", 39, kGhost, 50);
   }
 
-  // Every n-th frame of "eye" is missed, every n-th of "road" has the given outcome.
+  // Misses every n-th frame of "eye"; every n-th frame of "road" has the given outcome.
   void add(const std::string& name, std::size_t missed, Outcome outcome, std::size_t each) {
     MethodResults method{name, {}, {}};
     for (std::size_t i = 0; i < kFrames; ++i) {
@@ -72,7 +72,7 @@ TEST_F(SourceTables, HaveARowForEachSourceAndTheBestPeerBeside) {
   EXPECT_EQ(table.rows[0],
             (std::vector<std::string>{
                 "eye", "400", "0.987 ", "0.667 ", "0.986=", "contours+none", "0.986", "+0.001="}));
-  // Where there is nothing to be found: the share of frames without a ghost.
+  // Without targets: the share of frames without a false target.
   EXPECT_EQ(table.rows[1],
             (std::vector<std::string>{
                 "road", "400", "1.000 ", "0.500 ", "0.980 ", "contours+none", "0.980", "+0.020 "}));
@@ -86,7 +86,7 @@ TEST_F(SourceTables, GiveAnIntervalForEachFigure) {
   EXPECT_LT(interval.low, results[0].methods[1].grade);
   EXPECT_GT(interval.high, results[0].methods[1].grade);
   const Table table = interval_table(evaluation_, results);
-  EXPECT_EQ(table.rows[1][1], "-");  // without an error
+  EXPECT_EQ(table.rows[1][1], "-");  // no errors
   EXPECT_NE(table.note.find("sequences: eye, road"), std::string::npos) << table.note;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Tracking by how much is in view, on answers made by hand.
+// Tracking measures by the visible part, on hand-made answers.
 #include "examples/evaluate/tracking.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ Result result_of(const Step& step) {
   return result;
 }
 
-// One method's answers to some sequences.
+// One method's prepared answers to some sequences.
 class Told {
  public:
   explicit Told(const std::vector<std::vector<Step>>& steps) {
@@ -110,7 +110,7 @@ TEST(Tracking, CountsWhatAnAnswerIsWorth) {
   EXPECT_EQ(counts.wrong, 1);
   EXPECT_EQ(counts.none, 1);
   EXPECT_EQ(m.wrong(), 1);
-  EXPECT_EQ(m.centre_errors_px, std::vector<double>(2, 0.0));  // of the right ones
+  EXPECT_EQ(m.centre_errors_px, std::vector<double>(2, 0.0));  // of the right answers
 }
 
 TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
@@ -119,8 +119,8 @@ TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
   EXPECT_EQ(m.ranges[1].frames, 2);
   EXPECT_EQ(m.ranges[1].right, 1);
   EXPECT_EQ(m.ranges[1].none, 1);
-  EXPECT_EQ(m.wrong(), 1);         // wrong is wrong from the first frame on
-  EXPECT_TRUE(m.returns.empty());  // the first time is none
+  EXPECT_EQ(m.wrong(), 1);         // a wrong answer counts from the first frame on
+  EXPECT_TRUE(m.returns.empty());  // the first detection is no return
 }
 
 TEST(Tracking, BeginsAnewAfterTheTargetWasOutOfView) {
@@ -142,7 +142,7 @@ TEST(Tracking, LocksOnNothingCountFromTheFirstFrame) {
                                        {kOut, Says::kNone},
                                        {1.0, Says::kRight},
                                        {kOut, Says::kRight},
-                                       {0.0, Says::kRight}});  // its inside is not nothing
+                                       {0.0, Says::kRight}});  // the frame is inside the target
   EXPECT_EQ(m.empty_frames, 3);
   EXPECT_EQ(m.locks_on_nothing, 2);
 }
@@ -164,7 +164,7 @@ TEST(Tracking, CountsFramesUntilALostTargetIsRightAgain) {
   EXPECT_EQ(returns({gone, {0.2, Says::kRight}, found, missed, found}), List{1.0});
   EXPECT_EQ(returns({gone, missed, gone, found, lost, missed}), (List{kNever, 1.0, kNever}));
   EXPECT_EQ(returns({lost, missed, lost, found}), (List{kNever, 1.0}));
-  // Never lost, lost in full view, told.
+  // Never lost; lost in full view; target given.
   EXPECT_EQ(returns({{0.2, Says::kRight}, {0.1, Says::kNear}, missed, found}), List{});
   EXPECT_EQ(returns({missed, found}), List{});
   EXPECT_EQ(returns({gone, missed, {0.8, Says::kTold}, found}), List{});
@@ -182,7 +182,7 @@ TEST(Tracking, EachSequenceBeginsAfresh) {
                   {{0.2, Says::kWrong}, {0.8, Says::kNone}, {0.8, Says::kRight}}});
   const TrackingMeasures m = two.measures();
   EXPECT_TRUE(m.returns.empty());
-  EXPECT_EQ(m.wrong(), 1);  // before the second one begins
+  EXPECT_EQ(m.wrong(), 1);  // before the second sequence begins
   EXPECT_EQ(m.ranges[0].frames, 3);
   EXPECT_EQ(m.times_ms.size(), 5U);
   EXPECT_EQ(tracking_measures_of(two.evaluation(), 0, "another").times_ms.size(), 0U);

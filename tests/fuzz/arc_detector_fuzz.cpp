@@ -13,7 +13,7 @@
 
 namespace {
 
-// What the detector promises of every answer.
+// The detector's guarantees for every result.
 bool is_sound(const ellipse::Detection& d) {
   const ellipse::Ellipse& e = d.ellipse;
   return std::isfinite(e.cx + e.cy + e.angle_rad + d.score) && e.semi_major >= e.semi_minor &&
@@ -21,7 +21,7 @@ bool is_sound(const ellipse::Detection& d) {
          d.contour_overlap >= 0.0 && d.contour_overlap <= 1.0 + 1e-9;
 }
 
-// Bytes from the input, one after the other; 0 at its end.
+// Reads the input byte by byte; 0 after its end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -58,7 +58,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const int stride = width + bytes.next() % 17;
   const ellipse::Thresholds thresholds = thresholds_from(bytes);
 
-  // The rest of the input repeated, in a buffer of its own so that nothing around it can be read.
+  // Repeats the rest of the input, in a buffer of exactly this size so that out-of-bounds reads are
+  // caught.
   const std::size_t needed = static_cast<std::size_t>(stride) * (height - 1) + width;
   std::vector<std::uint8_t> pixels(needed, 128);
   for (std::size_t i = 0; bytes.rest_size() > 0 && i < needed; i += bytes.rest_size()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the fuzzer found worth keeping, once more on every run of the tests.
+// Replays the corpus of the fuzzer on every run of the tests.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Ellipses as detected objects in GStreamer's analytics metadata, as it reads and draws them; and
-// what the property says in a build without it.
+// Ellipses as detected objects in GStreamer's analytics metadata, as GStreamer reads and draws
+// them, and the property in a build without the analytics library.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -119,7 +119,7 @@ std::vector<Object> objects_on(GstBuffer* buffer) {
   return objects;
 }
 
-// The tracking metadata that an object is related to.
+// The tracking metadata related to an object.
 std::optional<Sighting> track_of(GstBuffer* buffer, const Object& object) {
   GstAnalyticsTrackingMtd track;
   const gboolean has_track =
@@ -166,7 +166,7 @@ TEST(EllipseTrackAnalytics, ATargetIsAnObjectThatIsTracked) {
   EXPECT_EQ(track->last, 2000U);
 }
 
-// A pad that drifts, and at the end behind a bar.
+// A drifting pad; a bar hides half of it on request.
 Picture drifting_pad(int frame, bool is_half_hidden) {
   ellipse::Scene scene;
   if (is_half_hidden) {
@@ -177,7 +177,7 @@ Picture drifting_pad(int frame, bool is_half_hidden) {
 }
 
 TEST(EllipseTrackAnalytics, APredictedTargetWasSeenBefore) {
-  // With the probability of half a pad it would be detected again.
+  // With the default min-probability, half a pad would be detected again.
   const auto harness = tracker("attach-analytics=true min-probability=0.99");
   const auto pts_of = [](int frame) { return static_cast<GstClockTime>(frame) * GST_SECOND / 30; };
   for (int i = 0; i < 20; ++i) push(harness, frame_at(drifting_pad(i, false), pts_of(i)));
@@ -219,7 +219,7 @@ TEST(EllipseTrackAnalytics, JoinThoseOfOtherElements) {
 }
 
 #if GST_CHECK_VERSION(1, 26, 0)
-// A point of the picture in the axes of a box, from its centre.
+// A point of the picture relative to a box's centre, along the box's axes.
 Eigen::Vector2d in_box(const Object& object, const Eigen::Vector2d& point) {
   const ellipse::Rect& box = object.oriented;
   const Eigen::Vector2d half(0.5 * box.width, 0.5 * box.height);
@@ -257,7 +257,7 @@ TEST(AnalyticsObject, IsTheOrientedBoxAroundTheEllipse) {
 }
 #endif
 
-// Its axes are those of the ideal plane, not of the picture.
+// The metadata's axes are those of the ideal plane, not of the picture.
 TEST(AnalyticsObject, OfADistortedOutlineIsItsUprightBox) {
   const Owned<GstBuffer> buffer(gst_buffer_new());
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
@@ -278,7 +278,7 @@ TEST(AnalyticsObject, OutsideTheFrameIsNone) {
   EXPECT_TRUE(objects_on(buffer.get()).empty());
 }
 
-// The pictures and the objects on a pad of an element.
+// Records the pictures and objects on a pad of an element.
 class PadWatch {
  public:
   PadWatch(const Owned<GstElement>& element, const char* name) {
@@ -306,7 +306,7 @@ class PadWatch {
   }
 };
 
-// A line of two pixels along the border of a box.
+// Whether a pixel is on a line of two pixels along the border of a box.
 bool is_on_border(const ellipse::Rect& box, int x, int y) {
   const auto grown = [&](int by) {
     return ellipse::Rect{box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};

@@ -12,7 +12,7 @@
 
 namespace support {
 
-/// What people can set on an element, in the order in which it was installed.
+/// The writable properties of an element, in the order of installation.
 inline std::vector<GParamSpec*> settings_of(GstElement* element) {
   guint count = 0;
   GParamSpec** all = g_object_class_list_properties(G_OBJECT_GET_CLASS(element), &count);
@@ -25,7 +25,7 @@ inline std::vector<GParamSpec*> settings_of(GstElement* element) {
   return settings;
 }
 
-/// A value of a property's type. GLib judges it as it does any program's.
+/// A value of a property's type, validated by GLib.
 class PropertyValue {
  public:
   explicit PropertyValue(GParamSpec* spec) : spec_(spec) {
@@ -36,7 +36,7 @@ class PropertyValue {
   PropertyValue(const PropertyValue&) = delete;
   PropertyValue& operator=(const PropertyValue&) = delete;
 
-  /// Where the type is no number the default stays.
+  /// Types other than numbers keep the default.
   void be(double number) {
     switch (G_TYPE_FUNDAMENTAL(spec_->value_type)) {
       case G_TYPE_DOUBLE:
@@ -65,7 +65,7 @@ class PropertyValue {
     }
   }
   [[nodiscard]] const GValue& value() const { return value_; }
-  /// Whether it lies in the property's range.
+  /// Whether the value is in the property's range.
   [[nodiscard]] bool is_valid() const { return g_param_value_is_valid(spec_, &value_) != FALSE; }
   void give_to(GstElement* element) const {
     g_object_set_property(G_OBJECT(element), spec_->name, &value_);
@@ -106,7 +106,7 @@ inline void set_number(GstElement* element, GParamSpec* spec, double number) {
   value.give_to(element);
 }
 
-/// Any number that people might mean, and now and then one of the extremes.
+/// A number in a plausible range, sometimes an extreme one.
 inline void set_at_random(GstElement* element, GParamSpec* spec, ellipse::Random& random) {
   const bool is_extreme = random.below(8) == 0;
   const auto which = static_cast<std::size_t>(random.below(int(kExtremes.size())));
@@ -114,7 +114,7 @@ inline void set_at_random(GstElement* element, GParamSpec* spec, ellipse::Random
   set_number(element, spec, is_extreme ? kExtremes.at(which) : random.between(0.0, most));
 }
 
-/// While it lives neither warnings nor refused values are printed: there are thousands.
+/// Suppresses warnings and rejected values, of which there are thousands, while it exists.
 class QuietWarnings {
  public:
   QuietWarnings() : before_(g_log_set_default_handler(print_what_is_worse, nullptr)) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What decoders make of files with bytes turned over. A decoder may end the stream with an error;
-// what it lets through reaches ellipsetrack.
+// Decodes files with corrupted bytes. A decoder may end the stream with an error; the frames that
+// it outputs reach ellipsetrack.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -41,7 +41,8 @@ std::string broken(std::string bytes, int flips, ellipse::Random& random) {
   return bytes;
 }
 
-// @return How many frames came through; fails where the pipeline neither ended nor said why not.
+// @return The number of frames at the sink; fails if the pipeline neither ends nor reports an
+// error.
 std::size_t frames_of(const std::string& pipeline) {
   Verdicts verdicts;
   const std::string failure =
@@ -61,7 +62,7 @@ TEST(BrokenStream, PicturesOfTurnedOverBytesPass) {
     std::snprintf(name, sizeof name, "%03d.jpg", i);
     write(folder.file(name), broken(read(folder.file(name)), 1 + i, random));
   }
-  // Each by itself: a decoder that gives up on one has not seen the next.
+  // One pipeline per picture: a decoder that fails on one never reads the next.
   std::size_t frames = 0;
   for (int i = 0; i < kFrames; ++i) {
     const std::string index = std::to_string(i);
@@ -88,7 +89,7 @@ TEST(BrokenStream, VideoOfTurnedOverBytesPasses) {
   const std::string decoder =
       "filesrc location=" + folder.file("broken.h264") + " ! h264parse ! avdec_h264 ! videoconvert";
   write(folder.file("broken.h264"), whole);
-  ASSERT_EQ(frames_of(decoder), std::size_t{kFrames});  // so that it is the bytes
+  ASSERT_EQ(frames_of(decoder), std::size_t{kFrames});  // without corruption
   ellipse::Random random(2);
   std::size_t frames = 0;
   for (const int flips : {1, 3, 10, 30, 100, 300, 1000}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What other programs say of the elements: valgrind, gst-validate, ThreadSanitizer.
+// Runs valgrind, gst-validate and ThreadSanitizer on the elements.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ bool is_installed(const char* program) {
 
 TEST(Valgrind, DISABLED_LeavesABlock) {
   volatile int* block = new int[100];
-  EXPECT_NE(block[7], 12345);  // never written
+  EXPECT_NE(block[7], 12345);  // never initialised
   block = nullptr;
 }
 
@@ -57,14 +57,14 @@ TEST(Valgrind, FindsNothing) {
       "G_SLICE=always-malloc valgrind -q --error-exitcode=9 --leak-check=full "
       "--show-leak-kinds=definite --errors-for-leak-kinds=definite --num-callers=25 "
       "--suppressions=" ELLIPSE_TESTS "/valgrind.supp";
-  EXPECT_FALSE(run_own_tests(memcheck, "Valgrind.DISABLED_LeavesABlock", log));  // it works
+  EXPECT_FALSE(run_own_tests(memcheck, "Valgrind.DISABLED_LeavesABlock", log));  // finds it
   EXPECT_NE(contents_of(log).find("definitely lost"), std::string::npos) << contents_of(log);
   EXPECT_NE(contents_of(log).find("uninitialised"), std::string::npos) << contents_of(log);
   EXPECT_TRUE(run_own_tests(memcheck, "Valgrind.DISABLED_ShortPipelines", log)) << contents_of(log);
 }
 
 #if ELLIPSE_SANITIZER_IS_THREAD
-// Two threads, one number: with GLib's mutex, or without.
+// Two threads increment one number, with GLib's mutex or without.
 int count_in_two_threads(GMutex* mutex) {
   int count = 0;
   const auto add = [&] {
@@ -129,7 +129,7 @@ std::vector<std::string> scenarios() {
   return files;
 }
 
-// The structures of a scenario: a line each, the first one, "meta", on many.
+// The structures of a scenario: one per line, except the first, "meta", which spans several.
 std::vector<std::string> structures_of(const std::string& file) {
   std::vector<std::string> structures;
   std::ifstream in(file);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The same stream gives the same ellipses, to the last bit.
+// The same stream gives the same ellipses, bit for bit.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -29,7 +29,7 @@ struct Frame {
   bool has_time = true;
 };
 
-// @param is_missing  Frames that never arrive.
+// @param is_missing  Whether a frame is dropped before the tracker.
 template <class IsMissing>
 std::vector<Frame> film(const char* scene, int frames, const IsMissing& is_missing) {
   ellipse::SceneRenderer renderer(ellipse::scene_by_name(scene, 1));
@@ -42,7 +42,7 @@ std::vector<Frame> film(const char* scene, int frames, const IsMissing& is_missi
   return film;
 }
 
-// Two seconds, rendered once.
+// Two seconds of a scene, rendered once.
 const std::vector<Frame>& film(const char* scene) {
   static std::map<std::string, std::vector<Frame>> films;
   std::vector<Frame>& found = films[scene];
@@ -58,7 +58,7 @@ Owned<GstBuffer> buffer_of(const Frame& frame) {
   return buffer;
 }
 
-// @param deliver  Calls what it is given, in whichever thread.
+// @param deliver  Calls its argument, on any thread.
 template <class Deliver>
 std::vector<Verdict> shown(const std::vector<Frame>& film,
                            const std::string& settings,
@@ -79,7 +79,7 @@ std::vector<Verdict> shown(const std::vector<Frame>& film, const std::string& se
 
 const auto kInThreadsOfTheirOwn = [](const auto& push) { std::thread(push).join(); };
 
-// How many frames had a target; its numbers.
+// Number of frames with a target; collects the targets' ids.
 int found_in(const std::vector<Verdict>& verdicts, std::set<std::uint64_t>& ids) {
   int found = 0;
   for (const Verdict& verdict : verdicts) {
@@ -121,7 +121,7 @@ TEST_P(Determinism, AfterAResetByFlush) {
     gst_harness_push_event(harness.get(), gst_event_new_flush_stop(FALSE));
   }
   for (std::vector<Verdict>& round : rounds) {
-    for (Verdict& verdict : round) verdict.id = verdict.id == 0 ? 0 : 1;  // numbers go on
+    for (Verdict& verdict : round) verdict.id = verdict.id == 0 ? 0 : 1;  // ids keep counting
   }
   EXPECT_EQ(rounds[0], rounds[1]);
 }
@@ -156,7 +156,7 @@ TEST(Gaps, FiveLostFramesDoNotLoseTheTarget) {
   }
 }
 
-// As behind decoders that leave out a time stamp now and then.
+// Like decoders that omit some time stamps.
 TEST(Gaps, LostTimeStampsLoseNothing) {
   for (const char* scene : {"approach", "touchdown", "dash"}) {
     std::vector<Frame> frames = film(scene, 150, [](int) { return false; });

@@ -24,7 +24,7 @@ using support::tracker;
 
 constexpr int kLargest = 8192;
 
-// Black, in memory that takes room only where it is written.
+// A black frame; pages that are never written take no memory.
 Owned<GstBuffer> black(const GstVideoInfo& info) {
   const gsize size = GST_VIDEO_INFO_SIZE(&info);
   void* pixels = std::calloc(size, 1);
@@ -175,7 +175,7 @@ TEST(EllipseTrackFrames, OtherFormatsEndWithTheListOfThoseServed) {
   }
 }
 
-// A query is no stream.
+// A query about formats is no stream error.
 TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
   const auto harness = tracker();
   BusTap bus(element_of(harness));
@@ -185,7 +185,7 @@ TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
   EXPECT_FALSE(bus.pop(GST_MESSAGE_ERROR));
 }
 
-// As from a camera: GStreamer's own converter makes the mosaic.
+// Like a camera: GStreamer's own converter makes the mosaic.
 TEST(EllipseTrackFrames, MosaicsAndTenBitsGiveTheEllipseOfGrey) {
   const auto centre_in = [](const std::string& format) {
     support::Pipeline pipeline("ellipsetestsrc num-buffers=5 ! videoconvert ! " + format +

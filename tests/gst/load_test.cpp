@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Time is given, not taken: where an element is asked, the limit is one that every frame breaks.
+// Load handling without real time: tests of the element set a limit that every frame exceeds.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -42,7 +42,7 @@ TEST(LoadWatch, SearchesCoarserBeforeItSkips) {
     steps += std::to_string(load.scale()) + "/" + std::to_string(load.skipped_in_a_row()) + " ";
   }
   EXPECT_EQ(steps, "2/0 4/0 8/0 8/1 8/3 ");
-  EXPECT_EQ(frames_until_change(load, kLimit + 1), 0);  // no further
+  EXPECT_EQ(frames_until_change(load, kLimit + 1), 0);  // no further reduction
 }
 
 TEST(LoadWatch, TakesBackOneStepAfterALongRest) {
@@ -103,7 +103,7 @@ TEST(Lateness, LeavesOneFrameOfFive) {
     pattern += lateness.should_skip(time) ? '.' : 'x';
   }
   EXPECT_EQ(pattern, "....x....x..");
-  EXPECT_FALSE(lateness.should_skip(2101));  // 100 + 2 x 1000 is past
+  EXPECT_FALSE(lateness.should_skip(2101));  // 100 + 2 x 1000 has passed
   EXPECT_FALSE(lateness.should_skip(GST_CLOCK_TIME_NONE));
   lateness.observe(100, -50);
   EXPECT_FALSE(lateness.should_skip(50));
@@ -227,7 +227,7 @@ TEST(EllipseTrackLatency, IsUpstreamsAndWhatWasMeasured) {
   EXPECT_EQ(gst_harness_query_latency(harness.get()), 20 * GST_MSECOND + own);
 }
 
-// The fewer frames are analysed because they are late, the sooner it has to be told.
+// Skipped frames leave fewer analyses; the latency message must come nonetheless.
 TEST(EllipseTrackLatency, IsToldWhereFramesAreSkipped) {
   const auto harness = tracker("messages=none interval=1000");
   GstElement* element = element_of(harness);

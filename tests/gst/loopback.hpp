@@ -12,14 +12,14 @@
 #include "tests/gst/support.hpp"
 #include "tests/support/child_process.hpp"
 
-// What lines are sent to, and where they are read again: all on the loopback.
+// Receivers of lines, all on the loopback interface.
 namespace support {
 
 inline std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-/// A socket on the loopback that gives up after a while instead of waiting for ever.
+/// A socket on the loopback with a timeout.
 class Socket {
  public:
   explicit Socket(GSocketType type)
@@ -30,7 +30,7 @@ class Socket {
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
-  /// @return The port, chosen by the system.
+  /// @return The port that the system chose.
   int bind() {
     GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
     g_socket_bind(socket_, any, FALSE, nullptr);
@@ -50,7 +50,8 @@ class Socket {
     g_socket_send(socket_, bytes.data(), bytes.size(), nullptr, nullptr);
   }
   void keep_little_unread() { g_socket_set_option(socket_, SOL_SOCKET, SO_RCVBUF, 4096, nullptr); }
-  /// @return One datagram, or what there is of a stream; empty where nothing more comes.
+  /// @return One datagram, or the available bytes of a stream; empty at the end or after the
+  /// timeout.
   std::string receive() {
     std::array<char, 65536> bytes;
     const gssize size = g_socket_receive(socket_, bytes.data(), bytes.size(), nullptr, nullptr);
@@ -69,7 +70,7 @@ class Socket {
   GSocket* socket_;
 };
 
-/// tcpserversink at a port of the system's choice, with its clients.
+/// tcpserversink at a port that the system chooses, with its clients.
 class Server {
  public:
   explicit Server(const std::string& lines, const std::string& settings = "")
@@ -77,7 +78,7 @@ class Server {
         sink_(pipeline_.element("server")) {
     pipeline_.pause();  // frame 0 is at the sink
   }
-  /// From here on the client gets every line.
+  /// The client receives every line from now on.
   void accept(Socket& client) {
     const guint before = number("num-handles");
     client.connect(static_cast<int>(number("current-port")));
@@ -92,13 +93,13 @@ class Server {
     for (int i = 0; i < 6000 && number("num-handles") != count; ++i) g_usleep(10000);
     EXPECT_EQ(number("num-handles"), count);
   }
-  /// This frame's line waits at the door until there are so many clients.
+  /// Blocks this frame's line until the server has this number of clients.
   void hold(int frame, guint until_clients) {
     held_frame_ = frame;
     held_clients_ = until_clients;
     probe("server", on_line, this);
   }
-  /// Of the buffers that come to an element, after frame 0.
+  /// Probes the buffers that reach an element after frame 0.
   void probe(const char* name, GstPadProbeCallback callback, gpointer data) {
     const auto element = pipeline_.element(name);
     GstPad* pad = gst_element_get_static_pad(element.get(), "sink");
@@ -122,7 +123,7 @@ class Server {
   guint held_clients_ = 0;
 };
 
-/// A program of the system, or nothing where it is not installed.
+/// Path of an installed program; empty if missing.
 inline std::string program(const std::string& name) {
   gchar* path = g_find_program_in_path(name.c_str());
   if (path == nullptr) path = g_find_program_in_path(("/usr/sbin/" + name).c_str());
@@ -131,7 +132,7 @@ inline std::string program(const std::string& name) {
   return text;
 }
 
-/// An MQTT broker on the loopback, for as long as this lives.
+/// An MQTT broker on the loopback for the lifetime of this object.
 class Broker {
  public:
   explicit Broker(const std::string& mosquitto)
@@ -145,9 +146,9 @@ class Broker {
   [[nodiscard]] std::string address() const {
     return " -h 127.0.0.1 -p " + port() + " -t pad -q 1 ";
   }
-  /// The broker keeps for this reader what comes from here on.
+  /// The broker stores messages for this reader from now on.
   [[nodiscard]] bool subscribe() const {
-    for (int i = 0; i < 1200; ++i) {  // until it is up
+    for (int i = 0; i < 1200; ++i) {  // until the broker accepts connections
       if (run_reader("-E").status == 0) return true;
       g_usleep(50000);
     }

@@ -6,8 +6,8 @@
 
 namespace {
 
-// Tests give properties values that are out of range. GLib refuses them before they reach an
-// element, in some versions with a critical.
+// Tests set properties out of range. GLib rejects such values before they reach an element; some
+// versions log a critical.
 gboolean is_fatal(const gchar* domain, GLogLevelFlags, const gchar* text, gpointer) {
   return support::is_refused_value(domain, text) ? FALSE : TRUE;
 }
@@ -17,7 +17,7 @@ gboolean is_fatal(const gchar* domain, GLogLevelFlags, const gchar* text, gpoint
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   gst_init(&argc, &argv);
-  // Elements report set-up mistakes of these tests as criticals: no test may cause one.
+  // A critical of an element is a bug: no test may cause one.
   g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_LEVEL_CRITICAL | G_LOG_FATAL_MASK));
   g_test_log_set_fatal_handler(is_fatal, nullptr);
   const int status = RUN_ALL_TESTS();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory that is slow to read, as that of a capture device.
+// Memory that is slow to read, like a capture device's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ using support::tracker;
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-// An allocator whose memory is not the system's. It wraps bytes of others.
+// An allocator of non-system memory, which wraps existing bytes.
 struct DeviceAllocator {
   GstAllocator parent;
 };
@@ -76,7 +76,7 @@ GstMemory* device_memory(GstAllocator* allocator, std::uint8_t* data, gsize size
   return &memory->parent;
 }
 
-// Frames of I420 with a page for each row of luma and of chroma.
+// Frames of I420 with one page for each row of luma and of chroma.
 class Device {
  public:
   Device()
@@ -131,8 +131,8 @@ std::vector<std::size_t> all_rows() {
 
 class EachTracking : public testing::TestWithParam<const char*> {};
 
-// 20 frames: found, then followed, at times with a look at the whole frame, which reads what lies
-// left and right of the followed region.
+// 20 frames: detection, then tracking with periodic searches of the whole frame. A search also
+// reads the pixels left and right of the tracked region.
 TEST_P(EachTracking, LumaInSlowMemoryIsReadOnceAndInOrder) {
   const std::string settings = std::string("tracking=") + GetParam();
   const auto harness = tracker(settings, caps_of("I420", kWidth, kHeight));

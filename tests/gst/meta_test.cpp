@@ -36,7 +36,7 @@ Owned<GstBuffer> empty_buffer() {
   return Owned<GstBuffer>(gst_buffer_new_allocate(nullptr, 16, nullptr));
 }
 
-// As a scaler does, into pixels of this shape (width by height).
+// Transforms the metadata as a scaler does, to this size and pixel aspect ratio.
 GstEllipseMeta* scaled_to(
     GstBuffer* from, GstBuffer* to, int width, int height, int par_n = 1, int par_d = 1) {
   GstVideoInfo in = support::info_of("GRAY8", 320, 240);
@@ -136,7 +136,7 @@ TEST(EllipseMeta, CovarianceFollowsAScaler) {
   EXPECT_NEAR(meta->covariance[4], 0.02, 1e-6);   // of cx and the angle
   EXPECT_NEAR(meta->covariance[14], 0.09, 1e-6);  // of the angle
   EXPECT_NEAR(meta->sigma_px, 2.0 * std::sqrt(0.1), 1e-6);
-  // Twice as wide: the centre's errors along x alone double.
+  // Twice as wide: only the centre's error along x doubles.
   const auto wide = empty_buffer();
   const GstEllipseMeta* stretched = scaled_to(from.get(), wide.get(), 640, 240, 1, 2);
   ASSERT_NE(stretched, nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// JSON lines, carried by the sinks of others and read at their far ends.
+// JSON lines through GStreamer's own sinks, read at the receivers.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ constexpr std::size_t kFrames = 30;
 const std::string kLines =
     "ellipsetestsrc num-buffers=" + std::to_string(kFrames) + " ! ellipsetrack ! ellipsejson ! ";
 
-// Each line is a JSON object, and they are the frames from this one on, without a gap.
+// Checks that each line is a JSON object, and that the frames are consecutive from the first.
 void expect_frames(const std::string& text, std::size_t first, std::size_t count) {
   ASSERT_TRUE(text.ends_with('\n'));
   const auto lines = support::parse_ndjson(std::istringstream(text));
@@ -118,7 +118,7 @@ TEST(NdjsonSinks, TcpServerSinkServesEachClientFromWhenItComes) {
   expect_frames(rest, 20, kFrames - 20);
 }
 
-// Lines of some 16 KB each: 16 MB in all, which is more than the system keeps for a client.
+// Lines of about 16 KB each, 16 MB in total: more than the system buffers for a client.
 constexpr std::size_t kLongLines = 1000;
 const std::string kManyBytes =
     "videotestsrc pattern=black num-buffers=" + std::to_string(kLongLines) +
@@ -144,7 +144,7 @@ TEST(NdjsonSinks, TcpServerSinkIsNotHeldUpByAClientThatDoesNotRead) {
   reader.receive_lines(text, kLongLines);
   expect_frames(text, 0, kLongLines);
   EXPECT_EQ(server.wait_for_end(), "");
-  EXPECT_GT(server.number("buffers-queued"), 100U);  // kept for the other one
+  EXPECT_GT(server.number("buffers-queued"), 100U);  // kept for the other client
 }
 
 TEST(NdjsonSinks, TcpServerSinkDropsAClientThatDoesNotReadWhereToldSo) {
@@ -176,7 +176,7 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
   expect_frames(broker.read(kFrames), 0, kFrames);
 }
 
-// Of so many numbers some would meet by chance.
+// Without the reservation, some of so many random numbers would collide.
 TEST(OwnPort, IsNobodyElses) {
   std::set<int> numbers;
   std::vector<std::unique_ptr<support::OwnPort>> ports;
@@ -193,7 +193,7 @@ TEST(OwnPort, IsNoneThatSomebodyHas) {
   }
 }
 
-// German, whose numbers have a comma; made for this test where the system does not have it.
+// A German locale, with decimal commas; created if the system does not have it.
 class German {
  public:
   German() {
@@ -225,7 +225,7 @@ std::string lines_of(const std::string& pipeline) {
   return contents_of(folder.file("lines"));
 }
 
-// The lines without the time that was spent, which is another one each time.
+// Lines without the processing time, which differs from run to run.
 std::string lines_without_times() {
   return lines_of("ellipsetestsrc num-buffers=" + std::to_string(kFrames) +
                   " ! ellipsetrack ! ellipsejson times=false ! ");
@@ -238,7 +238,7 @@ TEST(NdjsonLines, CanLeaveOutTheTimeThatWasSpentAndNothingElse) {
   EXPECT_EQ(without,
             std::regex_replace(lines_of(kLines), std::regex(",\"processing_ns\":[0-9]+"), ""));
   expect_frames(without, 0, kFrames);
-  // Behind no tracker there is no time.
+  // Without a tracker there is no processing time.
   const std::string untracked =
       lines_of("ellipsetestsrc num-buffers=1 ! ellipsejson times=false ! ");
   EXPECT_EQ(untracked.find("processing_ns"), std::string::npos);

@@ -130,7 +130,7 @@ TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
   }
 }
 
-// As ellipsetrack tells it of a lens that distorts the picture.
+// Same form as ellipsetrack's outline for a distorting lens.
 TEST(EllipseTestSrc, TruthThroughALensHasItsOutline) {
   for (const char* name : {"none", "barrel", "fisheye"}) {
     const auto buffer =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipseoverlay: what it draws, where, in which colour, and whose pixels it leaves alone.
+// ellipseoverlay: what it draws, where and in which colour, and which pixels it leaves unchanged.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void add_ellipse(GstBuffer* buffer, const Ellipse& e) {
   meta->angle_rad = e.angle_rad;
 }
 
-// Bytes that are all over the place, opaque where there is opacity.
+// A buffer of varied bytes, opaque in formats with alpha.
 Owned<GstBuffer> noise_buffer(const GstVideoInfo& info) {
   const gsize size = GST_VIDEO_INFO_SIZE(&info);
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
@@ -72,7 +72,7 @@ Owned<GstBuffer> drawn(const std::string& settings,
   return push(harness_of("ellipseoverlay " + settings, caps, caps), std::move(buffer));
 }
 
-// The first component of what is drawn: luma, or red.
+// The first component after drawing: luma, or red.
 Picture drawn_picture(const std::string& settings,
                       const std::string& format,
                       int width,
@@ -86,7 +86,7 @@ Picture drawn_gray(const std::string& settings, int width, int height, const Ell
   return drawn_picture(settings, "GRAY8", width, height, e);
 }
 
-// One byte of a frame and the pixels that it is shared by.
+// One byte of a frame and the block of pixels that shares it.
 struct Sample {
   std::size_t at = 0;
   guint component = 0;
@@ -160,8 +160,8 @@ TEST(EllipseOverlay, CoversTheWholeLineInEachFormat) {
   }
 }
 
-// Of a red line that is wide enough to cover all that shares a sample, also at the border, where
-// less shares it: both standards and both ranges, by their definitions.
+// A red line that covers all pixels that share a sample, also at the border, where the block is
+// cut. Checks both standards and both ranges against their definitions.
 TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
   struct Case {
     const char* colorimetry;
@@ -190,7 +190,7 @@ TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
   }
 }
 
-// The luma or grey of a frame, its 8 highest bits, as ellipsetrack reads them.
+// The luma or grey of a frame, its 8 most significant bits, as ellipsetrack reads them.
 std::vector<int> levels_of(GstBuffer* buffer, const GstVideoInfo& info) {
   GstVideoFrame frame;
   EXPECT_TRUE(gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ));
@@ -227,7 +227,7 @@ TEST(EllipseOverlay, DrawsTheSameWithMoreBits) {
 }
 
 TEST(EllipseOverlay, HasItsColourInChromaOfMoreBits) {
-  // A red line that covers all: Y 81, U 90, V 240 by [BT601], four times as much with 10 bits.
+  // A red line over the whole block: Y 81, U 90, V 240 by [BT601], times four with 10 bits.
   constexpr int kRed[] = {81 * 4, 90 * 4, 240 * 4};
   for (const char* format : {"I420_10LE", "P010_10LE"}) {
     const GstVideoInfo info = info_of(format, 96, 96);
@@ -284,7 +284,7 @@ TEST(EllipseOverlay, WidthIsThatOfTheLine) {
   }
 }
 
-// Where the curve is sharper than the line is wide.
+// The curvature radius is below the line width.
 TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
   const Ellipse flat{60.0, 60.0, 50.0, 3.0, 0.7};
   const Picture picture =
@@ -298,7 +298,7 @@ TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
   }
 }
 
-// The largest difference from the background within 2 px of a point.
+// The maximum difference from the background within 2 px of a point.
 int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int background) {
   int most = 0;
   const int cx = static_cast<int>(std::lround(point.x()));
@@ -311,7 +311,7 @@ int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int back
   return most;
 }
 
-// Without colour a line has a grey level, which may be that of what lies behind it.
+// Without colour a line is grey, possibly the grey of the background.
 TEST(EllipseOverlay, IsSeenOnAnyGreyInAFormatWithoutColour) {
   const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
   const GstVideoInfo info = info_of("GRAY8", 161, 121);
@@ -465,7 +465,7 @@ TEST(EllipseOverlay, ABufferTooSmallForItsCapsPassesWithAWarning) {
   const std::string caps = caps_of("GRAY8", 320, 240);
   const auto harness = harness_of("ellipseoverlay name=overlay", caps, caps);
   const Owned<GstElement> overlay(gst_bin_get_by_name(GST_BIN(harness->element), "overlay"));
-  support::BusTap bus(overlay.get());  // a bin's messages would keep each other alive on it
+  support::BusTap bus(overlay.get());  // a bin and its bus messages would reference each other
   Owned<GstBuffer> small(gst_buffer_new_allocate(nullptr, 100, nullptr));
   gst_buffer_memset(small.get(), 0, 128, 100);
   add_ellipse(small.get(), {160.0, 120.0, 80.0, 60.0, 0.0});
@@ -482,7 +482,7 @@ TEST(EllipseOverlay, TransparentColourDrawsNothing) {
   for (const auto level : picture.pixels) EXPECT_EQ(level, 128);
 }
 
-// What a label changes, as its upright box, and how many pixels that is.
+// Bounding box and number of the pixels that a label changes.
 struct Touched {
   int left = 1 << 20;
   int top = 1 << 20;
@@ -548,7 +548,7 @@ TEST(EllipseOverlay, LabelsOfTwoEllipsesDoNotMeet) {
     const Bytes bytes = bytes_of(push(harness, std::move(buffer)).get());
     return bytes.size() - static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), 128));
   };
-  // The truth's label is shorter by a few letters; under the other one it would add a few pixels.
+  // The truth's label is a few letters shorter; if the labels overlapped, it would add few pixels.
   EXPECT_GT(count("truth=true"), 3 * count("truth=false") / 2);
 }
 
@@ -583,7 +583,7 @@ TEST(EllipseOverlay, LeavesThePixelsOfAnotherBranchAlone) {
   }
 }
 
-/* Beside the pixels */
+/* Composition metadata in place of drawing */
 
 Owned<GstHarness> composing_harness(const std::string& elements, const std::string& caps) {
   Owned<GstHarness> harness(gst_harness_new_parse(elements.c_str()));
@@ -607,8 +607,7 @@ bool sends_composition_caps(const Owned<GstHarness>& harness) {
 }
 
 TEST(EllipseOverlay, LeavesComposingToThoseWhoOfferIt) {
-  // GStreamer blends by BT.709 whatever the caps say, and picks one pixel for each sample of
-  // chroma.
+  // GStreamer always blends by BT.709, and takes each chroma sample from a single pixel.
   for (const char* format : {"BGRx", "RGB", "ARGB", "Y444", "I420"}) {
     const GstVideoInfo info = info_of(format, 640, 480);
     const std::string caps =
@@ -705,7 +704,7 @@ TEST(EllipseOverlay, FollowsDownstreamWhenItChangesItsMind) {
     return buffer;
   };
   EXPECT_NE(composition_on(push(harness, frame())), nullptr);
-  gst_harness_set_sink_caps_str(harness.get(), caps.c_str());  // asks to negotiate again
+  gst_harness_set_sink_caps_str(harness.get(), caps.c_str());  // requests a renegotiation
   EXPECT_EQ(composition_on(push(harness, frame())), nullptr);
   EXPECT_FALSE(sends_composition_caps(harness));
 }

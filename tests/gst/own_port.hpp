@@ -13,7 +13,7 @@
 
 namespace support {
 
-/// Whether nobody has this port, of TCP or of UDP.
+/// Whether a port is free for both TCP and UDP.
 inline bool is_free(int port) {
   for (const int type : {SOCK_STREAM, SOCK_DGRAM}) {
     const int socket = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
@@ -28,9 +28,9 @@ inline bool is_free(int port) {
   return true;
 }
 
-/// A port for a program that is started later. It lies below those that the system hands out to
-/// whoever asks for any (from 32768 on), and a name tells other runs of these tests that it is
-/// taken for as long as this lives.
+/// A port for a program that starts later. It is below the system's ephemeral ports (32768 and up).
+/// An abstract socket name reserves it against parallel runs of these tests for the lifetime of
+/// this object.
 class OwnPort {
  public:
   OwnPort() {
@@ -51,7 +51,7 @@ class OwnPort {
     const std::string name = "gst-ellipse-tests-port-" + std::to_string(port);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    std::copy(name.begin(), name.end(), address.sun_path + 1);  // no file: it goes with its owner
+    std::copy(name.begin(), name.end(), address.sun_path + 1);  // abstract: leaves no file
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
     const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const bool is_ours =

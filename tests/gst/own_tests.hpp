@@ -8,15 +8,15 @@
 
 namespace support {
 
-/// Runs some of this program's tests in a process of its own, the disabled ones among them.
-/// @param before  What stands before the program: variables, or a command that takes one.
-/// @param log     Takes what they print.
+/// Runs some of this program's tests, including disabled ones, in a separate process.
+/// @param before  Prefix of the command: variables, or a command that runs the program.
+/// @param log     File for the output.
 /// @return Whether they passed.
 inline bool run_own_tests(const std::string& before,
                           const std::string& tests,
                           const std::string& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  // What runs programs of another processor; meson says it to the tests of a cross build.
+  // Runs programs of another architecture; meson sets it in a cross build.
   const char* emulator = std::getenv("MESON_EXE_WRAPPER");
   const std::string run = emulator != nullptr ? std::string(emulator) + " " + program : program;
   const std::string command = "GTEST_OUTPUT= " + before + " " + run +

@@ -20,7 +20,7 @@ using support::read_ndjson;
 using support::run_pipeline;
 using support::TemporaryFolder;
 
-// The ellipse with a role on a line, or nothing.
+// The ellipse with a role on a line, if any.
 std::optional<ellipse::Ellipse> ellipse_on(JsonObject* line, const std::string& role) {
   JsonArray* targets = json_object_get_array_member(line, "targets");
   for (guint i = 0; i < json_array_get_length(targets); ++i) {
@@ -62,7 +62,7 @@ TEST(Pipeline, TracksAVideoFileReadBackFromDisk) {
   EXPECT_GE(right, 59);
 }
 
-// Notes the memory of each buffer that passes a pad.
+// Records the memory of each buffer that passes a pad.
 GstPadProbeReturn note_memory(GstPad*, GstPadProbeInfo* info, gpointer data) {
   static_cast<std::vector<GstMemory*>*>(data)->push_back(
       gst_buffer_peek_memory(GST_PAD_PROBE_INFO_BUFFER(info), 0));
@@ -104,8 +104,8 @@ TEST(Pipeline, TwoTrackersShareAFrameAfterATee) {
   EXPECT_EQ(read_ndjson(folder.file("b")).size(), 20U);
 }
 
-// In a process of its own, because the tracer watches a whole process.
-// @return What was still alive at its end.
+// Runs in a separate process, because the tracer watches a whole process. @return The objects alive
+// at its end.
 std::string leaks_of(const std::string& tests) {
   const TemporaryFolder folder;
   const std::string log = folder.file("leaks.log");
@@ -151,7 +151,7 @@ TEST(Pipeline, AirLabFramesGiveTheSameAsTheEvaluation) {
 
   std::size_t next = 0;
   while (next < expected.size()) {
-    // A run of frames named <sequence>/frame<number>.jpg.
+    // Consecutive frames named <sequence>/frame<number>.jpg.
     const auto name_of = [&](std::size_t i) {
       return std::string(json_object_get_string_member(object_of(expected[i]), "image"));
     };

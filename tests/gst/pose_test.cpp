@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A camera's properties, and what they add to metadata, JSON and messages.
+// The camera properties and their effect on metadata, JSON and messages.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ using support::TemporaryFolder;
 constexpr int kFrames = 40;
 constexpr double kHfovRad = 1.012;  // of the test source's scenes
 
-// The pad's centre and normal in the camera's frame, in radii, at a time of a scene.
+// The pad's centre and normal in the camera frame [pad radii] at a time of a scene.
 std::pair<Vector3d, Vector3d> truth_at(const char* scene, double time_s) {
   const ellipse::Camera camera = ellipse::Camera::with_hfov(kHfovRad, 640, 360);
   Eigen::Matrix3d plane = camera.matrix().inverse() *
@@ -56,7 +56,7 @@ JsonObject* member_of(JsonArray* targets, const char* role) {
   return nullptr;
 }
 
-// @return The lines of a scene, tracked with these properties.
+// @return The JSON lines of a scene, tracked with these properties.
 std::vector<Owned<JsonParser>> lines_of(const std::string& scene, const std::string& properties) {
   const TemporaryFolder folder;
   const std::string file = folder.file("lines");
@@ -93,7 +93,7 @@ TEST(Pose, IsTheScenesInEachLine) {
       EXPECT_NEAR(json_object_get_double_member(targets[i], "angle_y"),
                   std::atan2(position.y(), position.z()),
                   2e-3);
-      // The detector's first ellipse is not yet followed, and exact to a tenth of a pixel only.
+      // The first frame is a detection without tracking; its accuracy is a tenth of a pixel.
       if (i == 0) continue;
       EXPECT_GT(vector_in(targets[i], "normal").dot(normal), std::cos(0.026)) << scene << " " << i;
       JsonArray* covariance = json_object_get_array_member(targets[i], "position_covariance");
@@ -203,8 +203,8 @@ TEST_F(PoseElement, TellsItInMessagesAndStructures) {
   EXPECT_EQ(gst_value_array_get_size(gst_structure_get_value(told, "position_covariance")), 6U);
 }
 
-// Through this lens the picture of the scene would come from a deformed pad; all the same, what is
-// told of the picture must lie on the edge in the picture.
+// The scene has no lens, so its undistorted outline is no ellipse. The reported outline must lie on
+// the edge in the picture nevertheless.
 TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
@@ -223,8 +223,8 @@ TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   }
 }
 
-// What the picture shows of them, not what the ideal plane does: undistorted, the disc in the
-// corner is cut by the frame.
+// The visible part in the picture, not in the ideal plane: undistorted, the frame cuts the disc in
+// the corner.
 TEST_F(PoseElement, TellsWhatIsSeenOfCandidatesInThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
@@ -274,7 +274,7 @@ TEST(PoseMeta, FollowsAScaler) {
   EXPECT_EQ(scaled->position_z, 4.0);
 }
 
-// The overlay draws the points, where there are some, and not the ellipse.
+// The overlay draws the outline's points, if any, in place of the ellipse.
 TEST(PoseMeta, IsDrawnAlongItsOutline) {
   const auto harness = harness_of("ellipseoverlay overlay=ellipse",
                                   support::caps_of("GRAY8", 320, 240),

@@ -21,7 +21,7 @@ using support::ring_picture;
 using support::target_on;
 using support::tracker;
 
-// Presets are read once, at the first question for them.
+// GStreamer reads presets once, at the first request.
 class TestPresets : public testing::Environment {
  public:
   void SetUp() override { gst_preset_set_app_dir(ELLIPSE_TEST_PRESETS); }
@@ -67,7 +67,7 @@ TEST(EllipseTrackProperties, HaveTheFlagsOfTheContract) {
   EXPECT_GT(count, controllable.size());
 }
 
-// What an element says in one of its properties.
+// The value of an element's property.
 class Read {
  public:
   Read(GstElement* element, GParamSpec* spec) : spec_(spec) {
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Elements,
                          EachElement,
                          testing::Values("ellipsetrack", "ellipseoverlay", "ellipsetestsrc"));
 
-// Those whose settings do not limit each other.
+// Elements whose settings do not constrain each other.
 class FreeElement : public EachElement {};
 
 TEST_P(FreeElement, KeepsEachNumberThatItIsGiven) {
@@ -134,7 +134,7 @@ TEST(EllipseTrackProperties, TheirTypesArePartOfThePluginsApi) {
   }
 }
 
-// A property follows straight lines between values at whole seconds of stream time.
+// A property interpolates linearly between values at whole seconds of stream time.
 void control(GstElement* element, const char* name, const std::map<int, double>& values) {
   GstControlSource* source = gst_interpolation_control_source_new();
   g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, nullptr);
@@ -169,7 +169,7 @@ TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
   EXPECT_EQ(pattern, "OOOOOoo.");
 }
 
-// A user hears each refusal; a curve that leaves its range is told of once, until it comes back.
+// Each rejected value posts a warning; a control curve posts one per excursion out of range.
 TEST(EllipseTrackProperties, OfACurveAreRefusedAloudOnce) {
   const auto harness = tracker("tracking=none");
   GstElement* element = element_of(harness);
@@ -206,7 +206,7 @@ TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
   }
 }
 
-// Of what finds the target nothing stays as it was.
+// Every setting that affects detection changes.
 TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
   const auto harness = tracker(
       "max-target-size=300 min-target-size=200 roi-expansion=5 refine=photometric ring-ratio=0.5 "
@@ -232,7 +232,7 @@ TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
   EXPECT_EQ(value_of<guint>(element, "min-contour-size"), 50U);
 }
 
-// A preset after another one leaves nothing of the first.
+// Loading a preset overrides everything that an earlier preset set.
 TEST(EllipseTrackPreset, EachSetsAllThatTheOthersSet) {
   const auto settings_after = [](const std::vector<const char*>& presets) {
     const auto harness = tracker();
@@ -262,7 +262,7 @@ TEST(EllipseTrackPreset, EachSetsAllThatTheOthersSet) {
   }
 }
 
-// Whether a ring is found in a picture of 1280 x 1000 that shows nothing else.
+// Whether a preset finds a ring on a uniform picture of 1280 x 1000.
 bool finds(const char* preset, const ellipse::Ellipse& ring) {
   const auto harness = tracker("", support::caps_of("GRAY8", 1280, 1000));
   if (preset != nullptr) {
@@ -293,7 +293,7 @@ TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
   EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
   EXPECT_EQ(value_of<int>(element, "detector"), 1);
   EXPECT_EQ(value_of<double>(element, "max-axis"), 700.0);
-  g_object_set(element, "max-axis", 600.0, nullptr);  // and setting goes on as before
+  g_object_set(element, "max-axis", 600.0, nullptr);  // later values apply as before
   EXPECT_EQ(value_of<double>(element, "max-axis"), 600.0);
   EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "No such preset"));
 }

@@ -6,8 +6,8 @@
 
 namespace support {
 
-/// Whether this is how GLib says that a value lies outside of a property's range and was not set.
-/// Up to 2.82 it is a warning, from 2.84 on a critical.
+/// Whether this is GLib's message about a value outside a property's range, which was not set. It
+/// is a warning up to 2.82 and a critical from 2.84 on.
 inline bool is_refused_value(const gchar* domain, const gchar* text) {
   return domain != nullptr && std::strcmp(domain, "GLib-GObject") == 0 &&
          std::strstr(text, "is invalid or out of range for property") != nullptr;

@@ -57,7 +57,7 @@ void expect_at(const Owned<GstBuffer>& buffer, const ellipse::Ellipse& truth) {
 TEST(EllipseTrackRegion, IsThatOfTheProperty) {
   const auto left = tracker("roi-source=property roi=\"<0,0,160,240>\"");
   const auto right = tracker("roi-source=property roi=\"<160,0,160,240>\"");
-  for (int i = 0; i < 12; ++i) {  // the detector looks again at the ninth
+  for (int i = 0; i < 12; ++i) {  // the detector searches again at the ninth
     expect_at(push(left, two_rings()), kLeft);
     expect_at(push(right, two_rings()), kRight);
   }
@@ -161,9 +161,9 @@ TEST(EllipseTrackRegion, CountsRegionsOfItsTypeOnly) {
   expect_at(push(harness, std::move(buffer)), kRight);
 }
 
-// A quark stays for good: a program that sets types from outside would grow.
+// GLib never frees a quark; a program that sets types from external input would grow.
 TEST(EllipseTrackRegion, ATypeThatNoRegionHasLeavesNothingBehind) {
-  const auto harness = tracker("roi-source=meta");  // what a launch line says is made a quark
+  const auto harness = tracker("roi-source=meta");  // properties in a launch line become quarks
   g_object_set(element_of(harness), "roi-type", "never-seen-before", nullptr);
   auto buffer = two_rings();
   add_region(buffer, "face", {0, 0, 160, 240});
@@ -173,7 +173,7 @@ TEST(EllipseTrackRegion, ATypeThatNoRegionHasLeavesNothingBehind) {
 
 TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
   const auto harness = tracker("roi-source=meta");
-  auto buffer = gray_buffer_of(ring_picture());  // its box: 103 to 197, 71 to 149
+  auto buffer = gray_buffer_of(ring_picture());  // its bounding box: 103 to 197, 71 to 149
   add_region(buffer, "pad", {90, 60, 20, 20});
   add_region(buffer, "pad", {190, 150, 20, 10});
   const auto out = push(harness, std::move(buffer));
@@ -187,7 +187,7 @@ TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
 
 #ifdef ELLIPSE_HAS_ANALYTICS
 
-// As a detector does it.
+// Attaches objects as a detector does.
 GstPadProbeReturn detect_objects(GstPad* /*pad*/, GstPadProbeInfo* info, gpointer /*data*/) {
   GstBuffer* buffer = gst_buffer_make_writable(GST_PAD_PROBE_INFO_BUFFER(info));
   info->data = buffer;
@@ -216,7 +216,7 @@ TEST(EllipseTrackRegion, IsThatOfDetectedObjects) {
 
 TEST(EllipseTrackRegion, OfObjectsReachesToThoseOfRegions) {
   const auto harness = tracker("roi-source=meta");
-  auto buffer = gray_buffer_of(ring_picture());  // its box: 103 to 197, 71 to 149
+  auto buffer = gray_buffer_of(ring_picture());  // its bounding box: 103 to 197, 71 to 149
   add_region(buffer, "pad", {90, 60, 20, 20});
   GstAnalyticsODMtd object;
   gst_analytics_relation_meta_add_od_mtd(gst_buffer_add_analytics_relation_meta(buffer.get()),
@@ -264,7 +264,7 @@ TEST(EllipseTrackRegion, OutsideTheCropIsNothing) {
   EXPECT_EQ(target_on(push(harness, cropped(two_rings(), kRightHalf))), nullptr);
 }
 
-// Upstream may leave cropping to those downstream only where all of them know it.
+// Upstream may leave cropping to downstream elements only if all of them support it.
 TEST(EllipseTrackRegion, CroppingIsOfferedWhereDownstreamOffersIt) {
   for (const bool is_offered : {false, true}) {
     Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));

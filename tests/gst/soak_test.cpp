@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Hours of video, in small frames: memory must not grow.
+// Hours of video in small frames: memory must not grow.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ using support::Picture;
 constexpr int kWidth = 160;
 constexpr int kHeight = 120;
 constexpr int kWindows = 5;
-constexpr std::int64_t kGrowthKiB = 64;  // a block of 32 bytes lost a frame is three times that
+constexpr std::int64_t kGrowthKiB = 64;  // 32 bytes lost per frame are three times that
 
 std::int64_t resident_kib() {
   std::ifstream in("/proc/self/statm");
@@ -34,7 +34,8 @@ std::int64_t resident_kib() {
   return resident * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-// Of the windows after the first: a leak shows in every one of them, an allocator's whim does not.
+// Minimum growth over the windows after the first: a leak grows in each, an allocator's cache does
+// not.
 std::int64_t least_growth(const std::vector<std::int64_t>& resident) {
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   for (std::size_t i = 1; i < resident.size(); ++i) {
@@ -43,7 +44,7 @@ std::int64_t least_growth(const std::vector<std::int64_t>& resident) {
   return least;
 }
 
-// A pad that leaves the picture and comes back, then one that is hidden now and then.
+// A pad that leaves the picture and returns, then one that is hidden at times.
 std::vector<Picture> film() {
   std::vector<Picture> film;
   for (const char* scene : {"reenter", "occluded"}) {
@@ -91,7 +92,7 @@ TEST_P(Soaks, KeepTheirMemory) {
 }
 
 TEST(LeastGrowth, TellsALeakFromAnAllocatorsWhim) {
-  EXPECT_EQ(least_growth({100, 3000, 3000, 3000, 3000}), 0);  // once, and held from then on
+  EXPECT_EQ(least_growth({100, 3000, 3000, 3000, 3000}), 0);  // grown once, then constant
   EXPECT_EQ(least_growth({100, 120, 90, 130, 70}), -60);
   EXPECT_EQ(least_growth({100, 200, 310, 420, 5000}), 100);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipsetrack where a setting is refused before the pipeline starts.
+// ellipsetrack with a setting that is rejected before the pipeline starts.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -119,7 +119,7 @@ TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
   stop(element);
 }
 
-// A value that was refused while it ran is forgotten: it was told aloud then.
+// A value rejected while running is discarded; a warning reported it.
 TEST(EllipseTrackStart, DoesNotFailForWhatWasRefusedWhileItRan) {
   const Owned<GstElement> element = tracker_in_null();
   ASSERT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ellipsetrack where nothing stays as it is: states, properties, caps, positions, starts.
+// ellipsetrack under continuous changes: states, properties, caps, positions, starts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -76,7 +76,7 @@ TEST(Stress, PropertiesAreWrittenTenThousandTimesWhilePlaying) {
   GstElement* element = element_of(harness);
   support::QuietWarnings quiet;
   constexpr int kWrites = 10'000;
-  constexpr int kWritesAFrame = 20;  // about
+  constexpr int kWritesAFrame = 20;  // on average
   std::atomic<int> writes = 0;
   std::atomic<int> frames = 0;
   std::thread writer([&] {
@@ -124,7 +124,7 @@ TEST(Stress, NumbersThatAreNoneAndExtremesPass) {
   EXPECT_NEAR(target_on(out)->cx, kRing.cx, 0.1);
 }
 
-// A ring in the middle, as large as the picture allows.
+// A centred ring in proportion to the picture.
 ellipse::Ellipse ring_of(int width, int height) {
   const double radius = 0.35 * std::min(width, height);
   return {0.5 * width, 0.5 * height, radius, 0.8 * radius, 0.3};
@@ -159,7 +159,7 @@ bool seek(GstElement* pipeline, double to_s) {
   return gst_element_seek_simple(pipeline, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, position) != FALSE;
 }
 
-// Numbers of targets go on through a flush.
+// Ids keep counting through a flush.
 std::vector<Verdict> numbered_from_one(std::vector<Verdict> verdicts) {
   std::uint64_t first = 0;
   for (Verdict& verdict : verdicts) {
@@ -196,14 +196,14 @@ TEST(Stress, AStormOfSeeksLeavesNoTrace) {
   pipeline.pause();
   ASSERT_TRUE(seek(pipeline.get(), 0.0));
   pipeline.pause();
-  pipeline.forget_messages();  // among them an end that was left by a seek
+  pipeline.forget_messages();  // including the EOS of an earlier seek
   pipeline.play();
   ASSERT_EQ(pipeline.wait_for_end(), "");
   EXPECT_EQ(numbered_from_one(verdicts.all()), undisturbed);
 }
 
-// A sink that prerolls would lose its state in each flush, and a bin's thread that brings it back
-// loses against the next flush: it would be the bin that is tested.
+// async=false: a sink with preroll loses its state in each flush, and the bin's thread that
+// restores it races with the next flush. That would test the bin.
 TEST(Stress, AStormOfFlushesFromTheSourcePasses) {
   Pipeline pipeline(
       "ellipsetestsrc name=src ! video/x-raw,width=160,height=120 ! ellipsetrack name=t ! "
@@ -216,7 +216,7 @@ TEST(Stress, AStormOfFlushesFromTheSourcePasses) {
   for (int i = 0; i < 300; ++i) {
     ASSERT_TRUE(gst_element_send_event(source.get(), gst_event_new_flush_start()));
     ASSERT_TRUE(gst_element_send_event(source.get(), gst_event_new_flush_stop(i % 2)));
-    // Where a flush comes before the first buffer nothing has been disturbed.
+    // A flush before the first buffer disturbs nothing.
     while (i % 10 == 0 && verdicts.all().empty()) std::this_thread::yield();
   }
   ASSERT_TRUE(gst_element_send_event(source.get(), gst_event_new_eos()));
@@ -241,7 +241,7 @@ TEST(Stress, StartsAndEndsAThousandTimes) {
     gst_element_set_state(pipeline.get(), i % 2 == 0 ? GST_STATE_NULL : GST_STATE_READY);
     if (i == 10) files = open_files();
   }
-  // One left open at each start would be a thousand; GLib's own threads open some at any time.
+  // One descriptor leaked per start would be a thousand; GLib's threads open some at any time.
   EXPECT_LE(open_files(), files + 4);
 }
 

@@ -32,11 +32,11 @@ struct Unref {
 template <class T>
 using Owned = std::unique_ptr<T, Unref>;
 
-/// With a pipeline that should end by itself.
+/// Timeout for a pipeline that should end by itself.
 inline constexpr GstClockTime kPatience = 60 * GST_SECOND;
 
-/// The formats of the pads of ellipsetrack and ellipseoverlay: luma in a plane of its own, then
-/// packed YUV and RGB.
+/// The formats of the pads of ellipsetrack and ellipseoverlay: planar luma, then packed YUV and
+/// RGB.
 inline constexpr std::array kPlanarFormats{
     "GRAY8", "I420", "YV12", "NV12", "NV21", "NV16", "Y41B", "Y42B", "Y444"};
 inline constexpr std::array kPackedFormats{"YUY2",
@@ -52,19 +52,19 @@ inline constexpr std::array kPackedFormats{"YUY2",
                                            "BGRA",
                                            "ARGB",
                                            "ABGR"};
-/// With more than 8 bits.
+/// Formats with more than 8 bits.
 inline constexpr std::array kDeepFormats{
     "GRAY16_LE", "GRAY16_BE", "GRAY10_LE16", "GRAY10_LE32", "I420_10LE", "P010_10LE"};
 /// Bayer mosaics, which ellipsetrack alone reads.
 inline constexpr std::array kMosaics{"bggr", "gbrg", "grbg", "rggb"};
 
-/// Formats with a byte for each sample.
+/// Formats with one byte per sample.
 inline std::vector<const char*> byte_formats() {
   std::vector<const char*> all(kPlanarFormats.begin(), kPlanarFormats.end());
   all.insert(all.end(), kPackedFormats.begin(), kPackedFormats.end());
   return all;
 }
-/// Raw formats that this GStreamer knows.
+/// Raw formats that this GStreamer supports.
 inline std::vector<const char*> raw_formats() {
   std::vector<const char*> all = byte_formats();
   for (const char* format : kDeepFormats) {
@@ -88,7 +88,7 @@ inline std::string caps_of(const std::string& format, int width, int height) {
          ",framerate=30/1";
 }
 
-/// Of a mosaic: that of GRAY8, which has the same bytes.
+/// For a mosaic: that of GRAY8, which has the same bytes.
 inline GstVideoInfo info_of(const std::string& format, int width, int height) {
   GstVideoInfo info;
   const std::string caps_text = caps_of(is_mosaic(format) ? "GRAY8" : format, width, height);
@@ -98,7 +98,7 @@ inline GstVideoInfo info_of(const std::string& format, int width, int height) {
   return info;
 }
 
-/// Where a component begins. GStreamer 1.22 is a byte off for V of P010.
+/// The first sample of a component. GStreamer 1.22 is one byte off for V of P010.
 inline guint8* samples_of(GstVideoFrame& frame, guint component) {
   auto* plane = static_cast<guint8*>(
       GST_VIDEO_FRAME_PLANE_DATA(&frame, GST_VIDEO_FORMAT_INFO_PLANE(frame.info.finfo, component)));
@@ -107,7 +107,7 @@ inline guint8* samples_of(GstVideoFrame& frame, guint component) {
   return plane + (is_deep ? (offset + 1) / 2 * 2 : offset);
 }
 
-/// Sets a sample of a frame of any depth, of which a level has the 8 highest bits.
+/// Sets a sample in a frame of any depth; `level` is its 8 most significant bits.
 inline void set_sample(GstVideoFrame& frame, guint component, int x, int y, guint8 level) {
   const GstVideoFormatInfo* format = frame.info.finfo;
   guint8* row = samples_of(frame, component) +
@@ -130,10 +130,10 @@ inline void set_sample(GstVideoFrame& frame, guint component, int x, int y, guin
   }
 }
 
-/// A buffer of any format that shows a grey picture.
+/// A buffer of any format with a grey picture.
 inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& info) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
-  const guint8 neutral = GST_VIDEO_INFO_IS_RGB(&info) ? 255 : 128;  // opacity, or chroma
+  const guint8 neutral = GST_VIDEO_INFO_IS_RGB(&info) ? 255 : 128;  // alpha, or chroma
   gst_buffer_memset(buffer, 0, neutral, GST_VIDEO_INFO_SIZE(&info));
   GstVideoFrame frame;
   gst_video_frame_map(&frame, &info, buffer, GST_MAP_WRITE);
@@ -163,7 +163,7 @@ inline Owned<GstBuffer> gray_buffer_of(const Picture& picture) {
   return buffer_of(picture, info_of("GRAY8", picture.width, picture.height));
 }
 
-/// One element, or several in a row, between two pads that are tested.
+/// One element or several in sequence, between two test pads.
 inline Owned<GstHarness> harness_of(const std::string& element,
                                     const std::string& in,
                                     const std::string& out) {
@@ -172,7 +172,7 @@ inline Owned<GstHarness> harness_of(const std::string& element,
   return harness;
 }
 
-/// As a target that is being followed.
+/// Adds a tracked target.
 inline void add_circle(GstBuffer* buffer, double cx, double cy, double radius) {
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
   meta->id = 1;
@@ -185,7 +185,7 @@ inline void add_circle(GstBuffer* buffer, double cx, double cy, double radius) {
   meta->roi_height = 10;
 }
 
-/// Makes what is downstream of an element take any picture, and overlays beside it.
+/// Makes downstream accept any picture, and overlay compositions beside it.
 inline void offer_composition(GstHarness* harness) {
   gst_harness_set_sink_caps_str(
       harness, "video/x-raw(memory:SystemMemory, meta:GstVideoOverlayComposition); video/x-raw");
@@ -193,7 +193,7 @@ inline void offer_composition(GstHarness* harness) {
       harness, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
 }
 
-/// The first component of a buffer, its luma or a colour of a grey picture.
+/// The first component of a buffer: its luma, or one colour of a grey picture.
 inline Picture picture_of(GstBuffer* buffer, const GstVideoInfo& info) {
   Picture picture(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
   GstVideoFrame frame;
@@ -217,7 +217,7 @@ inline std::string bytes_of(GstBuffer* buffer) {
   return bytes;
 }
 
-/// One message of a type from an element that has a bus of its own, or nothing.
+/// Receives the messages of one element on a bus of its own.
 class BusTap {
  public:
   explicit BusTap(GstElement* element) : bus_(gst_bus_new()) { gst_element_set_bus(element, bus_); }
@@ -233,7 +233,7 @@ class BusTap {
   GstBus* bus_;
 };
 
-/// A pipeline from its description, in the state NULL until it is told otherwise and at its end.
+/// A pipeline from a description; its state is NULL at first and at the end.
 class Pipeline {
  public:
   explicit Pipeline(const std::string& description) {
@@ -252,26 +252,26 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   [[nodiscard]] GstElement* get() const { return pipeline_.get(); }
-  /// What its description has wrong; empty where it is right. Begins with kNotInstalled where an
-  /// element is missing.
+  /// The error in the description; empty if valid. Begins with kNotInstalled if an element is
+  /// missing.
   [[nodiscard]] const std::string& failure() const { return failure_; }
   static constexpr char kNotInstalled[] = "not installed: ";
   [[nodiscard]] Owned<GstElement> element(const std::string& name) const {
     return Owned<GstElement>(gst_bin_get_by_name(GST_BIN(pipeline_.get()), name.c_str()));
   }
-  /// Until the first buffer is at its sink.
+  /// Waits until the first buffer is at the sink.
   void pause() {
     gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
     gst_element_get_state(pipeline_.get(), nullptr, nullptr, 60 * GST_SECOND);
   }
   void play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
-  /// What is on its bus so far.
+  /// Discards the messages on the bus.
   void forget_messages() {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     while (Owned<GstMessage>(gst_bus_pop(bus))) continue;
     gst_object_unref(bus);
   }
-  /// @return The error's text, empty where it came to EOS.
+  /// @return The error's text; empty at EOS.
   [[nodiscard]] std::string wait_for_end(GstClockTime patience = kPatience) {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     const Owned<GstMessage> message(gst_bus_timed_pop_filtered(
@@ -295,7 +295,7 @@ class Pipeline {
   std::string failure_;
 };
 
-/// Runs a pipeline until EOS or an error. @return the error's text, empty where it came to EOS.
+/// Runs a pipeline until EOS or an error. @return the error's text; empty at EOS.
 inline std::string run_pipeline(const std::string& description,
                                 const std::function<void(GstElement*)>& prepare = {},
                                 GstClockTime patience = kPatience) {
@@ -306,7 +306,7 @@ inline std::string run_pipeline(const std::string& description,
   return pipeline.wait_for_end(patience);
 }
 
-/// The lines of NDJSON, parsed; fails to a null root where a line is no JSON.
+/// Parses the lines of NDJSON; fails the test with a null root at a line that is not JSON.
 inline std::vector<Owned<JsonParser>> parse_ndjson(std::istream&& in) {
   std::vector<Owned<JsonParser>> lines;
   for (std::string line; std::getline(in, line);) {

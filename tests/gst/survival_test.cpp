@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What metadata survives. The rows of the table in docs/metadata.md are the tests: each pipeline is
-// run as it stands there, and what its buffers carry is held against what their pixels show.
+// Which metadata survives. The rows of the table in docs/metadata.md are the tests: each pipeline
+// runs as written there, and the metadata on its buffers is compared with their pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,10 +28,10 @@ constexpr char kSource[] =
     "video/x-raw,format=I420,width=640,height=360,framerate=30/1 ! ellipsetrack ! ";
 
 struct Row {
-  std::string pipeline;  // what stands behind ellipsetrack
-  std::string reader;    // a second pipeline, where the first one ends in a file
-  std::string ellipses;  // what becomes of them
-  std::string region;    // what becomes of the region of interest
+  std::string pipeline;  // elements behind ellipsetrack
+  std::string reader;    // a second pipeline, if the first one ends in a file
+  std::string ellipses;  // expected result for the ellipses
+  std::string region;    // expected result for the region of interest
 };
 
 std::ostream& operator<<(std::ostream& out, const Row& row) {
@@ -51,9 +51,9 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-// A line of the table names several pipelines, `a`, `b`, or two that are one case: `a` then `b`.
+// A row of the table names several pipelines, `a`, `b`, or two that form one case: `a` then `b`.
 void append_rows(const std::string& line, std::vector<Row>& rows) {
-  const std::vector<std::string> cells = split(line, '|');  // the first one is before the table
+  const std::vector<std::string> cells = split(line, '|');  // the first cell precedes the table
   const std::vector<std::string> pieces = split(cells.at(1), '`');
   for (std::size_t i = 1; i < pieces.size(); i += 2) {
     if (trimmed(pieces[i - 1]) == "then") {
@@ -69,12 +69,12 @@ std::vector<Row> rows_of_the_document() {
   std::ifstream in(ELLIPSE_METADATA_DOC);
   std::string line;
   while (std::getline(in, line) && !line.starts_with("| behind ellipsetrack |")) continue;
-  std::getline(in, line);  // the rule below the head
+  std::getline(in, line);  // the separator below the header
   while (std::getline(in, line) && line.starts_with("|")) append_rows(line, rows);
   return rows;
 }
 
-// What lies between is neither, so that no verdict hangs on noise.
+// Errors in between give no verdict, so that noise decides none.
 constexpr double kRightPx = 0.5;
 constexpr double kWrongPx = 5.0;
 
@@ -94,7 +94,7 @@ double difference_px(const GstEllipseMeta& meta, const ellipse::Ellipse& seen) {
   return farthest;
 }
 
-// What becomes of the metadata, buffer by buffer.
+// Checks the metadata of each buffer.
 class Witness {
  public:
   void watch(GstElement* pipeline) {
@@ -150,7 +150,7 @@ class Witness {
                                       std::abs(meta->y - first.y()),
                                       std::abs(meta->x + meta->w - 1.0 - last.x()),
                                       std::abs(meta->y + meta->h - 1.0 - last.y())});
-    // Whole pixels, which a scaler rounds once more.
+    // Regions are in whole pixels, and a scaler rounds them again.
     const std::string verdict = verdict_on(error_px, 3.0);
     const bool has_details =
         gst_video_region_of_interest_meta_get_param(meta, "ellipse") != nullptr;

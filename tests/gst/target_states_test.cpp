@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What people are told of a target that is seen, half hidden, hidden, gone and back.
+// The reported states of a target that is visible, half hidden, hidden, gone and back.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Shot {
   int frames;
 };
 
-// The last one is longer than a target is waited for.
+// The last hidden shot exceeds the time for which a target is kept.
 const std::vector<Shot> kShots{{Sight::kClear, 20},
                                {Sight::kHalfHidden, 10},
                                {Sight::kClear, 10},
@@ -35,7 +35,7 @@ const std::vector<Shot> kShots{{Sight::kClear, 20},
                                {Sight::kHidden, 20},
                                {Sight::kClear, 10}};
 
-// A pad that drifts behind a bar.
+// A drifting pad; a bar hides half of it on request.
 Picture picture_of(Sight sight, int frame) {
   if (sight == Sight::kHidden) return Picture(320, 240, 90);
   ellipse::Scene scene;
@@ -46,8 +46,7 @@ Picture picture_of(Sight sight, int frame) {
   return support::rendered(scene, pad, 320, 240, static_cast<std::uint64_t>(frame));
 }
 
-// The state and the number of a target, and what the tracker is doing, as one of the three ways
-// tells of them.
+// State and id of a target, and the tracker's state, as reported in one of the three ways.
 using Told = std::string;
 
 Told told(const std::string& state, std::uint64_t id, const std::string& tracker) {
@@ -96,9 +95,9 @@ GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
   return GST_PAD_PROBE_OK;
 }
 
-// What the metadata told of each frame; fails where messages or lines told otherwise.
+// The states in the metadata of each frame; fails if messages or lines differ.
 std::vector<Told> story() {
-  // With the probability of half a pad it would be detected again.
+  // With the default min-probability, half a pad would be detected again.
   const auto harness = support::harness_of(
       "ellipsetrack name=t min-probability=0.99 "
       "messages=every-frame ! ellipsejson",
@@ -127,7 +126,7 @@ std::vector<Told> story() {
   return story;
 }
 
-// Each state once, with how many frames it lasts.
+// Run-length encoding of the states.
 std::string summary_of(const std::vector<Told>& story) {
   std::string summary;
   for (std::size_t first = 0, i = 0; i < story.size(); ++i) {
@@ -139,7 +138,7 @@ std::string summary_of(const std::vector<Told>& story) {
 }
 
 TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
-  // Hidden for a moment it keeps its number; gone for longer than it is waited for, it does not.
+  // Hidden briefly, the target keeps its id; hidden for longer than it is kept, it gets a new one.
   EXPECT_EQ(summary_of(story()),
             "1 x detected 1, following\n"
             "19 x tracked 1, following\n"
@@ -152,7 +151,7 @@ TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
             "9 x tracked 2, following\n");
 }
 
-// A disc that comes slowly into view: its odds pass through those at which it is only confirmed.
+// A disc that slowly enters the frame: its odds pass through the range of the state "confirming".
 TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
   const auto harness = support::harness_of(
       "ellipsetrack name=t min-probability=0.98 messages=every-frame ! ellipsejson",

@@ -68,7 +68,7 @@ TEST(EllipseTrack, AttachesCandidatesWhereTheyAreAskedFor) {
   }
 }
 
-// GST_DEBUG=ellipsetrack:6
+// With GST_DEBUG=ellipsetrack:6.
 TEST(EllipseTrack, LogsALineForEachFrame) {
   GstDebugCategory* category = nullptr;
   const auto harness = tracker("interval=2");
@@ -158,7 +158,8 @@ TEST_P(Formats, PackedOnesGiveTheSameWithinRounding) {
 INSTANTIATE_TEST_SUITE_P(Widths, Formats, testing::Values(320, 321, 322));
 
 TEST(EllipseTrack, HonoursStrideAndOffsetOfTheVideoMeta) {
-  // The picture lies 37 bytes into the buffer, its rows 400 bytes apart, noise between them.
+  // The picture starts 37 bytes into the buffer with a row stride of 400 bytes; the padding is
+  // filled with 0xa5.
   const Picture picture = ring_picture(321, 240);
   constexpr gsize kOffset = 37;
   constexpr gint kStride = 400;
@@ -378,7 +379,7 @@ TEST(EllipseTrack, LatenessThatIsNotItsOwnLeavesItSomeFrames) {
   const auto harness = tracker();
   std::string pattern;
   for (guint64 i = 0; i < 12; ++i) {
-    // The sink is a second late, frame after frame.
+    // The sink reports each frame as a second late.
     gst_harness_push_upstream_event(
         harness.get(),
         gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW, 0.5, GST_SECOND, i * 33 * GST_MSECOND));

@@ -9,20 +9,20 @@
 
 namespace support {
 
-/// The ring that most of these tests show.
+/// The ring in most of these tests.
 inline constexpr ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
 
 inline Picture ring_picture(int width = 320, int height = 240) {
   return rendered(plain_ring(), kRing, width, height);
 }
 
-/// An ellipsetrack alone, between two pads.
+/// An ellipsetrack between two test pads.
 inline Owned<GstHarness> tracker(const std::string& settings = "",
                                  const std::string& caps = caps_of("GRAY8", 320, 240)) {
   return harness_of("ellipsetrack name=t " + settings, caps, caps);
 }
 
-/// The element itself: gst_harness_new_parse wraps it in a bin. The harness keeps it.
+/// The element inside the bin that gst_harness_new_parse makes. The harness owns it.
 inline GstElement* element_of(const Owned<GstHarness>& harness) {
   GstElement* found = GST_IS_BIN(harness->element)
                           ? gst_bin_get_by_name(GST_BIN(harness->element), "t")
@@ -39,7 +39,7 @@ inline GstEllipseMeta* target_on(const Owned<GstBuffer>& buffer) {
   return gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
 }
 
-/// The caller's; nullptr where the property has no value.
+/// The caller owns the result; nullptr if the property has no value.
 inline GstStructure* structure_property(GstElement* element, const char* name) {
   GstStructure* structure = nullptr;
   g_object_get(element, name, &structure, nullptr);

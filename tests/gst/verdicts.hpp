@@ -12,12 +12,12 @@
 
 namespace support {
 
-/// What ellipsetrack said of a frame, to be compared bit for bit.
+/// ellipsetrack's result for a frame, compared bit for bit.
 struct Verdict {
   GstClockTime pts = GST_CLOCK_TIME_NONE;
-  std::uint64_t id = 0;  ///< 0 where nothing was found.
+  std::uint64_t id = 0;  ///< 0 if nothing was found.
   GstEllipseState state = GST_ELLIPSE_STATE_DETECTED;
-  std::array<std::uint64_t, 8> bits{};  ///< Of the metadata's doubles.
+  std::array<std::uint64_t, 8> bits{};  ///< The metadata's doubles.
   std::array<std::int64_t, 5> search{};
 
   [[nodiscard]] double cx() const { return std::bit_cast<double>(bits[0]); }
@@ -51,7 +51,7 @@ inline Verdict verdict_on(GstBuffer* buffer) {
   return verdict;
 }
 
-/// The verdicts that pass an element's sink pad, since the last flush.
+/// Records the results that reach an element's sink pad since the last flush.
 class Verdicts {
  public:
   /// Must outlive the pipeline's stream.
@@ -85,7 +85,7 @@ class Verdicts {
   std::vector<Verdict> all_;
 };
 
-/// The verdicts of a pipeline that ends in an element named "out"; none where it fails.
+/// The results of a pipeline that ends in an element named "out"; none on failure.
 inline std::vector<Verdict> verdicts_of(const std::string& pipeline) {
   Verdicts verdicts;
   const std::string failure =

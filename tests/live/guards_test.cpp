@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What stands before the parsers of libsoup and gst-rtsp-server.
+// The guards in front of the parsers of libsoup and gst-rtsp-server.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -25,7 +25,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// As a client sends it: masked, its length in the shortest form that holds it.
+/// A frame as a client sends it: masked, with the shortest encoding of its length.
 std::string frame(int opcode, std::size_t size, bool is_last = true) {
   std::string text(1, static_cast<char>(opcode | (is_last ? 0x80 : 0)));
   if (size < 126) {
@@ -64,7 +64,7 @@ TEST(LiveFrameGuard, AMessageIsBoundedInAllItsFragments) {
   EXPECT_FALSE(guard.take(bytes_of(frame(kContinuation, 1, false))));
 }
 
-// Fragments, and pings with less patience.
+// Fragments, and pings with a lower limit.
 TEST(LiveFrameGuard, FramesAreCountedAndComeBackWithTime) {
   now_us = 1'000'000;
   FrameGuard guard(clock_us);
@@ -109,7 +109,7 @@ TEST(LiveRtspGuard, HeadersAreBoundedAndPlain) {
   EXPECT_FALSE(passes(request("DESCRIBE", many)));
   EXPECT_FALSE(passes("GET /live HTTP/1.0\r\n\r\n"));
   EXPECT_FALSE(passes("POST /live HTTP/1.0\r\n\r\n"));
-  // GStreamer would see the end of a request, or of a line, elsewhere.
+  // GStreamer would find the end of a request or of a line elsewhere.
   EXPECT_FALSE(passes("OPTIONS * RTSP/1.0\n\n"));
   EXPECT_FALSE(passes("OPTIONS * RTSP/1.0\r\r"));
   EXPECT_FALSE(passes(std::string("OPTIONS * RTSP/1.0\r\n\0a", 22)));

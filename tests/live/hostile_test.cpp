@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Clients that want the program's memory, and those that stay for nothing.
+// Clients that try to exhaust the program's memory, and clients that stay idle.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ using support::wait_until;
 constexpr long kGrowthKib = 10 * 1024;
 constexpr std::size_t kMuch = 64 * 1024 * 1024;
 
-/// One of RTSP, which asks for a password.
+/// A program with an RTSP output that requires a password.
 class RtspProgram {
  public:
   RtspProgram() : program_({"--rtsp", "0", "--token", "sesame"}) {
@@ -35,7 +35,7 @@ class RtspProgram {
   }
   [[nodiscard]] const LiveProgram& program() const { return program_; }
   [[nodiscard]] int port() const { return port_; }
-  /// The answer to a proper request.
+  /// The answer to a valid request.
   [[nodiscard]] std::string describe(const std::string& headers = "") const {
     const RawClient client(port_);
     client.send("DESCRIBE rtsp://127.0.0.1/live RTSP/1.0\r\nCSeq: 1\r\n" + headers + "\r\n");
@@ -47,7 +47,7 @@ class RtspProgram {
   int port_ = 0;
 };
 
-// @return Whether the other side takes no more of it before all is sent.
+// @return Whether the other side stops reading before everything is sent.
 bool is_cut_off(const RawClient& client, const std::string& piece) {
   for (std::size_t sent = 0; sent < kMuch; sent += piece.size()) {
     if (!client.send(piece)) return true;
@@ -84,7 +84,7 @@ TEST(LiveHostile, RtspHeadersWithoutAnEndAreNotTaken) {
   EXPECT_NE(rtsp.describe().find(" 401 "), std::string::npos);
 }
 
-// They neither say anything, nor know the password; one sends a byte now and then.
+// The clients neither send requests nor know the password; one sends a byte now and then.
 TEST(LiveHostile, RtspConnectionsAreCountedAndIdleOnesDropped) {
   const RtspProgram rtsp;
   std::vector<std::unique_ptr<RawClient>> idle;
@@ -105,14 +105,14 @@ TEST(LiveHostile, TheNameOfTheSchemeIsWrittenInAnyCaseOverRtsp) {
       g_base64_encode(reinterpret_cast<const guchar*>("ellipse:sesame"), 14));
   for (const std::string scheme : {"Basic ", "basic ", "BASIC "}) {
     const std::string header = "Authorization: " + scheme + secret.get() + "\r\n";
-    // The server may answer 503 while the media of the client before is taken down.
+    // The server may answer 503 while it tears down the previous client's media.
     EXPECT_TRUE(wait_until([&] {
       return rtsp.describe(header).find(" 200 ") != std::string::npos;
     })) << scheme;
   }
 }
 
-/// A WebSocket of lines, by hand.
+/// A raw WebSocket connection for lines.
 std::unique_ptr<RawClient> raw_websocket(const LiveProgram& program, int buffer = 0) {
   auto client = std::make_unique<RawClient>(program.port(), buffer);
   client->send(
@@ -123,7 +123,7 @@ std::unique_ptr<RawClient> raw_websocket(const LiveProgram& program, int buffer 
   return client;
 }
 
-// A frame of a text's fragments, of 1000 bytes: the first one, or one that goes on.
+// A fragment of a text message, 1000 bytes: the first, or a continuation.
 std::string fragment(bool is_first) {
   const std::string head = is_first ? "\x01" : std::string(1, '\0');
   return head + "\xfe\x03\xe8mask" + std::string(1000, 'a');
@@ -141,7 +141,7 @@ TEST(LiveHostile, AMessageInFragmentsWithoutAnEndIsNotTaken) {
   EXPECT_TRUE(wait_until([&] { return client.stat("listeners") == 0.0; }));
 }
 
-// Each is answered, and this client reads no answer.
+// Every ping calls for an answer, and this client reads none.
 TEST(LiveHostile, PingsWithoutEndAreNotAnswered) {
   const LiveProgram program({"--source", "[videotestsrc num-buffers=1 ! imagefreeze]"});
   const Client client(program.url());
@@ -174,7 +174,7 @@ TEST(LiveHostile, RangesAreIgnored) {
   }
 }
 
-// Text that is set again and again leaves nothing behind.
+// Setting long texts repeatedly must not accumulate memory.
 TEST(LiveHostile, TypesOfRegionsAreNotKept) {
   const LiveProgram program({});
   const Client client(program.url());
@@ -194,12 +194,12 @@ TEST(LiveHostile, TypesOfRegionsAreNotKept) {
   }
 }
 
-// As a viewer that acknowledges nothing.
+// Like a viewer that acknowledges nothing.
 TEST(LiveHostile, WhoTakesNoLineOfTheEventsIsDropped) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_EQ(client.put("api/properties", R"({"candidates":true})").status, 200U);
-  constexpr int kBuffer = 4096;  // full soon, however slow the program is
+  constexpr int kBuffer = 4096;  // full soon, even if the program is slow
   std::vector<std::unique_ptr<RawClient>> silent;
   for (const char* path : {"/api/events", "/video.mjpeg"}) {
     silent.push_back(std::make_unique<RawClient>(program.port(), kBuffer));

@@ -20,11 +20,10 @@ namespace support {
 using live::Ref;
 using live::share;
 
-/// How long these clients wait before they give up [s]: what is waited for comes at once on an idle
-/// machine, and late on a busy one.
+/// Timeout of these clients [s]. An idle machine answers at once, a busy one late.
 inline constexpr int kMaxSeconds = 60;
 
-/// Runs the main loop until something is so. @return false where it does not come to be.
+/// Runs the main loop until a condition holds. @return false on timeout.
 inline bool wait_until(const std::function<bool()>& is_so, int seconds = kMaxSeconds) {
   const gint64 deadline = g_get_monotonic_time() + seconds * G_USEC_PER_SEC;
   while (!is_so()) {
@@ -39,7 +38,7 @@ struct Answer {
   std::string body;
   std::map<std::string, std::string> headers;
 
-  /// The body as JSON; a null node where it is none.
+  /// The body as JSON; a null node if it is not JSON.
   [[nodiscard]] JsonNode* json() const {
     if (!parser_) {
       parser_.reset(json_parser_new());
@@ -56,7 +55,7 @@ struct Answer {
   mutable Ref<JsonParser> parser_;
 };
 
-/// A client that asks one thing after the other.
+/// A client that sends one request at a time.
 class Client {
  public:
   explicit Client(std::string url) : url_(std::move(url)), session_(soup_session_new()) {}
@@ -64,7 +63,7 @@ class Client {
   using Headers = std::map<std::string, std::string>;
   static constexpr guint kTooOften = 429;
 
-  /// Waits and asks again where it has asked too often, as those do who poll.
+  /// Repeats a request that the rate limit rejected, as polling clients do.
   Answer ask(const char* method,
              const std::string& path,
              const std::string& body = "",
@@ -83,7 +82,7 @@ class Client {
   [[nodiscard]] Answer post(const std::string& path, const std::string& body = "") const {
     return ask("POST", path, body);
   }
-  /// No number, which is neither more nor less than any, where nothing was answered.
+  /// NaN without an answer, so that every comparison fails.
   [[nodiscard]] double stat(const char* name) const {
     const Answer answer = get("api/stats");
     return answer.object() != nullptr ? json_object_get_double_member(answer.object(), name)
@@ -126,7 +125,7 @@ class Client {
   Ref<SoupSession> session_;
 };
 
-/// One of what api/properties tells, or null.
+/// A property in the answer of api/properties, or null.
 inline JsonObject* property(const Answer& answer, const std::string& name) {
   JsonArray* all = json_node_get_array(answer.json());
   for (guint i = 0; i < json_array_get_length(all); ++i) {
@@ -140,7 +139,7 @@ inline double value_of(const Client& client, const std::string& name) {
   return json_object_get_double_member(property(client.get("api/properties"), name), "value");
 }
 
-/// Reads an endless answer until it has what is looked for so many times, or until nothing comes.
+/// Reads an endless answer until it contains a part this number of times, or until the timeout.
 inline std::string read_stream(const std::string& url, const std::string& part, int times) {
   const Ref<SoupSession> session(soup_session_new_with_options("timeout", kMaxSeconds, nullptr));
   const Ref<SoupMessage> message(soup_message_new("GET", url.c_str()));
@@ -160,10 +159,10 @@ inline std::string read_stream(const std::string& url, const std::string& part, 
   return text;
 }
 
-/// A WebSocket that keeps what it gets.
+/// A WebSocket that stores the messages it receives.
 class SocketClient {
  public:
-  /// @param origin  What a browser would send; empty = as a program.
+  /// @param origin  The browser's origin; empty = no browser.
   SocketClient(const std::string& url,
                const std::string& path,
                const std::string& origin = "",
@@ -205,7 +204,7 @@ class SocketClient {
     return connection_ &&
            soup_websocket_connection_get_state(connection_.get()) == SOUP_WEBSOCKET_STATE_OPEN;
   }
-  /// Why it is not open: the code and the text that it was closed with.
+  /// The code and text with which it was closed.
   [[nodiscard]] std::string closing() const {
     const char* why = soup_websocket_connection_get_close_data(connection_.get());
     return std::to_string(soup_websocket_connection_get_close_code(connection_.get())) + " " +
@@ -214,7 +213,7 @@ class SocketClient {
   void send(const std::string& text) {
     soup_websocket_connection_send_text(connection_.get(), text.c_str());
   }
-  /// Waits for a message and takes it; empty where none comes.
+  /// Waits for a message and removes it; empty on timeout.
   std::string next(int seconds = kMaxSeconds) {
     if (!wait_until([this] { return !messages_.empty(); }, seconds)) return "";
     std::string message = std::move(messages_.front());
@@ -223,7 +222,7 @@ class SocketClient {
   }
   [[nodiscard]] std::size_t waiting() const { return messages_.size(); }
   [[nodiscard]] const std::deque<std::string>& messages() const { return messages_; }
-  /// From now on each picture is acknowledged when it comes, and thrown away but for its count.
+  /// From now on acknowledges, counts and discards each picture.
   void watch() { watches_ = true; }
   [[nodiscard]] std::size_t watched() const { return watched_; }
 
@@ -267,7 +266,7 @@ class SocketClient {
   bool watches_ = false;
 };
 
-/// A line of the metadata.
+/// A line of metadata.
 class Line {
  public:
   explicit Line(const std::string& text) : parser_(json_parser_new()) {
@@ -279,14 +278,14 @@ class Line {
   [[nodiscard]] gint64 number(const char* name) const {
     return object_ != nullptr ? json_object_get_int_member(object_, name) : -1;
   }
-  /// The first with this role, or null.
+  /// The first ellipse with this role, or null.
   [[nodiscard]] JsonObject* ellipse(const std::string& role) const {
     const int index = index_of(role);
     if (index < 0) return nullptr;
     JsonArray* all = json_object_get_array_member(object_, "targets");
     return json_array_get_object_element(all, static_cast<guint>(index));
   }
-  /// Of that among the line's ellipses; -1 where there is none.
+  /// Index of the first ellipse with this role; -1 if there is none.
   [[nodiscard]] int index_of(const std::string& role) const {
     if (object_ == nullptr) return -1;
     JsonArray* all = json_object_get_array_member(object_, "targets");

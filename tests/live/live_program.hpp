@@ -12,18 +12,18 @@
 
 #include "tests/support/child_process.hpp"
 
-// ellipse-live as a process of its own.
+// Runs ellipse-live as a separate process.
 namespace support {
 
-/// Whether the program's memory is its own: a sanitizer keeps what was freed.
+/// Whether memory figures are those of the program: a sanitizer keeps freed memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kHasPlainMemory = false;
 #else
 inline constexpr bool kHasPlainMemory = true;
 #endif
 
-/// The program, from its start until this goes away or the tests are killed. A critical message of
-/// GLib ends it.
+/// The program, running until this object is destroyed or the tests are killed. A critical message
+/// of GLib ends it.
 class LiveProgram {
  public:
   explicit LiveProgram(std::vector<std::string> arguments, bool waits = true)
@@ -41,13 +41,13 @@ class LiveProgram {
   LiveProgram(const LiveProgram&) = delete;
   LiveProgram& operator=(const LiveProgram&) = delete;
 
-  /// Ends it as Ctrl-C does, or another signal. @return its exit status.
+  /// Ends it with a signal, by default as Ctrl-C does. @return its exit status.
   int stop(int signal = SIGINT) {
     process_.signal(signal);
     return wait();
   }
   int wait() { return process_.wait(); }
-  /// The next line of its output that has this in it; empty at its end.
+  /// The next line of its output that contains this; empty at the end.
   std::string line_with(const std::string& part) {
     while (const auto line = next_line()) {
       if (line->find(part) != std::string::npos) return *line;
@@ -59,10 +59,10 @@ class LiveProgram {
     if (at == std::string::npos) return "";
     return line.substr(line.rfind(' ', at) + 1);
   }
-  /// With the slash at its end.
+  /// Ends with a slash.
   [[nodiscard]] const std::string& url() const { return url_; }
   [[nodiscard]] int port() const { return std::stoi(url_.substr(url_.rfind(':') + 1)); }
-  /// What "VmRSS", its memory now, or "VmHWM", the most until now, says [KiB].
+  /// A field of /proc/PID/status [KiB]: "VmRSS" is its current memory, "VmHWM" the peak.
   [[nodiscard]] long memory_kib(const std::string& field) const {
     std::ifstream status("/proc/" + id() + "/status");
     for (std::string line; std::getline(status, line);) {
@@ -79,7 +79,7 @@ class LiveProgram {
                      {program != nullptr ? program : "ellipse-live", "--port", "0"});
     return arguments;
   }
-  // SIGINT ends it by itself where it comes before the program has begun to listen.
+  // SIGINT may end it before its signal handler is installed.
   [[nodiscard]] bool has_crashed() const {
     return process_.ended_by() != 0 && process_.ended_by() != SIGINT;
   }

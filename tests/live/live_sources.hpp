@@ -1,6 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-// What ellipse-live plays in the tests, and what it says of it.
+// Sources of ellipse-live in the tests, and its reports about them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -35,7 +35,7 @@ inline std::string make_pictures(const TemporaryFolder& folder, int frames) {
   return pictures;
 }
 
-// As cameras and telephones write it: H.264 with sound.
+// A file as cameras and phones record it: H.264 with sound.
 inline std::string make_mp4(const TemporaryFolder& folder, int frames) {
   const std::string file = folder.file("video.mp4");
   EXPECT_EQ(run_pipeline("ellipsetestsrc num-buffers=" + std::to_string(frames) +
@@ -46,7 +46,7 @@ inline std::string make_mp4(const TemporaryFolder& folder, int frames) {
   return file;
 }
 
-/// What api/source tells; "", or -1, where nothing is answered.
+/// A member of api/source; "" or -1 without an answer.
 inline std::string text_in(const Client& client, const char* member) {
   const Answer answer = client.get("api/source");
   return answer.object() != nullptr ? json_object_get_string_member(answer.object(), member) : "";
@@ -57,7 +57,7 @@ inline gint64 number_in(const Client& client, const char* member) {
   return answer.object() != nullptr ? json_object_get_int_member(answer.object(), member) : -1;
 }
 
-/// The frame that is shown once it is paused; -1 where that does not come to be.
+/// The time of the current frame once it is paused; -1 on timeout.
 inline gint64 shown_when_paused(const Client& client) {
   Answer answer;
   const bool is_paused = wait_until([&] {
@@ -72,7 +72,7 @@ inline bool stands_still(const Client& client) {
   return shown_when_paused(client) >= 0;
 }
 
-/// Pauses it in its course.
+/// Pauses after some frames.
 inline bool is_paused(const Client& client) {
   return wait_until([&] { return client.stat("frames") > 3; }) &&
          client.post("api/pause").status == 200U && stands_still(client);

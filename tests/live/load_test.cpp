@@ -20,7 +20,8 @@ double tracker_stat(const Client& client, const char* name) {
                                        name);
 }
 
-// Viewers that never read: the pipeline analyses each frame, and those who read get theirs.
+// With viewers that never read, the pipeline still analyses each frame, and other viewers get
+// theirs.
 TEST(LiveLoad, StalledViewersHoldNobodyUp) {
   const LiveProgram program({});
   const Client client(program.url());

@@ -27,7 +27,7 @@ struct Pace {
   double skipped = 0.0;
 };
 
-// Keeps the clients going until so many more frames have come.
+// Runs the clients until this number of further frames has been analysed.
 Pace run(const Client& client) {
   const double first = client.stat("frames");
   const gint64 start_us = g_get_monotonic_time();
@@ -49,7 +49,7 @@ Pace run(const Client& client) {
 TEST(LiveLongLoad, FiftyViewersAndFiveOfThemStalledDoNotSlowThePipeline) {
   const LiveProgram program({});
   const Client client(program.url());
-  // Fifty clients are on machines of their own: here they take the time that the program leaves.
+  // Real clients run on machines of their own: here they only get the time that the program leaves.
   ASSERT_EQ(setpriority(PRIO_PROCESS, 0, 19), 0);
   const Pace alone = run(client);
   std::vector<std::unique_ptr<SocketClient>> viewers;

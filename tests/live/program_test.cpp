@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The tests' own program: it must not outlive them.
+// The program under test must not outlive the tests.
 #include <gtest/gtest.h>
 
 #include <csignal>

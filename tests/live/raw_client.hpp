@@ -12,10 +12,11 @@
 
 namespace support {
 
-/// A client that writes what no library for HTTP would. Gives up after a minute of silence.
+/// A client that sends arbitrary bytes, unlike an HTTP library. Times out after a minute of
+/// silence.
 class RawClient {
  public:
-  /// @param buffer  What the system may keep of what this does not read [bytes]; 0 = the usual.
+  /// @param buffer  Receive buffer of the socket [bytes]; 0 = default.
   RawClient(const std::string& address, int port, int buffer = 0)
       : socket_(g_socket_new(
             G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_DEFAULT, nullptr)) {
@@ -27,7 +28,7 @@ class RawClient {
   }
   explicit RawClient(int port, int buffer = 0) : RawClient("127.0.0.1", port, buffer) {}
 
-  /// @return false where the other side takes no more.
+  /// @return false if the other side accepts no more.
   bool send(const std::string& bytes) const {
     for (std::size_t sent = 0; sent < bytes.size();) {
       const gssize size =
@@ -37,7 +38,7 @@ class RawClient {
     }
     return true;
   }
-  /// @return What there is now, once there is something; empty where nothing more comes.
+  /// @return The available bytes, after waiting for some; empty at the end or after the timeout.
   [[nodiscard]] std::string receive() const {
     std::array<char, 4096> bytes;
     const gssize size =
@@ -45,7 +46,7 @@ class RawClient {
     return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : std::string();
   }
 
-  /// Reads on. @return Whether the other side has ended the connection, rather than been silent.
+  /// Reads on. @return Whether the other side closed the connection rather than stayed silent.
   [[nodiscard]] bool is_ended() const {
     std::array<char, 4096> bytes;
     GError* problem = nullptr;
@@ -62,7 +63,7 @@ class RawClient {
   live::Ref<GSocket> socket_;
 };
 
-/// An IPv4 address of this machine in some network; empty where it is in none.
+/// An IPv4 address of this machine on a network; empty if it has none.
 inline std::string network_address() {
   ifaddrs* all = nullptr;
   if (getifaddrs(&all) != 0) return "";

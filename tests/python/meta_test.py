@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The metadata and the elements as Python sees them."""
+"""The metadata and the elements through the Python bindings."""
 import json
 import os
 import sys
@@ -18,7 +18,7 @@ TRUTH = GstEllipse.EllipseRole.TRUTH
 
 
 def buffer_with(*roles):
-    """A buffer with an ellipse a role, numbered from 1 by its id."""
+    """A buffer with one ellipse per role; ids count from 1."""
     buffer = Gst.Buffer.new_allocate(None, 16, None)
     for number, role in enumerate(roles, start=1):
         GstEllipse.buffer_add_ellipse_meta(buffer, role).id = number
@@ -142,7 +142,7 @@ class SearchRegion(unittest.TestCase):
 
 
 class Reference(unittest.TestCase):
-    """What the API reference is made from."""
+    """The GIR file from which the API reference is generated."""
 
     def test_says_of_everything_since_when(self):
         gir = ElementTree.parse(os.environ["ELLIPSE_GIR"])
@@ -157,10 +157,10 @@ class Reference(unittest.TestCase):
 
 if __name__ == "__main__":
     Gst.init(None)
-    # What the bindings complain of is a mistake in the annotations.
+    # A warning of the bindings is a mistake in the annotations.
     GLib.log_set_always_fatal(GLib.LogLevelFlags.LEVEL_WARNING | GLib.LogLevelFlags.LEVEL_CRITICAL)
     result = unittest.main(exit=False).result
-    # As the other suites do, for run.sh to count.
+    # run.sh counts the tests in this report, as in those of gtest.
     with open("python.xml", "w", encoding="utf-8") as report:
         print(
             f'<testsuites tests="{result.testsRun}" failures="{len(result.failures)}"'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""06_ros_yaml.py: messages of ROS from a real pipeline's JSON lines, against the scene's pose."""
+"""06_ros_yaml.py: ROS messages from a real pipeline's JSON lines against the scene's pose."""
 import json
 import math
 import subprocess
@@ -23,7 +23,7 @@ def messages_of(lines):
 
 
 def axis_z_of(q):
-    """Where a turn takes the z axis."""
+    """The z axis after a rotation."""
     return (
         2.0 * (q["x"] * q["z"] + q["w"] * q["y"]),
         2.0 * (q["y"] * q["z"] - q["w"] * q["x"]),

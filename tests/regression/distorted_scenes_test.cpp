@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Every scene of the catalog through every lens: what is followed, in the ideal plane.
+// Tracks every scene of the catalog through every lens, in the ideal plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr double kMinVisible = 0.3;
 constexpr double kMinRight = 0.995;
 constexpr double kMaxCentrePx = 0.05;  // median
 
-// In the ideal plane a part of what is seen lies outside of the picture's rectangle.
+// Parts of the ideal plane that the picture shows lie outside the picture's rectangle.
 double iou(const Ellipse& a, const Ellipse& b) {
   constexpr int kAround = 3000;
   return iou_inside(translated(a, kAround, kAround),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How often the first of the two poses is the right one, by the certainty told with it: pads seen
-// first near and tilted, in pictures by a renderer that shares nothing with core/scene.
+// How often the first of the two poses is correct, by its stated certainty. The pads first appear
+// near and tilted, in pictures by a renderer that shares nothing with core/scene.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -44,10 +44,11 @@ struct Case {
   bool is_ratio_given = false;
   std::uint64_t seed = 9100;
   double noise = 2.0;
-  bool is_decided = true;  // with a few exceptions near the view straight on
+  bool is_decided = true;  // except in a few cases near the view straight on
 };
 
-// Of the last frames, where the two solutions are more than kApartRad apart.
+// `right` and `all` count the last frame of a sequence if its two solutions are more than kApartRad
+// apart.
 struct Tally {
   int told = 0;
   std::array<int, 5> right{};  // by certainty: .5 to .6, ... .9 to 1
@@ -148,10 +149,10 @@ TEST_P(PoseCertainty, IsNotOverstated) {
   }
   std::printf(" by certainty .5-.6 ... .9-1\n");
   EXPECT_GE(tally.told, kPoses * kFrames * 9 / 10);
-  // Of the answers above .9 at most 2 % may be wrong.
+  // At most 2 % of the answers above .9 may be wrong.
   EXPECT_LE(tally.all[4] - tally.right[4], tally.all[4] / 50);
   for (std::size_t i = 1; i < 4; ++i) {
-    // Three standard deviations below the lower end of what is claimed.
+    // Three standard deviations below the lower bound of the stated certainty.
     const double claimed = 0.45 + 0.1 * static_cast<double>(i);
     const double slack = 3.0 * std::sqrt(claimed * (1.0 - claimed) * tally.all[i]);
     EXPECT_GE(tally.right[i], claimed * tally.all[i] - slack) << i;

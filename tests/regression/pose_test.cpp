@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How exact the pose of a followed pad is, on rendered flights from 15 m to 1 m.
+// Accuracy of the pose of a tracked pad on rendered flights from 15 m to 1 m.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -53,7 +53,7 @@ struct Errors {
   int wrong = 0;   // of these, the other solution
 };
 
-// Down to the pad, at a tilt and from a side that stay about the same.
+// A descent to the pad with roughly constant tilt and azimuth.
 class Approach {
  public:
   explicit Approach(Random& random)

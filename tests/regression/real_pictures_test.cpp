@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 const fs::path kPackage = "/usr/share/doc/opencv-doc";
 constexpr double kSameEllipseIou = 0.8;
 
-/// What was measured when the row was written last. Who makes a detector better moves them.
+/// The values measured when the row was last written. An improved detector moves them.
 struct Limits {
   const char* detector;  ///< Its nick.
   int least_right;       ///< Labelled ellipses that are found.
@@ -83,7 +83,7 @@ ImageView view(const cv::Mat& luma) {
 class RealPictures : public testing::TestWithParam<Limits> {
  protected:
   void SetUp() override {
-    // Small containers install packages without their documentation, which is what is read here.
+    // Small containers install packages without their documentation, which contains the pictures.
     if (!fs::is_directory(kPackage / "examples/data"))
       GTEST_SKIP() << "package opencv-doc is not installed";
     labels_ = read_labels();
@@ -92,7 +92,7 @@ class RealPictures : public testing::TestWithParam<Limits> {
     set_by_name(settings_, "tracking", "none");
   }
 
-  /// Whether the labelled ellipse is among all that the detector finds in its picture.
+  /// Whether the detector finds the labelled ellipse in its picture.
   [[nodiscard]] bool is_found(const Label& label) const {
     const cv::Mat luma = read_picture(label.picture);
     const std::unique_ptr<Detector> detector = make_detector(settings_.detector);

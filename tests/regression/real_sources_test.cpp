@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The default method on real footage, tracked and by single frames; README.md says which.
+// The default method on real footage, tracked and on single frames; README.md lists the footage.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What was measured when the row was written last. A better result raises the limit.
+/// The values measured when the row was last written. A better result raises the limit.
 struct Limits {
   int min_right = 0;     ///< Frames with the right target, or rightly none.
   int max_mistaken = 0;  ///< Frames with a target that is wrong or not there.
@@ -43,7 +43,7 @@ constexpr Source kSources[] = {
     {"road-negative", {221, 0}, {221, 0}},
 };
 
-/// All ellipses of calibration-discs, by single frames.
+/// All ellipses of calibration-discs, on single frames.
 constexpr int kMinRightDiscs = 2441;
 constexpr int kMaxMistakenDiscs = 5;
 
@@ -51,7 +51,7 @@ void PrintTo(const Source& source, std::ostream* out) {
   *out << source.name;
 }
 
-/// The folder of a source; empty where it is not there.
+/// The folder of a source; empty if missing.
 fs::path folder_of(const std::string& name) {
   const char* data = std::getenv("ELLIPSE_REAL_SOURCES");
   const fs::path folder = data != nullptr ? fs::path(data) / name : fs::path();

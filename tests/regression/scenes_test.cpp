@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Every scene of the catalog: how many frames are right at the least, how many false at the most.
+// Every scene of the catalog: minimum of right frames and maximum of false ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr std::uint64_t kSeed = 201;
 constexpr double kRightIou = 0.8;
 constexpr double kMinVisible = 0.3;
 
-/// What was measured when the row was written last. Who makes a tracker better moves them.
+/// The values measured when the row was last written. An improved tracker moves them.
 struct Limits {
   const char* scene;
   double from_s;
@@ -34,7 +34,7 @@ struct Limits {
   const char* detector;
   const char* tracking;
   int least_right;  ///< Frames with the right target.
-  int most_false;   ///< Frames with another target, or with one where there is none.
+  int most_false;   ///< Frames with another target, or with one although none is visible.
 };
 
 constexpr Limits kLimits[] = {
@@ -170,7 +170,7 @@ class Watched {
 };
 
 TEST_P(Scenes, ShowTheirTargetAndNoOther) {
-  std::deque<Watched> methods;  // trackers do not move
+  std::deque<Watched> methods;  // trackers are not movable
   const Limits* any = nullptr;
   for (const Limits& limits : kLimits) {
     if (std::string(limits.scene) != GetParam()) continue;
@@ -238,7 +238,8 @@ INSTANTIATE_TEST_SUITE_P(Detectors, BareGround, testing::ValuesIn(kBans), [](con
   return std::string(info.param.detector) + '_' + info.param.ground;
 });
 
-// Of 160 frames of one kind of ground without a target. The seeds were used for nothing else.
+// False targets in 160 frames of one kind of ground without a target. No other test uses these
+// seeds.
 int false_on(GroundKind kind) {
   TrackerSettings settings;
   set_by_name(settings, "detector", "arcs");
@@ -258,7 +259,7 @@ int false_on(GroundKind kind) {
   return wrong;
 }
 
-// 800 frames full of what resembles a pad: half ellipses on roads, petals that the border cuts.
+// 800 frames of shapes that resemble a pad: half ellipses on roads, petals cut by the border.
 TEST(Clutter, FoolsTheArcsInFewFrames) {
   int wrong = 0;
   for (const GroundKind kind : {GroundKind::kClutter,
@@ -272,7 +273,7 @@ TEST(Clutter, FoolsTheArcsInFewFrames) {
   EXPECT_LE(wrong, 14);
 }
 
-// An octagon with a radius of a dozen pixels can hardly be told from an ellipse.
+// An octagon with a radius of a dozen pixels is hardly distinguishable from an ellipse.
 TEST(Clutter, OfPolygonsFoolsTheArcsWhereTheyAreSmall) {
   const int wrong = false_on(GroundKind::kPolygons);
   RecordProperty("false", wrong);

@@ -4,7 +4,7 @@
 
 namespace support {
 
-/// A rational lens with a tangential part, 58 degrees wide; pixels that are not quite square.
+/// A rational lens with tangential distortion, 58 degrees wide; the pixels are not exactly square.
 inline ellipse::Camera wide() {
   ellipse::Camera camera = ellipse::Camera::with_hfov(1.012, 640, 360);
   camera.fy = 1.01 * camera.fx;
@@ -12,7 +12,7 @@ inline ellipse::Camera wide() {
   return camera;
 }
 
-/// A fisheye of some 115 degrees, not quite in the picture's middle.
+/// A fisheye of some 115 degrees, with its principal point off the picture's centre.
 inline ellipse::Camera fisheye() {
   ellipse::Camera camera;
   camera.width = 640;

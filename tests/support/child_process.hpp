@@ -25,29 +25,28 @@ struct ProcessCalls {
   int (*kill)(pid_t, int) = ::kill;
 };
 
-/// Whom a signal to the child reaches, besides the child.
+/// The processes besides the child that receive its signals.
 enum class Session {
-  kShared,    ///< Nobody.
-  kOwnGroup,  ///< What it starts.
-  kTerminal,  ///< What it starts. Its input is a terminal, and becomes the one that controls it.
+  kShared,    ///< None.
+  kOwnGroup,  ///< Processes that it starts.
+  kTerminal,  ///< Processes that it starts. Its input becomes its controlling terminal.
 };
 
 struct ChildSetup {
   std::vector<std::string> arguments{};  ///< The program, searched for in PATH; then its arguments.
   std::vector<std::string> variables{};  ///< Added to the environment, NAME=value each.
-  std::string folder{};                  ///< Where it starts; empty: here.
+  std::string folder{};                  ///< Working directory; empty: the parent's.
   int input = -1;                        ///< -1: /dev/null.
-  int output = -1;                       ///< -1: that of this process.
-  int error = -1;                        ///< -1: that of this process.
+  int output = -1;                       ///< -1: inherited.
+  int error = -1;                        ///< -1: inherited.
   Session session = Session::kShared;
 };
 
-/// A program that runs beside the tests, for as long as this lives: the only place from which the
-/// tests fork and send signals.
+/// A child process for the lifetime of this object. The tests fork and send signals nowhere else.
 ///
-/// A start that fails is a failed test that names the program and the reason; the object then has
-/// no process, and signals nobody. The kernel also ends the program when the thread that started it
-/// dies, so that killed tests leave nothing behind.
+/// A failed start fails the test with the program and the reason; the object then has no process
+/// and signals nobody. The kernel also ends the child when the thread that started it dies, so
+/// killed tests leave no process behind.
 class ChildProcess {
  public:
   explicit ChildProcess(const ChildSetup& setup, const ProcessCalls& calls = {})
@@ -63,7 +62,7 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Its process number; 0 where it was not started.
+  /// Process id; 0 if it was not started.
   [[nodiscard]] pid_t id() const { return process_; }
   /// Sends a signal to the child, or to its group. Does nothing once it has been waited for.
   /// Numbers below 2 are never signalled: kill() takes -1 and 0 for many processes, and 1 is init.
@@ -71,7 +70,7 @@ class ChildProcess {
     if (is_over_ || process_ < 2) return;
     calls_.kill(signals_group_ ? -process_ : process_, number);
   }
-  /// Waits without a limit. @return the exit status; -1 where a signal ended it or it never began.
+  /// Waits without a limit. @return the exit status; -1 if a signal ended it or it never started.
   int wait() {
     poll(0);
     return exit_status();
@@ -85,15 +84,15 @@ class ChildProcess {
     return is_over_;
   }
   [[nodiscard]] bool is_over() { return poll(WNOHANG); }
-  /// Once it is over: -1 where a signal ended it or it never began.
+  /// After the end: the exit status; -1 if a signal ended it or it never started.
   [[nodiscard]] int exit_status() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : -1; }
-  /// Once it is over: the signal that ended it, or 0.
+  /// After the end: the signal that ended it, or 0.
   [[nodiscard]] int ended_by() const { return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0; }
 
  private:
   static constexpr int kNoStatus = 0x7f;  // neither exited nor signaled
 
-  // @return Whether it is over.
+  // @return Whether it has ended.
   bool poll(int flags) {
     if (is_over_) return true;
     pid_t ended = 0;
@@ -105,7 +104,7 @@ class ChildProcess {
     return is_over_;
   }
 
-  // Everything that allocates happens before the fork. @return 0, or the errno.
+  // All allocation happens before the fork. @return 0, or the errno.
   int start(const ChildSetup& setup) {
     const std::vector<char*> argv = pointers_to(setup.arguments);
     const std::vector<std::string> variables = environment_with(setup.variables);
@@ -123,7 +122,7 @@ class ChildProcess {
     if (setup.session == Session::kOwnGroup) setpgid(process, process);  // before it is signalled
     failure.in.close();
     int error = 0;
-    const std::string told = failure.out.read_some();  // ends where the program begins
+    const std::string told = failure.out.read_some();  // ends when the program starts
     if (told.size() != sizeof error) return 0;
     told.copy(reinterpret_cast<char*>(&error), sizeof error);
     wait();
@@ -132,14 +131,14 @@ class ChildProcess {
     return error;
   }
 
-  // In the child. Only system calls: other threads may have held locks at the fork.
+  // Runs in the child. Only system calls: other threads may have held locks at the fork.
   [[noreturn]] static void become(const ChildSetup& setup,
                                   int input,
                                   char* const* argv,
                                   char* const* environment,
                                   int failure) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    ::signal(SIGHUP, SIG_DFL);  // under nohup it would be ignored
+    ::signal(SIGHUP, SIG_DFL);  // nohup would have it ignored
     if (setup.session == Session::kOwnGroup) setpgid(0, 0);
     if (setup.session == Session::kTerminal) {
       setsid();
@@ -163,7 +162,7 @@ class ChildProcess {
     pointers.push_back(nullptr);
     return pointers;
   }
-  // A variable that is added replaces one of the same name.
+  // An added variable replaces one of the same name.
   static std::vector<std::string> environment_with(const std::vector<std::string>& added) {
     std::vector<std::string> all = added;
     for (char** each = environ; *each != nullptr; ++each) {
@@ -183,13 +182,13 @@ class ChildProcess {
   int status_ = kNoStatus;
 };
 
-/// How a command line of the shell ended, and what it wrote to its standard output.
+/// Exit status and standard output of a shell command line.
 struct Outcome {
-  int status = -1;  ///< -1 where a signal ended it or it could not be started.
+  int status = -1;  ///< -1 if a signal ended it or it could not be started.
   std::string text;
 };
 
-/// Runs a command line of the shell to its end.
+/// Runs a shell command line to its end.
 inline Outcome run_shell(const std::string& command) {
   Outcome outcome;
   Pipe pipe;

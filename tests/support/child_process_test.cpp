@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The owner of the tests' child processes. Where a start fails the calls are replaced, and kill()
-// too, so that a fault here reaches no process of the machine.
+// The owner of the tests' child processes. Tests of failed starts replace the system calls,
+// including kill(), so that a fault here reaches no other process.
 #include "tests/support/child_process.hpp"
 
 #include <gtest/gtest-spi.h>
@@ -26,7 +26,7 @@ using support::TemporaryFolder;
 using support::Terminal;
 using support::TerminalCalls;
 
-std::vector<pid_t> signalled;  // by record_kill
+std::vector<pid_t> signalled;  // recorded by record_kill
 
 int record_kill(pid_t process, int /*number*/) {
   signalled.push_back(process);
@@ -83,7 +83,7 @@ TEST_F(Children, AFailedForkAtATerminalSignalsNobody) {
       {
         TerminalCalls calls;
         calls.openpty = [](int* near, int* far, char*, const termios*, const winsize*) {
-          support::Pipe pipe;  // stands for a terminal where the machine has none
+          support::Pipe pipe;  // replaces a terminal, which the machine may not have
           *near = dup(pipe.out.number());
           *far = dup(pipe.in.number());
           return 0;
@@ -161,7 +161,7 @@ TEST_F(Children, AreSignalledWithTheirGroupWhereTheyHaveOne) {
     child.signal(SIGINT);
     const pid_t expected = session == Session::kShared ? child.id() : -child.id();
     EXPECT_EQ(signalled, std::vector<pid_t>{expected});
-    EXPECT_EQ(child.wait(), 1);  // the end of its input
+    EXPECT_EQ(child.wait(), 1);  // at the end of its input
     signalled.clear();
   }
 }

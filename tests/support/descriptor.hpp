@@ -11,16 +11,16 @@
 
 namespace support {
 
-/// What an errno means, in words.
+/// The message of an errno.
 inline std::string text_of_errno(int error) {
   return std::generic_category().message(error);
 }
 
-/// Owns an open file. Programs that are started do not inherit it.
+/// Owns an open file descriptor. Child processes do not inherit it.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
-  /// Opens a file. The test fails where that does not work.
+  /// Opens a file; fails the test on error.
   Descriptor(const std::string& path, int flags)
       : number_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
     if (number_ < 0) ADD_FAILURE() << "cannot open " << path << ": " << text_of_errno(errno);
@@ -34,7 +34,7 @@ class Descriptor {
     if (number_ >= 0) ::close(number_);
     number_ = -1;
   }
-  /// @return What can be read at once, or once there is something; empty at the end.
+  /// @return The bytes that the next read returns; empty at the end. Blocks until some arrive.
   [[nodiscard]] std::string read_some() const {
     std::array<char, 4096> block;
     ssize_t size = 0;
@@ -48,7 +48,7 @@ class Descriptor {
   int number_;
 };
 
-/// What is written to `in` is read from `out`.
+/// Bytes written to `in` are read from `out`.
 class Pipe {
  public:
   Pipe() : Pipe(open()) {}

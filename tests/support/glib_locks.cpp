@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Tells ThreadSanitizer of GLib's mutexes. GLib makes them of futexes, and is not instrumented: it
-// would take what they guard for unguarded. These stand before GLib's own and call them. GLib calls
-// its own past them: so what goes through one of its queues, as GstHarness's buffers do, is told of
-// too.
+// Tells ThreadSanitizer about GLib's mutexes. GLib builds them on futexes and is not instrumented,
+// so the data that they guard would look unguarded. These functions replace GLib's and call them.
+// Calls inside GLib bypass them; its asynchronous queues, which carry GstHarness's buffers, are
+// therefore reported too.
 #include <dlfcn.h>
 #include <glib.h>
 #include <sanitizer/tsan_interface.h>

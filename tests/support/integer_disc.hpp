@@ -7,8 +7,8 @@
 
 namespace support {
 
-/// An upright ellipse drawn with integers only, so that its picture is the same on every processor:
-/// the renderer of scenes calls sin(), whose last digit differs. Pixels.
+/// An upright ellipse drawn with integers only, so that its picture is the same on every processor;
+/// the scene renderer calls sin(), whose last digit differs. Units: pixels.
 struct IntegerDisc {
   int x;
   int y;

@@ -10,8 +10,8 @@
 
 namespace support {
 
-/// Memory that records in which order its pages are read: only the page read last is accessible,
-/// and each access to another one is a fault. One at a time.
+/// Memory that records the order in which its pages are read: only the last page read is
+/// accessible, and access to another one faults. One at a time.
 class PageWatch {
  public:
   static constexpr std::size_t kPage = 4096;
@@ -40,7 +40,7 @@ class PageWatch {
     mprotect(data_, pages_ * kPage, PROT_NONE);
   }
 
-  /// @return The pages, in the order in which they were entered.
+  /// @return The pages in the order of their accesses.
   std::vector<std::size_t> stop() {
     mprotect(data_, pages_ * kPage, PROT_READ | PROT_WRITE);
     sigaction(SIGSEGV, &previous_, nullptr);
@@ -71,7 +71,7 @@ class PageWatch {
   std::uint8_t* data_;
   std::size_t last_ = 0;
   struct sigaction previous_ {};
-  std::array<std::size_t, 16384> visits_{};  // a handler must not allocate
+  std::array<std::size_t, 16384> visits_{};  // a signal handler must not allocate
   std::size_t visit_count_ = 0;
 };
 

@@ -12,7 +12,7 @@
 #include "core/scene/scene.hpp"
 #include "tests/support/picture.hpp"
 
-// An estimate of the ellipses in a picture that shares nothing with the renderer.
+// Estimates the ellipses in a picture, independently of the renderer.
 namespace support {
 
 /// The unit circle under p -> c + M u, M symmetric.
@@ -31,8 +31,8 @@ inline ellipse::Ellipse ellipse_of(const ParameterVector& s) {
   return ellipse::from_shape(s.head<2>(), m * m).value();
 }
 
-/// Light inside an ellipse as a pixel sees it through a Gaussian, by brute force: the mean over a
-/// fine grid of points, each a small square that the edge may cut.
+/// Light that a pixel receives from inside an ellipse through a Gaussian, by brute force: the mean
+/// over a fine grid of points, each a small square that the edge may cut.
 class BruteForce {
  public:
   BruteForce(const ParameterVector& s, double blur_px) : center_(s.head<2>()), blur_px_(blur_px) {
@@ -91,7 +91,7 @@ class PhotometricFit {
         if (is_near) pixels_.push_back(p);
       }
     }
-    // The start is off, so that staying there is no success.
+    // Starts off the truth, so that staying at the start fails the test.
     edges_.outer += (ParameterVector() << 0.4, -0.3, 0.3, 0.05, -0.2).finished();
     if (has_inner_) edges_.inner += (ParameterVector() << -0.2, 0.2, -0.1, 0.05, 0.2).finished();
   }
@@ -139,7 +139,7 @@ class PhotometricFit {
   Edges edges_;
 };
 
-/// Whether the pixels show the ellipse that the truth states.
+/// Checks that the pixels show the ellipse that the truth states.
 inline void expect_same(const ellipse::Ellipse& fitted, const ellipse::Ellipse& truth) {
   EXPECT_LE((fitted.center() - truth.center()).norm(), 0.02) << truth.semi_major << " px";
   EXPECT_NEAR(fitted.semi_major, truth.semi_major, 0.05) << truth.aspect_ratio();

@@ -29,7 +29,7 @@ struct Picture {
   [[nodiscard]] ellipse::ImageView view() const { return {pixels.data(), width, height, width}; }
 };
 
-/// Renders a scene in which the pad's outer edge is exactly this ellipse.
+/// Renders a scene with the pad's outer edge at exactly this ellipse.
 inline Picture rendered(const ellipse::Scene& scene,
                         const ellipse::Ellipse& outer_edge,
                         int width = 320,
@@ -41,8 +41,8 @@ inline Picture rendered(const ellipse::Scene& scene,
   return picture;
 }
 
-/// An ellipse of this mean radius, up to twice as long as wide, turned at random, whose centre is
-/// somewhere in this pixel.
+/// A random ellipse with this mean radius, an axis ratio up to 2, any orientation, and a random
+/// centre inside this pixel.
 inline ellipse::Ellipse random_ellipse(ellipse::Random& random, int x, int y, double radius) {
   const double flat = std::sqrt(random.between(1.0, 2.0));
   const double cx = x + random.unit();
@@ -50,7 +50,7 @@ inline ellipse::Ellipse random_ellipse(ellipse::Random& random, int x, int y, do
   return {cx, cy, radius * flat, radius / flat, random.between(-1.5, 1.5)};
 }
 
-/// A bar between places given in pixels of a picture of this size.
+/// A bar between two points in pixels of a picture of this size.
 inline ellipse::Bar bar_px(const Eigen::Vector2d& from_px,
                            const Eigen::Vector2d& to_px,
                            double width_px,
@@ -61,7 +61,7 @@ inline ellipse::Bar bar_px(const Eigen::Vector2d& from_px,
   return {(from_px - middle) / width, (to_px - middle) / width, width_px / width, level};
 }
 
-/// A ring alone on an even, bright plate that fills the picture.
+/// A ring on a uniform, bright plate that fills the picture.
 inline ellipse::Scene plain_ring() {
   ellipse::Scene scene;
   scene.pad.pattern = ellipse::Pattern::kRing;

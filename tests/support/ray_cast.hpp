@@ -15,7 +15,7 @@
 
 namespace support {
 
-/// Light of a plane [grey levels] at a place in units of the pad's radius, its centre the origin.
+/// Light of a plane [grey levels] at a point in pad radii from the pad's centre.
 using PlanePaint = std::function<double(const Eigen::Vector2d&)>;
 
 /// A dark ring on a bright square plate on grey ground.
@@ -38,14 +38,14 @@ inline PlanePaint painted_ring_with_x(double inner_radius) {
   };
 }
 
-/// A picture of a plane by casting rays, with none of the code of core/scene: the light is sampled
-/// on a grid inside each pixel, then blurred by a Gaussian.
+/// Renders a plane by ray casting, without code of core/scene: samples the light on a grid inside
+/// each pixel, then blurs it with a Gaussian.
 class RayCaster {
  public:
   RayCaster(const ellipse::Camera& camera, PlanePaint paint)
       : camera_(camera), lens_(camera), paint_(std::move(paint)) {}
 
-  /// @param pose  Of the pad's unit circle.
+  /// @param pose  Pose of the pad's unit circle.
   [[nodiscard]] std::vector<double> light(const ellipse::CirclePose& pose, double blur_px) const {
     const Eigen::Vector3d first = pose.normal.unitOrthogonal();
     const Eigen::Vector3d second = pose.normal.cross(first);
@@ -70,7 +70,7 @@ class RayCaster {
     return light;
   }
 
-  /// Grey levels, with white noise.
+  /// Adds white noise and rounds to grey levels.
   [[nodiscard]] Picture picture(const std::vector<double>& light,
                                 double noise,
                                 std::uint64_t seed) const {
@@ -86,7 +86,7 @@ class RayCaster {
 
  private:
   static constexpr double kSky = 150.0;
-  static constexpr int kGrid = 8;  // samples to a side of a pixel that an edge crosses
+  static constexpr int kGrid = 8;  // samples per side of a pixel that an edge crosses
 
   template <class Light>
   [[nodiscard]] static double pixel(const Light& light_at, int x, int y) {

@@ -10,7 +10,7 @@
 
 namespace support {
 
-/// Answers as it is told, in pixels of the frame, and remembers what it was asked.
+/// Returns scripted detections, in pixels of the frame, and records its calls.
 class ScriptedDetector final : public ellipse::Detector {
  public:
   struct Call {
@@ -19,9 +19,9 @@ class ScriptedDetector final : public ellipse::Detector {
     ellipse::Thresholds thresholds;
   };
   struct Script {
-    std::vector<std::vector<ellipse::Detection>> answers;  ///< The last one goes on.
+    std::vector<std::vector<ellipse::Detection>> answers;  ///< The last one repeats.
     std::vector<Call> calls;
-    std::function<ellipse::Rect()> region;  ///< Where the frame is searched [px].
+    std::function<ellipse::Rect()> region;  ///< Searched region of the frame [px].
   };
 
   explicit ScriptedDetector(Script& script) : script_(script) {}
@@ -47,7 +47,7 @@ class ScriptedDetector final : public ellipse::Detector {
   std::vector<ellipse::Detection> answer_;
 };
 
-/// A sure detection.
+/// A detection with full overlaps.
 inline ellipse::Detection detection_at(double cx, double cy, double semi_major) {
   return {{cx, cy, semi_major, 0.9 * semi_major, 0.0}, 1.0, 1.0, 100.0};
 }

@@ -9,10 +9,10 @@
 
 namespace support {
 
-/// Command lines of a shell beside this program, in a process group of their own; gone at the end.
+/// A shell command line running in a process group of its own; ended with this object.
 class ShellJob {
  public:
-  /// @param log  Names two files, with .out and .err behind it.
+  /// @param log  Base name of two files, with suffixes .out and .err.
   ShellJob(const std::string& text,
            const std::string& folder,
            const std::string& log,
@@ -27,11 +27,11 @@ class ShellJob {
                 .session = Session::kOwnGroup},
                calls) {}
 
-  /// What Ctrl-C sends.
+  /// Sends SIGINT, as Ctrl-C does.
   void interrupt() const { shell_.signal(SIGINT); }
-  /// @return Whether it ends within three minutes, of which a busy machine may need the second.
+  /// @return Whether it ends within three minutes. A busy machine may need two.
   [[nodiscard]] bool ends() { return shell_.ends_within(std::chrono::minutes(3)); }
-  /// @return Its exit status; -1 where a signal ended it, or nothing within that time.
+  /// @return Its exit status; -1 if a signal ended it or it did not end in time.
   [[nodiscard]] int wait_for_end() { return ends() ? shell_.exit_status() : -1; }
   [[nodiscard]] std::string output() const { return contents_of(log_ + ".out"); }
   [[nodiscard]] std::string errors() const { return contents_of(log_ + ".err"); }

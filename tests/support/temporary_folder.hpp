@@ -10,14 +10,14 @@
 
 namespace support {
 
-/// All of a file; empty where there is none.
+/// Contents of a file; empty if there is none.
 inline std::string contents_of(const std::string& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
 }
 
-/// A folder of its own, gone at the end: tests that run beside each other do not meet in it.
+/// A unique folder, removed with this object, so that parallel tests do not collide.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "gst-ellipse-XXXXXX") {

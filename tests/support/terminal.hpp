@@ -18,10 +18,10 @@ struct TerminalCalls {
   ProcessCalls process{};
 };
 
-/// A program at a terminal: it shows its progress, and keys reach it as signals.
+/// Runs a program at a terminal, where it shows its progress and receives keys as signals.
 ///
-/// A machine may have no pseudo terminals: a chroot or a container without /dev/pts. Nothing is
-/// started then, and is_missing() tells. Any other failure fails the test.
+/// A chroot or a container without /dev/pts has no pseudo terminals. Then nothing is started and
+/// is_missing() returns true. Any other failure fails the test.
 class Terminal {
  public:
   explicit Terminal(const std::vector<std::string>& arguments, const TerminalCalls& calls = {}) {
@@ -45,9 +45,9 @@ class Terminal {
   }
 
   [[nodiscard]] bool is_missing() const { return is_missing_; }
-  /// Why it is missing.
+  /// Why the terminal is missing.
   [[nodiscard]] const std::string& reason() const { return reason_; }
-  /// @return Whether the program has shown this before its end.
+  /// @return Whether the program printed this before its end.
   [[nodiscard]] bool read_until(const std::string& part) {
     while (text_.find(part) == std::string::npos) {
       if (!read_some()) return false;
@@ -57,7 +57,7 @@ class Terminal {
   void type(char key) const {
     if (screen_) (void)!write(screen_->number(), &key, 1);
   }
-  /// @return The exit status; -1 where a signal ended the program or it never began.
+  /// @return The exit status; -1 if a signal ended the program or it never started.
   [[nodiscard]] int wait_for_end() {
     while (read_some()) continue;
     return program_ ? program_->wait() : -1;

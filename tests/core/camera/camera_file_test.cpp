@@ -143,7 +143,7 @@ TEST_F(CameraFile, RefusesWhatIsNoCalibration) {
   EXPECT_THROW((void)read_camera(path("absent.yaml")), std::invalid_argument);
 }
 
-// "ros2 topic echo" of a camera_info: other names, and lists whose dashes are not indented.
+// Output of "ros2 topic echo" for a camera_info: other names, and unindented list dashes.
 constexpr const char* kMessage = R"(header:
   stamp:
     sec: 1700000000
@@ -211,7 +211,7 @@ TEST_F(CameraFile, RefusesALensThatIsNotOneToOne) {
   }
 }
 
-// A lens may be non-monotonic beyond the middle half; this one is, from 1.5 times as far out.
+// A lens may be non-monotonic beyond the middle half; this one is, beyond 1.5 times that radius.
 TEST_F(CameraFile, TakesALensThatTurnsBackFartherOut) {
   const std::string text =
       with("-0.337586, 0.111344, -0.00069, -0.0003, 0.0", "-0.3, 0., 0., 0., 0.");

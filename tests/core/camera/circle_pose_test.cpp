@@ -118,9 +118,9 @@ TEST(RingChanges, AreTheSameChangeInAnotherView) {
   EXPECT_LT(max_difference_px(*first, *second), 1e-6);
 }
 
-// Normalised error squared of 10,000 positions: its mean is 3, within 1.96 sqrt(6 / 10,000). Its
-// tail is a little longer than chi-square's, because near the view straight on the error is not
-// normal: of 250,000 positions .9484 are within the 95 % quantile.
+// The mean normalised squared error of 10,000 positions is 3, within 1.96 sqrt(6 / 10,000). Its
+// tail is slightly longer than chi-square's, because the error is not normal near the view straight
+// on: of 250,000 positions .9484 are within the 95 % quantile.
 TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   std::mt19937 random(20261122);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -172,7 +172,7 @@ TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
   EXPECT_NEAR(static_cast<double>(inside) / kPoses, 0.95, 0.0043 + 0.0016);
 }
 
-// The estimator: which of the two solutions.
+// -- PoseEstimator
 
 struct View {
   CirclePose truth;

@@ -48,7 +48,7 @@ TEST_P(EachLensView, TableIsNearTheInverse) {
   EXPECT_FALSE(view.approximate_ideal({9000.0, 0.0}).allFinite());
 }
 
-// A part of a reduced copy: its pixels are those of the frame, and so are its ideal ones.
+// Pixels and ideal pixels of a part of a reduced copy correspond to those of the frame.
 TEST_P(EachLensView, IsThatOfAPartAndOfAReducedCopy) {
   const LensView frame(lens_);
   const LensView part = frame.part({40.0, 24.0}).reduced(4);
@@ -87,7 +87,7 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
     const auto place = view.picture_from_ideal(origin + ideal[k]);
     ASSERT_TRUE(place);
     EXPECT_LT((origin + Vector2d(x[k], y[k]) - place->picture_px).norm(), 5e-4);
-    // A step along the curve stays along it; a step across it scales by `across`.
+    // The tangent stays a tangent; a step across the curve scales by `across`.
     const Vector2d tangent = place->slope * Vector2d(-normal[k].y(), normal[k].x());
     const Vector2d bent_normal(nx[k], ny[k]);
     EXPECT_NEAR(bent_normal.norm(), 1.0, 1e-5);
@@ -125,8 +125,8 @@ TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
 
 TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
   const LensView view(lens_);
-  // Its image is outside the frame, although the ideal plane's first row crosses it.
   EXPECT_EQ(visible_fraction(view, {320.0, 180.0, 40.0, 30.0, 0.0}, 640, 360), 1.0);
+  // The picture's left border halves `cut`; the ideal plane's rectangle contains less of it.
   const auto left = view.ideal_from_picture({-0.5, 180.0});
   ASSERT_TRUE(left);
   const Ellipse cut{left->x(), 180.0, 30.0, 30.0, 0.0};

@@ -225,7 +225,7 @@ TEST_P(DetectionTraceOf, SaysThatAnotherSetHasMore) {
   EXPECT_LT(verdict.measured, verdict.limit);
 }
 
-// A detector with probabilities selects by them.
+// Only contours: a detector with probabilities selects by them.
 TEST(DetectionTrace, OfContoursSaysThatWhatIsAloneDoesNotCount) {
   const Look look = look_at(DetectorKind::kContours, of_scene("approach", 5.5));
   EXPECT_TRUE(has(look, Reason::kSingle));
@@ -311,7 +311,6 @@ TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
   }
 }
 
-// Also where a first look asks for a part of the setting, or a lone ellipse for more than it.
 TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
   int refused = 0;
   for (const char* name : {"approach", "glare", "occluded"}) {

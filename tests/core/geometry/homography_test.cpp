@@ -46,7 +46,7 @@ TEST(Homography, IsLaidUponAnOuterEdge) {
   }
   EXPECT_LT((with_outer_edge(view, seen_edge).value() - view).norm(), 1e-8 * view.norm());
   const Ellipse moved_edge = translated(seen_edge, 3.0, -2.0);
-  const Vector2d mark(0.4, 0.1);  // goes along
+  const Vector2d mark(0.4, 0.1);  // moves with the edge
   const Vector2d by = seen(with_outer_edge(view, moved_edge).value(), mark) - seen(view, mark);
   EXPECT_LT((by - Vector2d(3.0, -2.0)).norm(), 0.2);
   EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), seen_edge));
@@ -92,7 +92,7 @@ TEST(Homography, GivesBackAChange) {
 }
 
 TEST(Homography, FollowsTheCamera) {
-  // A camera above the pad moves by small amounts; the view changes as it is told.
+  // A camera above the pad makes small motions; the view must change by the predicted amounts.
   constexpr double kFocal = 500.0;
   const Vector2d middle(319.5, 179.5);
   Matrix3d k;

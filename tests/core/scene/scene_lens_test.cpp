@@ -51,7 +51,7 @@ TEST_P(SceneLens, FieldOfViewIsFromBorderToBorder) {
   }
 }
 
-// The largest error in the picture of the block homographies against the lens.
+// The maximum error in the picture of the block homographies against the lens.
 TEST_P(SceneLens, BlocksBendAsTheLensDoes) {
   const LensMap map(camera());
   double farthest_px = 0.0;
@@ -70,8 +70,8 @@ TEST_P(SceneLens, BlocksBendAsTheLensDoes) {
   RecordProperty("farthest_px", std::to_string(farthest_px));
 }
 
-// The distance from a blurred edge at a share of its light, in standard deviations: the inverse of
-// the normal distribution, by bisection.
+// The distance from a blurred edge at which it has a given share of its light, in standard
+// deviations: the inverse of the normal distribution, by bisection.
 double sigmas_of(double share) {
   double low = -4.0;
   double high = 4.0;
@@ -95,10 +95,10 @@ double distance_px(const Lens& lens, const Ellipse& e, const Vector2d& pixel) {
 
 struct EdgeErrors {
   std::vector<double> all;
-  std::vector<double> at_corners;  // in the outer third of the picture's half diagonal
+  std::vector<double> at_corners;  // beyond two thirds of the picture's half diagonal
 };
 
-// The error of the edge's position against the truth, from the grey level of each edge pixel.
+// The error of the edge's position, from the grey level of each edge pixel.
 EdgeErrors edge_errors(const Scene& scene, const Picture& picture, const Ellipse& truth) {
   const Lens lens(camera_of(scene, picture.width, picture.height));
   const Vector2d middle(0.5 * (picture.width - 1), 0.5 * (picture.height - 1));
@@ -158,7 +158,7 @@ TEST_P(SceneLens, TruthIsWhatThePixelsShow) {
   RecordProperty("corner_median_px", std::to_string(quantile(errors.at_corners, 0.5)));
 }
 
-// And in a flight's perspective.
+// The same in the perspective of a flight.
 TEST_P(SceneLens, TruthOfAFlightIsWhatThePixelsShow) {
   Scene scene = plain_disc();
   scene.flight.highest = 6.0;
@@ -227,8 +227,8 @@ TEST(LensOfAScene, WithoutDistortionIsAPinhole) {
   EXPECT_EQ(lens.pixels, pinhole.pixels);
 }
 
-// All scene content, drawn patch by patch: textures, shadows, glare, bars, motion blur. Only the
-// mipmap level of the ground near the horizon, constant within a block, may differ.
+// All scene content, drawn block by block: textures, shadows, glare, bars, motion blur. Only the
+// mipmap level of the ground near the horizon, which is constant within a block, may differ.
 TEST(LensOfAScene, ThatHardlyBendsShowsWhatAPinholeShows) {
   for (const NamedScene& named : scene_catalog()) {
     Scene scene = named.make(1);

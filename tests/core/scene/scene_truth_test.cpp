@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Checks the truth against the picture: an estimate independent of the renderer, fitted to the grey
-// levels around the edges, finds the true ellipses.
+// Checks the truth against the picture: a photometric fit that is independent of the renderer finds
+// the true ellipses.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -79,7 +79,7 @@ TEST(Sheet, AnUprightSheetStandsOnTheGround) {
   const auto found = true_ellipses(scene, 0.0, 320, 240);
   ASSERT_EQ(found.size(), 1U);
   const Ellipse& e = found[0].ellipse;
-  // Its foot is in the origin, which the camera looks at.
+  // Its foot is at the origin, which is the centre of the view.
   EXPECT_NEAR(e.cx, 159.5, 0.5);
   EXPECT_NEAR(e.cy + half_extent(e).y(), 119.5, 1.0);
   // From 1.2 rad off the vertical, its image is nearly as high as wide, and above the origin.

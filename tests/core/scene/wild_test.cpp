@@ -104,7 +104,7 @@ double bilinear(const Picture& picture, const Eigen::Vector2d& p) {
                    p.y() - y);
 }
 
-// Distance of the outline outside an ellipse along its normals, at the mid grey level.
+// Distance of the outline from an ellipse along its normals, outwards, at the mid grey level.
 std::vector<double> offsets_from(const Ellipse& e, const Picture& picture, double reach_px) {
   std::vector<double> offsets;
   walk_perimeter(e, [&](const PerimeterStep& step) {

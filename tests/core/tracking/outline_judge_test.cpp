@@ -42,7 +42,7 @@ class OutlineJudgeTest : public testing::Test {
     target_.ellipse_overlap = 1.0;
     target_.visible_fraction = 1.0;
   }
-  // Calls of the detector in a second of frames.
+  // Calls of the detector during one second of frames.
   int calls_in_a_second() {
     const int before = detector_.calls;
     for (int frame = 0; frame < 30; ++frame) {
@@ -86,7 +86,7 @@ TEST_F(OutlineJudgeTest, AShortArcOfWhatWasSeenWholeTellsNothing) {
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 0);
-  judge_.start(0.0, kNever_s);  // another one, which never showed more
+  judge_.start(0.0, kNever_s);  // a new target, of which no more has been visible
   EXPECT_GT(calls_in_a_second(), 0);
 }
 

@@ -120,10 +120,10 @@ TEST_F(ScriptedRedetectTracker, SearchesOnlyInsideTheScope) {
   const Rect within{80, 60, 200, 100};
   script_.answers = {{at(100, 100, 30)}};
   EXPECT_EQ(track(within, 1)->search_region, within);
-  // Around the target it would be from 40 to 161, and from 43 to 158.
+  // Without the limit the region would be [40, 161) by [43, 158).
   EXPECT_EQ(track(within, 1)->search_region, (Rect{80, 60, 81, 98}));
   (void)track({600, 300, 40, 60}, 1);
-  EXPECT_EQ(script_.calls.back().width, 0);  // the target's region is elsewhere
+  EXPECT_EQ(script_.calls.back().width, 0);  // the target's region does not intersect it
 }
 
 TEST_F(ScriptedRedetectTracker, TheFinestScaleIsNotGoneBelow) {
@@ -132,7 +132,7 @@ TEST_F(ScriptedRedetectTracker, TheFinestScaleIsNotGoneBelow) {
   EXPECT_EQ(track(all, 4)->scale, 4);
   EXPECT_EQ(script_.calls[0].width, 160);
   EXPECT_FALSE(track(all, 4));
-  EXPECT_EQ(script_.calls.size(), 2U);  // a loss is not tried again
+  EXPECT_EQ(script_.calls.size(), 2U);  // a loss is not retried
   (void)track(all, 1);
   (void)track(all, 1);
   EXPECT_EQ(script_.calls.back().width, 640);
@@ -146,8 +146,8 @@ TEST_F(ScriptedRedetectTracker, FollowsALowerLimitOfTheScale) {
 }
 
 TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
-  // Still pictures, so that only scale and region change from frame to frame; several positions, so
-  // that pixel quantization averages out and only the compensation remains.
+  // Still pictures, so that only scale and region change; many positions, so that pixel
+  // quantization averages out and only the compensation's error remains.
   Scene scene = plain_ring();
   scene.sensor.read_noise = 0.0;
   scene.sensor.blur_px = 2.0;

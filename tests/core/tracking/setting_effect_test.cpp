@@ -40,8 +40,7 @@ Sequence sequence_of(const char* name, double start_s) {
   return frames;
 }
 
-// A distant target, a near one that changes the scale, one with deformed edges, and one that is
-// occluded.
+// A distant target, a near one that changes the scale, a deformed one and an occluded one.
 const std::vector<Sequence>& sequences() {
   static const std::vector<Sequence> kSequences = {sequence_of("approach", 1.0),
                                                    sequence_of("approach", 6.5),
@@ -89,7 +88,7 @@ Answers answers_to(const Sequence& frames, const TrackerSettings& settings, int 
   return answers;
 }
 
-// Settings that act only with others: a focal length.
+// Some settings act only with another one, a focal length.
 TrackerSettings base_for(const std::string& name, DetectorKind detector, TrackingMode tracking) {
   TrackerSettings settings;
   settings.detector = detector;
@@ -100,7 +99,7 @@ TrackerSettings base_for(const std::string& name, DetectorKind detector, Trackin
   return settings;
 }
 
-// Settings with several values of one setting over its whole range.
+// The base settings with one setting at several values over its range.
 std::vector<TrackerSettings> variants_of(const std::string& name, const TrackerSettings& base) {
   std::vector<TrackerSettings> variants;
   const auto add_if_valid = [&](const std::string& value) {
@@ -186,7 +185,7 @@ TEST_P(SettingEffectOf, IsWhatTheTrackerDoes) {
   }
 }
 
-// Justifies elsewhere_above, on every scene once a second.
+// Justifies elsewhere_above, once per second of every scene.
 TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
   const auto arcs = make_detector(DetectorKind::kArcs);
   Thresholds thresholds;

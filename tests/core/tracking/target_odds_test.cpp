@@ -27,9 +27,9 @@ TEST(TargetOdds, BelieveAFirstFrameTheLessTheLongerNoTargetWasThere) {
   EXPECT_NEAR(blinked.value(), 2.0, 0.1);
 }
 
-// The oracle: the log likelihood ratio of all samples at once, of the multivariate normal
-// distributions with the process's covariance. With a mean of +-m and a variance of 2 m a sample is
-// its own log likelihood ratio.
+// Reference: the log likelihood ratio of all samples under multivariate normal distributions with
+// the process's covariance. With means of +-m and a variance of 2 m, a sample equals its own log
+// likelihood ratio.
 TEST(TargetOdds, AreTheLikelihoodRatioOfCorrelatedSamples) {
   constexpr double kMean = 1.0;
   const std::array<double, 5> samples = {1.2, 0.4, -0.8, 0.9, 1.7};

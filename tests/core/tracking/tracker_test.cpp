@@ -144,7 +144,7 @@ TEST(Tracker, TheSameFramesGiveTheSameTargets) {
 
 constexpr std::int64_t kFrameNs = 33'333'333;
 
-// The pixel-wise minimum of two pictures: the paint of both on one bright ground.
+// The pixel-wise minimum of two pictures combines their paint on one bright ground.
 Picture both(const Picture& a, const Picture& b) {
   Picture result = a;
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
@@ -153,7 +153,7 @@ Picture both(const Picture& a, const Picture& b) {
   return result;
 }
 
-// Pictures of one pad that moves from frame to frame.
+// Pictures of one moving pad.
 class Film {
  public:
   explicit Film(const Scene& scene) : scene_(scene) {}
@@ -260,7 +260,7 @@ TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {
   const auto back = tracker.process(film.at(25).view(), 25 * kFrameNs);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->id, 1U);
-  // After a longer absence the target is lost; the next one gets a new id.
+  // After a long absence the target is lost; the next one gets a new id.
   for (int frame = 26; frame < 60; ++frame) {
     EXPECT_FALSE(tracker.process(film.empty().view(), frame * kFrameNs)) << frame;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How often the truth lies inside what a tracker tells of its errors.
+// How often the truth lies within the tracker's stated uncertainty.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -36,7 +36,7 @@ double squared_error(const Target& target, const Ellipse& truth) {
   return error.dot(target.uncertainty.information * error);
 }
 
-// Of the frames in which the target is tracked.
+// Counts the frames in which the target is tracked.
 Shares shares_in(const char* name, int frames) {
   SceneRenderer renderer(scene_by_name(name, 31));
   support::Picture picture(640, 360);
@@ -53,7 +53,8 @@ Shares shares_in(const char* name, int frames) {
   return shares;
 }
 
-// Without motion blur: 95 % of independent frames, but errors of neighbouring frames are alike.
+// Scenes without motion blur. Independent frames would give 95 %; consecutive errors are
+// correlated.
 TEST(Uncertainty, HoldsTheTruthInMostFrames) {
   for (const char* name : {"approach", "glare", "noise"}) {
     const Shares shares = shares_in(name, 150);
@@ -62,7 +63,7 @@ TEST(Uncertainty, HoldsTheTruthInMostFrames) {
   }
 }
 
-// It is not simply large: doubled errors are outside.
+// The uncertainty is not simply too large: errors twice as large would exceed it.
 TEST(Uncertainty, IsNoLargerThanTheErrors) {
   SceneRenderer renderer(scene_by_name("oblique", 31));
   support::Picture picture(640, 360);

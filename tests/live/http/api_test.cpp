@@ -52,9 +52,9 @@ TEST(LiveApi, ServesItsPageAndNothingElse) {
   }
 }
 
-// The pad moves by up to 40 px a frame, blurred by it: an ellipse of the frame before would be far
-// off, one of the same frame, seen once more through JPEG and without a past, by a few px.
-// All is read before any of it is looked at, because a slow reader is sent fewer lines.
+// The pad moves by up to 40 px a frame, with motion blur: the ellipse of the previous frame would
+// be far off. A new detection in the same frame, through JPEG, differs by a few px. Everything is
+// read before it is checked, because a slow reader gets fewer lines.
 TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
   const LiveProgram program({"--source", "test:dash"});
   SocketClient lines(program.url(), "ws/meta");
@@ -99,7 +99,7 @@ TEST(LiveApi, WhoDoesNotAcknowledgeGetsTwoFramesAndThenTheNewest) {
   const double frames = client.stat("frames");
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 30; }));
   EXPECT_EQ(video.waiting(), 0U);
-  video.send("{\"ack\":12345}");  // no frame that was sent
+  video.send("{\"ack\":12345}");  // not the time of a sent frame
   video.send("nonsense");
   video.acknowledge(second);
   const std::string third = video.next();
@@ -121,7 +121,7 @@ TEST(LiveApi, EncodesNothingWithoutAViewer) {
   EXPECT_GT(encoded, 5.0);
   const double frames = client.stat("frames");
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 20; }));
-  EXPECT_LE(client.stat("encoded"), encoded + 1);  // the one that was on its way
+  EXPECT_LE(client.stat("encoded"), encoded + 1);  // the one in transit
 }
 
 TEST(LiveApi, EventsAreTheLines) {
@@ -210,7 +210,7 @@ TEST(LiveApi, TheTargetIsAskedForByItself) {
   EXPECT_GT(json_object_get_double_member(answer.object(), "semi_major"), 20.0);
 }
 
-// Of the candidates of an analysis, those that were measured.
+// Number of candidates in an analysis with measured features.
 int count_measured(const Answer& answer) {
   JsonArray* candidates = json_object_get_array_member(answer.object(), "candidates");
   int measured = 0;
@@ -226,7 +226,7 @@ int count_measured(const Answer& answer) {
           json_object_get_double_member(json_array_get_object_element(evidence, k), "contribution");
     }
     const double log_odds = ellipse::built_in_evidence().bias + sum;
-    // What was found may have other odds at other scales.
+    // Accepted candidates may have other odds at other scales.
     if (json_object_get_boolean_member(candidate, "found")) continue;
     EXPECT_NEAR(json_object_get_double_member(candidate, "probability"),
                 1.0 / (1.0 + std::exp(-log_odds)),
@@ -263,7 +263,7 @@ TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
   EXPECT_GE(count_of(strict, "too-small"), 1);
   EXPECT_EQ(json_object_get_int_member(strict.object(), "pts_ns"),
             json_object_get_int_member(now.object(), "pts_ns"));
-  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // of the pipeline
+  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // the pipeline's own value
   EXPECT_EQ(client.post("api/analyze", R"({"stage":"magic"})").status, 400U);
   EXPECT_EQ(client.post("api/analyze", R"({"properties":{"min-axis":0}})").status, 400U);
   EXPECT_EQ(client.post("api/analyze", R"({"properties":7})").status, 400U);

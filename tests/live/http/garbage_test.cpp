@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What no client sends.
+// Malformed input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,8 +50,8 @@ void send_garbage(const LiveProgram& program, std::mt19937& random, int times) {
   }
 }
 
-// The memory that grew in the round where it grew least: how many connections are open at once, and
-// so what the allocator holds, differs from round to round, while a leak shows in every one.
+// Minimum growth over the rounds: the number of open connections, and with it the allocator's
+// memory, varies from round to round, while a leak grows in each.
 TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
   LiveProgram program({});
   const Client client(program.url());
@@ -71,7 +71,7 @@ TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
   EXPECT_EQ(program.stop(), 0);
 }
 
-// Frames of every kind, masked or not, whole or not, behind a proper handshake.
+// Frames of every kind, masked or not, complete or not, after a valid handshake.
 TEST(LiveGarbage, MalformedWebSocketFramesDoNoHarm) {
   LiveProgram program({});
   const Client client(program.url());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a client may not take from others: memory, connections, time.
+// Resources that a client cannot take from others: memory, connections, time.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -45,7 +45,7 @@ TEST(LiveLimits, WhatIsTooLargeIsRefused) {
   EXPECT_EQ(client.get("api/target").status, 200U);
 }
 
-// Sends a body of 50 MB, whether it is wanted or not. @return What was answered.
+// Sends a body of 50 MB regardless of the answer. @return The answer.
 std::string send_body(const LiveProgram& program, bool is_chunked, const std::string& path) {
   constexpr int kPieces = 800;
   const std::string piece(65536, 'a');
@@ -78,7 +78,7 @@ TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
   EXPECT_LT(program.memory_kib("VmHWM"), before_kib + 10 * 1024);
 }
 
-// All requests are there before an answer is waited for: the client holds nothing up.
+// Sends all requests before reading an answer, so that the client delays nothing.
 bool is_stopped_at_once(const LiveProgram& program, int requests) {
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < requests; ++i) {
@@ -117,7 +117,7 @@ TEST(LiveLimits, ConnectionsAreCounted) {
   EXPECT_GE(std::stod(metrics.substr(metrics.find(name) + name.size())), 41.0);
 }
 
-// A picture that stands still is written to nobody, so that nothing tells of who leaves.
+// A still picture causes no writes, so that no failed write reveals a client that left.
 TEST(LiveLimits, WhoLeavesWhileNothingMovesIsNotKept) {
   const LiveProgram program({});
   const Client client(program.url());
@@ -151,7 +151,7 @@ TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
   EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));
 }
 
-// One that sends a byte now and then is never silent, and never done.
+// A client that sends a byte now and then is never idle and never finishes.
 TEST(LiveLimits, ARequestHasToComeToItsEnd) {
   const LiveProgram program({});
   const Client client(program.url());
@@ -172,7 +172,7 @@ TEST(LiveLimits, ARequestHasToComeToItsEnd) {
   EXPECT_TRUE(is_freed);
 }
 
-// A viewer of lines has nothing to say; this one does not even answer pings.
+// A viewer of lines need not send anything; this one does not even answer pings.
 TEST(LiveLimits, AWebSocketMayBeSilent) {
   const LiveProgram program({});
   const RawClient viewer(program.port());

@@ -56,7 +56,7 @@ TEST(LiveSecurity, AnAllowanceRunsOutAndComesBack) {
   EXPECT_EQ(taken(), 1);
   now_us += 500'000;
   EXPECT_NEAR(taken(), 50, 1);
-  now_us += 60'000'000;  // no more than the store
+  now_us += 60'000'000;  // not above the bucket's capacity
   EXPECT_EQ(taken(), 300);
 }
 
@@ -120,7 +120,7 @@ struct Door {
   std::string token;
 };
 
-// Where a program is reached, by what it has printed.
+// Address and token of a program, from its output.
 Door door_of(const LiveProgram& program) {
   const std::string& printed = program.url();
   const std::size_t end = printed.find("?token=");
@@ -128,7 +128,7 @@ Door door_of(const LiveProgram& program) {
   return {printed.substr(0, end), printed.substr(end + 7)};
 }
 
-// It made a token, and nothing goes without.
+// The program made a token and rejects everything without it.
 void expect_locked(const LiveProgram& program, const LiveProgram& other) {
   const auto [url, token] = door_of(program);
   ASSERT_EQ(token.size(), 32U) << program.url();
@@ -178,7 +178,7 @@ TEST(LiveSecurity, IsNotReachedFromTheNetworkUnlessAsked) {
   EXPECT_EQ(from(address), static_cast<guint>(SOUP_STATUS_NONE));
 }
 
-// A browser sends its cookie whichever page asks.
+// A browser sends its cookie no matter which site's page makes the request.
 TEST(LiveSecurity, TheTokenDoesNotLetOtherSitesPagesIn) {
   const LiveProgram program({"--bind", "0.0.0.0"});
   const auto [url, token] = door_of(program);

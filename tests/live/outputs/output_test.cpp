@@ -38,7 +38,7 @@ int count_frames(const std::string& description) {
   return frames;
 }
 
-// How many pixels of a picture have the overlay's colour; the scenes themselves are grey.
+// Number of pixels in the overlay's colour; the scenes themselves are grey.
 int green_pixels(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -58,7 +58,7 @@ TEST_P(Transport, RtspHasTheOverlayDrawnIn) {
   const std::string address = LiveProgram::address_in(program.line_with("rtsp://"));
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 5; }));
-  // With time for packets that are late on a busy machine.
+  // The latency allows for late packets on a busy machine.
   EXPECT_EQ(count_frames("rtspsrc location=" + address + " latency=2000 protocols=" + GetParam() +
                          " ! rtph264depay ! avdec_h264 ! identity eos-after=31 ! videoconvert ! "
                          "video/x-raw,format=RGB,width=640,height=360 ! multifilesink name=end "
@@ -90,7 +90,7 @@ TEST(LiveOutput, RtspAsksForTheTokenToo) {
 
 class EndOfRecording : public testing::TestWithParam<int> {};
 
-// SIGHUP comes where the terminal goes: an ssh that drops.
+// SIGHUP is sent when the terminal closes, as at a lost ssh connection.
 TEST_P(EndOfRecording, LeavesAWholeFileWithItsLines) {
   const TemporaryFolder folder;
   LiveProgram program({"--record", folder.file("flight.mkv")});
@@ -113,7 +113,7 @@ TEST_P(EndOfRecording, LeavesAWholeFileWithItsLines) {
     last = frame;
   }
   EXPECT_GE(last, 40);
-  // A busy machine leaves pictures out instead of waiting for its encoder.
+  // A busy machine drops pictures instead of waiting for its encoder.
   EXPECT_GT(frames, 0);
   EXPECT_LE(frames, last - first + 1);
 }
@@ -134,14 +134,13 @@ TEST(LiveOutput, ARecordingGoesOnInAnotherFileWhereTheSizeChanges) {
                R"({"spec":"[ellipsetestsrc is-live=true ! video/x-raw,width=320,height=240]"})")
           .status,
       200U);
-  // The first file is ended before the second one is begun: of frames between them there is
-  // nothing.
+  // The first file is closed before the second one is opened; frames in between are in neither.
   ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder.file("flight-2.ndjson")); }));
   const double frames = client.stat("frames");
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 40; }));
   EXPECT_EQ(program.stop(), 0);
   EXPECT_GE(support::read_ndjson(folder.file("flight-2.ndjson")).size(), 40U);
-  // A busy machine leaves pictures out instead of waiting for its encoder.
+  // A busy machine drops pictures instead of waiting for its encoder.
   EXPECT_GT(count_frames("filesrc location=" + folder.file("flight-2.mkv") +
                          " ! matroskademux ! avdec_h264 ! video/x-raw,width=320 ! fakesink "
                          "name=end"),
@@ -154,8 +153,8 @@ TEST(LiveOutput, ARecordingThatCannotBeWrittenIsSaidAtOnce) {
   EXPECT_EQ(program.wait(), 1);
 }
 
-// Where the target is among the ellipses of the frame that is held; the truth of the test source is
-// one of them. Goes on to a frame that has one.
+// Index of the target among the ellipses of the current frame, which include the test source's
+// truth. Steps to a frame with a target.
 int number_of_target(const LiveProgram& program, const Client& client) {
   for (int i = 0; i < 100; ++i) {
     support::SocketClient lines(program.url(), "ws/meta");
@@ -216,7 +215,7 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
   EXPECT_EQ(dataset.sequences[0].pictures->picture(frames[0]).cols, 640);
 }
 
-// Nanoseconds since 1970 are no exact doubles.
+// Nanoseconds since 1970 are not exact as doubles.
 TEST(LiveOutput, ALabelIsOfTheVeryFrameWhateverItsTime) {
   const TemporaryFolder folder;
   const LiveProgram program({"--labels",
@@ -224,7 +223,7 @@ TEST(LiveOutput, ALabelIsOfTheVeryFrameWhateverItsTime) {
                              "--source",
                              "[videotestsrc timestamp-offset=1700000000123456789]"});
   const Client client(program.url());
-  // Its first frame is shown, and then waited with for years.
+  // The sink shows the first frame, then waits for years.
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 0; }));
   const gint64 pts = json_object_get_int_member(client.get("api/source").object(), "pts_ns");
   ASSERT_GT(pts, 1'700'000'000'000'000'000);

@@ -22,7 +22,7 @@ async function openGuide(browser, program, size) {
   return page;
 }
 
-/** Waits until the choices of this mark, from 1, are there. */
+/** Waits for the choices of this mark, counted from 1. */
 async function choicesOf(page, number) {
   await page.waitForFunction((n) => {
     const { pts } = document.querySelector("#guide-choices").dataset;
@@ -37,13 +37,13 @@ async function beginMarks(page) {
   await choicesOf(page, 1);
 }
 
-/** The target of the frame that the program shows, by the settings at its start. */
+/** The target in the program's current frame with the initial settings. */
 async function targetOf(program) {
   const { candidates, width, height } = await program.ask("POST", "/api/analyze", { properties: kStart });
   return { ...candidates.find((each) => each.is_target).ellipse, width, height };
 }
 
-/** Clicks a place of the outline, by the angle from the major axis. */
+/** Clicks a point of the outline, given by its angle from the major axis. */
 async function clickOutline(page, e, angle) {
   const [u, v] = [e.semi_major * Math.cos(angle), e.semi_minor * Math.sin(angle)];
   const x = e.cx + u * Math.cos(e.angle_rad) - v * Math.sin(e.angle_rad);
@@ -78,7 +78,7 @@ async function resultOf(page) {
   return page.innerText("#guide-result");
 }
 
-/** A figure of the table of effects. @param column  0 = now, 1 = proposed. */
+/** A number in the table of effects. @param column  0 = now, 1 = proposed. */
 function cellOf(page, row, column) {
   return page.locator("#guide-result tr", { hasText: row }).locator("td").nth(column).textContent();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Where things lie on the page: windows and videos of all shapes.
+// The page's layout for windows and videos of all shapes.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { openPage, startBrowser, startProgram } from "./program.mjs";
@@ -16,7 +16,7 @@ const kSizes = [
 ];
 const kVideos = [[640, 360], [640, 480]];
 
-/** Where the pictures are [px of the window], of those that are shown. */
+/** Positions of the visible canvases [px of the window]. */
 function picturesOf(page) {
   return page.evaluate(() => [...document.querySelectorAll("#frame canvas")].filter((canvas) => canvas.checkVisibility())
     .map((canvas) => {
@@ -26,7 +26,7 @@ function picturesOf(page) {
     }));
 }
 
-/** Their proportions, and that all of them is in view. */
+/** Checks their aspect ratios, and that they are entirely in view. */
 function check(pictures, aspect, { width, height }) {
   for (const each of pictures) {
     const shown = `${each.width} × ${each.height} px`;
@@ -39,14 +39,14 @@ function check(pictures, aspect, { width, height }) {
   }
 }
 
-/** Not smaller than it has to be: as wide as its column, or more than half as high as the window. */
+/** Checks the minimum size: as wide as its column, or more than half as high as the window. */
 function checkSize([picture], { width, height }) {
   const column = width > 1000 ? width - 380 - 28 : width > 640 ? width - 28 : width;
   assert.ok(picture.width >= column - 1 || picture.height >= 0.5 * height,
     `${picture.width} × ${picture.height} px`);
 }
 
-// What is drawn anew by the browser after a change of the layout.
+// Waits until the browser has redrawn a changed layout.
 const settle = (page) => page.evaluate(() => new Promise((resolve) => {
   requestAnimationFrame(() => requestAnimationFrame(resolve));
 }));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The page in a real browser, over the program as it is.
+// The page in a real browser, with the real program.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -23,7 +23,7 @@ after(async () => {
   rmSync(process.env.XDG_DATA_HOME, { recursive: true });
 });
 
-/** Each test has its own page; the program is shared. */
+/** Each test has its own page and shares the program. */
 function withProgram(args, tests) {
   const context = {};
   before(async () => { context.program = await startProgram(...args()); });
@@ -40,7 +40,7 @@ const readRows = (file) => readFileSync(file, "utf8").trim().split("\n");
 const setting = (page, name) => page.locator(`[data-setting="${name}"]`);
 const stateIs = (page, state) => page.waitForSelector(`#state[data-state=${state}]`);
 
-/** Looks again and again until there is something; @returns it. */
+/** Polls until there is a result; @returns it. */
 async function eventually(what, look) {
   for (const end = Date.now() + kMostMs; Date.now() < end;) {
     const found = await look();
@@ -50,7 +50,7 @@ async function eventually(what, look) {
   assert.fail(`not within ${kMostMs} ms: ${what}`);
 }
 
-/** The values of all properties once the program has this one: what the page shows is sent after that. */
+/** The values of all properties once the program has this one: it arrives after the page shows it. */
 function propertiesOnce(program, name, isSo) {
   return eventually(name, async () => {
     const all = await program.ask("GET", "/api/properties");
@@ -59,7 +59,7 @@ function propertiesOnce(program, name, isSo) {
   });
 }
 
-/** Waits until it is paused and the very frame that the program shows is on the screen; @returns its time [ns]. */
+/** Waits until it is paused and the screen shows the program's current frame; @returns its time [ns]. */
 function standsStill(page, program) {
   return eventually("it stands still", async () => {
     const { state, pts_ns: pts } = await program.ask("GET", "/api/source");
@@ -68,14 +68,14 @@ function standsStill(page, program) {
   });
 }
 
-/** Drags the scrub bar, until the program has done what it says. */
+/** Drags the scrub bar and waits for the program's answer. */
 async function scrubTo(page, place) {
   const isSought = page.waitForResponse((answer) => answer.url().endsWith("/api/seek"));
   await page.locator("#scrub").fill(place);
   await isSought;
 }
 
-/** Waits until the choices of the frame on the screen, and not of this one, are there; @returns its time. */
+/** Waits for the choices of the frame on the screen, unless its time is `before`; @returns its time. */
 async function choicesAreThere(page, before = null) {
   const shown = await page.waitForFunction((old) => {
     const { pts } = document.querySelector("#label-choices").dataset;
@@ -84,9 +84,9 @@ async function choicesAreThere(page, before = null) {
   return shown.jsonValue();
 }
 
-// Its pad is in the picture as a whole, and of one size, whenever a test looks at it.
+// Its pad is always fully in the picture, at a constant size.
 describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (live) => {
-  // Whatever the last test has left.
+  // Resets the properties that the last test changed.
   beforeEach(async () => {
     const properties = await live.program.ask("GET", "/api/properties");
     const others = properties.filter(({ type }) => type !== "flags");
@@ -177,7 +177,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       await page.mouse.up();
     };
     const regionIs = (wanted) => propertiesOnce(live.program, "roi-source", (source) => source === wanted);
-    await drag([120, 90], [20, 30]);  // far from the pad
+    await drag([120, 90], [20, 30]);  // away from the pad
     await stateIs(page, "lost");
     let { roi } = await regionIs("property");
     [20, 30, 100, 60].forEach((wanted, i) => assert.ok(Math.abs(roi[i] - wanted) <= 2, `${roi}`));
@@ -189,12 +189,12 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
 
     const sent = [];
     page.on("request", (request) => request.method() === "PUT" && sent.push(request.postData()));
-    await drag([120, 90], [20, 30], () => page.keyboard.press("Escape"));  // given up
+    await drag([120, 90], [20, 30], () => page.keyboard.press("Escape"));  // cancelled
     await page.locator("#screen").click();
     await page.locator("#screen").hover();
     assert.deepEqual(sent, []);
 
-    await drag([300, 100], [900, 900]);  // no farther than the frame
+    await drag([300, 100], [900, 900]);  // ends at the frame's border
     ({ roi } = await regionIs("property"));
     assert.deepEqual([roi[0] + roi[2], roi[1] + roi[3]], [640, 360]);
     await page.locator("#screen").dblclick();
@@ -301,7 +301,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
     await standsStill(page, live.program);
-    // Where the list is made anew at this moment, nobody has opened the new one.
+    // If the page rebuilds the list at this moment, the new one is closed.
     await eventually("the reason is open", async () => {
       if (await reason.getByText("Go to max-axis-ratio").isVisible()) return true;
       await reason.locator("summary").click();
@@ -344,7 +344,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForSelector("#stage-summary b");
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
-    // What was under way when it was paused has come.
+    // Requests that were pending at the pause have been answered.
     await page.waitForTimeout(1500);
     await page.click("#play");
     for (let i = 0; i < 3; ++i) await page.waitForResponse(/api\/analyze/);
@@ -468,7 +468,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
   });
 }));
 
-// Squares, flowers and arcs: much to refuse.
+// Squares, flowers and arcs: many rejected candidates.
 describe("a picture with much to refuse", () => withProgram(() => ["--source", "test:negative"], (live) => {
   const countRed = (page) => page.evaluate(() => {
     const screen = document.querySelector("#screen");
@@ -509,7 +509,7 @@ describe("a picture with much to refuse", () => withProgram(() => ["--source", "
   });
 }));
 
-// Seen from straight above, so that all of its edge is sharp.
+// Seen from straight above, so that its whole edge is sharp.
 describe("a pad that stays in the middle", () => withProgram(() => ["--source", "test:hover"], (live) => {
   it("is drawn on where the ring is: within 2 px of the screen", async () => {
     const page = await live.open();
@@ -587,7 +587,7 @@ describe("a file", () => withProgram(() => {
     const page = await live.open();
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
-    // Not at its end, behind which it begins again.
+    // Not at the end, where playback starts over.
     await scrubTo(page, "250");
     await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 5e8) < 1e8);
     const start = await standsStill(page, live.program);

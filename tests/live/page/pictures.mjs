@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// node pictures.mjs FOLDER: the pictures of docs/live.md. ELLIPSE_LIVE and CHROMIUM say where these are.
+// node pictures.mjs FOLDER: makes the pictures of docs/live.md with the programs ELLIPSE_LIVE and CHROMIUM.
 import { join } from "node:path";
 import { openPage, startBrowser, startProgram } from "./program.mjs";
 
@@ -10,7 +10,7 @@ const folder = process.argv[2];
 const program = await startProgram("--source", "test:occluded");
 const browser = await startBrowser();
 
-/** Takes a picture of the page, after what there is to do. */
+/** Takes a screenshot of the page after preparing it. */
 async function picture(name, size, prepare) {
   await program.ask("PUT", "/api/properties", { detector: "arcs" });
   await program.ask("POST", "/api/play");

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-// ellipse-live as a process, and a browser that looks at it.
+// ellipse-live as a process, and a browser that shows its page.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { setTimeout } from "node:timers/promises";
 import { chromium } from "playwright-core";
 
-/** What is waited for comes at once on an idle machine, and late on a busy one. */
+/** Timeout. An idle machine answers at once, a busy one late. */
 export const kMostMs = 120_000;
 const kTooOften = 429;
 
-/** Started, and not yet ended. */
+/** Programs started and not yet stopped. */
 const running = new Set();
 
-/** Stops what failed tests have left running: the process of the tests would wait for it. */
+/** Stops programs that failed tests left running; the test process would wait for them. */
 export async function stopPrograms() {
   await Promise.all([...running].map((program) => program.stop()));
 }
 
 /**
- * Starts the program at a free port. The kernel ends it together with this process: it is not left
- * behind where the tests are killed.
+ * Starts the program at a free port. The kernel ends it together with this process, so killed tests leave none
+ * behind.
  * @returns {url, stop, ask}: ask talks to its API.
  */
 export async function startProgram(...args) {
@@ -37,7 +37,7 @@ export async function startProgram(...args) {
     child.once("error", (error) => reject(new Error(`ellipse-live cannot be started: ${error.message}`)));
     child.once("exit", () => reject(new Error(`ellipse-live has ended: ${output}`)));
   });
-  // Waits and asks again where it has asked too often, as those do who poll.
+  // Repeats a request that the rate limit rejected, as polling clients do.
   const ask = async (method, path, body) => {
     const askOnce = () => fetch(new URL(path, url), { method, body: body && JSON.stringify(body) });
     let answer = await askOnce();
@@ -65,7 +65,7 @@ export async function startProgram(...args) {
   return program;
 }
 
-/** A browser without a screen. */
+/** A headless browser. */
 export function startBrowser() {
   return chromium.launch({
     executablePath: process.env.CHROMIUM,
@@ -75,8 +75,8 @@ export function startBrowser() {
 }
 
 /**
- * The page once it shows frames, so many of them, at a visit that is not the first one: the guide is
- * closed. What goes wrong in it is collected in `page.troubles`.
+ * Opens the page and waits for this number of frames. The page's storage marks the guide as seen, so it stays closed.
+ * Errors on the page are collected in `page.troubles`.
  */
 export async function openPage(browser, url, size = { width: 1440, height: 900 }, frames = 3) {
   const page = await browser.newPage({ viewport: size });
@@ -97,7 +97,7 @@ export async function openPage(browser, url, size = { width: 1440, height: 900 }
   return page;
 }
 
-/** How many frames the page has painted. */
+/** Number of frames that the page has painted. */
 export function shownBy(page) {
   return page.evaluate(() => Number(document.querySelector("#screen").dataset.shown));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How far the ellipse that is drawn lies from the ring that is shown: both by the screen's pixels.
+// Distance of the drawn ellipse from the displayed ring, both measured in the screen's pixels.
 
-/** Along 120 rays from the ellipse's centre. @returns {largest_px, rays} in px of the screen. */
+/** Measures along 120 rays from the ellipse's centre. @returns {largest_px, rays} in px of the screen. */
 export async function largestDistance(page) {
   const others = ["axes", "centre", "region"];
   for (const layer of others) await page.click(`[data-layer=${layer}]`);
@@ -33,7 +33,7 @@ function measure({ drawn, plain }) {
   const middle = (k) => (Math.min(...points.map((p) => p[k])) + Math.max(...points.map((p) => p[k]))) / 2;
   const centre = [middle(0), middle(1)];
 
-  // The green line lies between two dark ones: it is where the difference's middle is.
+  // The green line has dark borders; its position is the midpoint of the changed pixels.
   const lineOn = (angle) => {
     const on = [];
     for (let r = 10; r < width; r += 0.25) {
@@ -42,7 +42,7 @@ function measure({ drawn, plain }) {
     }
     return on.length > 0 ? (on[0] + on.at(-1)) / 2 : null;
   };
-  // Where the brightness crosses the middle between the ring's paint and what is around it.
+  // The radius at which the brightness is halfway between the ring's paint and its surroundings.
   const edgeNear = (angle, line) => {
     const level = (r) => green(plain, centre[0] + r * Math.cos(angle), centre[1] + r * Math.sin(angle));
     const [inside, outside] = [level(line - 8), level(line + 8)];

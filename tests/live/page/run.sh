@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# run.sh FOLDER: tests the page in chromium. FOLDER takes what npm and the tests need.
-# Says so and leaves it at that where there is no browser, or no way to get playwright-core.
+# run.sh FOLDER: tests the page in chromium. FOLDER receives npm's packages and the tests' files.
+# Skips the tests if there is no browser or playwright-core cannot be installed.
 skip() {
   echo "skipped: $1"
   exit 77
@@ -17,11 +17,11 @@ if ! cmp -s "$here/package-lock.json" node_modules/.lock; then
   npm ci --no-audit --no-fund --fetch-retries=5 > npm.log 2>&1 || skip "npm ci failed, see $1/npm.log"
   cp package-lock.json node_modules/.lock
 fi
-# node looks for packages beside and above the file that imports them.
+# node searches for packages beside and above the importing file.
 cp "$here"/*.mjs .
 ELLIPSE_TEST_VIDEO=$PWD/approach.mkv
 gst-launch-1.0 -q ellipsetestsrc scene=approach num-buffers=60 ! videoconvert ! jpegenc \
   ! matroskamux ! filesink location="$ELLIPSE_TEST_VIDEO" || exit 1
 export CHROMIUM ELLIPSE_TEST_VIDEO
-# In one process, which ends with whom started it: so do its browser and its programs.
+# One process, which ends with its parent; its browser and programs end with it.
 exec setpriv --pdeathsig KILL node --test-reporter=spec page.test.mjs

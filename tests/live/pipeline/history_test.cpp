@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The stored frames, and their analysis with other settings.
+// Stored frames and their analysis with other settings.
 #include <gst/gst.h>
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
@@ -100,7 +100,7 @@ guint targets_in(const Answer& answer) {
   return count;
 }
 
-// Stores at least so many frames. @return The list of them.
+// Stores at least this number of frames. @return Their list.
 Answer stored_frames(const Client& client, guint least) {
   EXPECT_EQ(client.put("api/history", R"({"storing":true})").status, 200U);
   EXPECT_TRUE(wait_until([&] { return count_of(client.get("api/history")) >= least; }));
@@ -121,7 +121,7 @@ TEST(LiveHistory, ReplaysFramesWithOtherSettings) {
   EXPECT_EQ(targets_in(client.post("api/history/replay", R"({"properties":{"min-axis":690}})")),
             0U);
   EXPECT_EQ(count_of(client.get("api/history")), count);
-  EXPECT_EQ(support::value_of(client, "min-axis"), 5.0);  // of the pipeline
+  EXPECT_EQ(support::value_of(client, "min-axis"), 5.0);  // the pipeline's own value
 }
 
 TEST(LiveHistory, ReplaysSingleFramesInTheirRegion) {

@@ -60,7 +60,7 @@ TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
   EXPECT_EQ(text_in(client, "state"), "playing");
 }
 
-// A slow decoder: when it is paused, a frame is still under way.
+// With a slow decoder a frame is still in transit at the pause.
 TEST(LivePlayback, WhatIsPausedStandsStill) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source",
@@ -74,7 +74,7 @@ TEST(LivePlayback, WhatIsPausedStandsStill) {
     const gint64 shown = shown_when_paused(client);
     g_usleep(200'000);
     EXPECT_EQ(number_in(client, "pts_ns"), shown);
-    // A step that was asked for before it stood still is not lost.
+    // A step requested before the pause took effect is not lost.
     ASSERT_EQ(client.post("api/play").status, 200U);
     ASSERT_EQ(client.post("api/pause").status, 200U);
     ASSERT_EQ(client.post("api/step").status, 200U);
@@ -87,7 +87,7 @@ TEST(LivePlayback, WhatIsPausedStandsStill) {
   }
 }
 
-// Steps on until that state, or frame, is there; a paused sink says nothing of the end by itself.
+// Steps until a condition holds; a paused sink does not report the end by itself.
 bool steps_until(const Client& client, const std::function<bool()>& is_so) {
   return wait_until([&] {
     if (is_so()) return true;
@@ -104,7 +104,7 @@ TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
   ASSERT_EQ(client.post("api/pause").status, 200U);
   ASSERT_EQ(client.post("api/seek", R"({"position_ns":900000000})").status, 200U);
   ASSERT_TRUE(steps_until(client, [&] { return text_in(client, "state") == "ended"; }));
-  EXPECT_EQ(number_in(client, "pts_ns"), 967'000'000);  // its last frame is still shown
+  EXPECT_EQ(number_in(client, "pts_ns"), 967'000'000);  // the last frame stays visible
   ASSERT_EQ(client.post("api/step").status, 200U);
   EXPECT_EQ(text_in(client, "state"), "ended");
   ASSERT_EQ(client.post("api/seek", R"({"position_ns":500000000})").status, 200U);
@@ -113,7 +113,7 @@ TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
   const double frames = client.stat("frames");
   ASSERT_EQ(client.post("api/play").status, 200U);
   ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
-  EXPECT_EQ(client.stat("frames"), frames + 30);  // from its beginning on
+  EXPECT_EQ(client.stat("frames"), frames + 30);  // restarted from the beginning
 }
 
 TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
@@ -121,7 +121,7 @@ TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
   const LiveProgram program({"--source", make_video(folder, 30)});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
-  ASSERT_EQ(client.post("api/pause").status, 200U);  // or it has ended meanwhile
+  ASSERT_EQ(client.post("api/pause").status, 200U);  // so that it does not end
   for (const char* position : {"1000000000", "90000000000"}) {
     ASSERT_EQ(client.post("api/seek", R"({"position_ns":300000000})").status, 200U);
     ASSERT_EQ(shown_when_paused(client), 300'000'000);
@@ -133,7 +133,7 @@ TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
   }
 }
 
-// The sound goes on long after the last frame.
+// The sound track is much longer than the video.
 TEST(LivePlayback, WhatIsSoughtBehindItsLastFrameHasEnded) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_mp4(folder, 10)});
@@ -183,7 +183,7 @@ class LiveExchange : public testing::Test {
   const Client client_{program_.url()};
 };
 
-// A sink that has not gone on from its first frame yet is told to pause again.
+// Pauses again while the sink still waits at its first frame.
 TEST_F(LiveExchange, APauseRightAfterTheFirstFrameHolds) {
   for (int i = 0; i < 40; ++i) {
     const double before = frames();
@@ -215,7 +215,7 @@ TEST_F(LiveExchange, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
 
 class LoopedSource : public testing::TestWithParam<const char*> {};
 
-// One that can be sought, and one that cannot.
+// Two sources, of which only one supports seeking.
 TEST_P(LoopedSource, ThatIsSteppedOverItsEndBeginsAgainAndStandsStill) {
   const TemporaryFolder folder;
   const std::string source =
@@ -252,14 +252,14 @@ INSTANTIATE_TEST_SUITE_P(LivePlayback,
                          testing::Values("file", "folder"),
                          [](const auto& info) { return std::string(info.param); });
 
-// Browsers show a picture when the next one begins.
+// Browsers show a part of the stream when the next one starts.
 void expect_mjpeg_twice(const LiveProgram& program, gint64 pts) {
   const std::string head = "X-PTS: " + std::to_string(pts) + "\r\n";
   const std::string text = support::read_stream(program.url() + "video.mjpeg", head, 2);
   EXPECT_NE(text.find(head), text.rfind(head));
 }
 
-// Whoever joins gets the very frame that is shown, by each way that there is.
+// A new client gets the current frame through every interface.
 void expect_greetings(const LiveProgram& program, const Client& client) {
   const gint64 shown = number_in(client, "pts_ns");
   SocketClient video(program.url(), "ws/video");
@@ -332,7 +332,7 @@ TEST(LivePlayback, WhatHasNoFramesIsNotPlayedAgainAndAgain) {
   EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
 }
 
-// An analysis may be at work on the last frame when the first one follows.
+// The last frame may still be in analysis when the first one arrives.
 TEST(LivePlayback, ALoopBeginsAgainWhileItsEndIsAnalysed) {
   const TemporaryFolder folder;
   const LiveProgram program(
@@ -352,7 +352,7 @@ TEST(LivePlayback, OfALiveSourceTheViewIsHeldAndStepped) {
   ASSERT_NE(lines.next(), "");
   ASSERT_EQ(client.post("api/pause").status, 200U);
   const double frames = client.stat("frames");
-  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));  // it tracks on
+  ASSERT_TRUE(wait_until([&] { return client.stat("frames") > frames + 10; }));  // still tracks
   while (lines.waiting() > 0) (void)lines.next();
   const gint64 held = number_in(client, "pts_ns");
   ASSERT_EQ(client.post("api/step").status, 200U);

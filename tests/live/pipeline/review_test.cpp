@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Settings that are changed while the picture stands still.
+// Settings that change while the picture is paused.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class StandingPicture : public testing::TestWithParam<const char*> {
   TemporaryFolder folder_;
 };
 
-// Stands still, at a frame with a target.
+// Waits for a target, then pauses.
 bool stands_at_target(const Client& client) {
   return wait_until([&] { return client.get("api/target").object() != nullptr; }) &&
          client.post("api/pause").status == 200U && wait_until([&] {
@@ -42,7 +42,7 @@ bool stands_at_target(const Client& client) {
          });
 }
 
-// By its number among the frame's ellipses.
+// The body that labels the target by its index among the frame's ellipses.
 std::string label_of(const Line& line) {
   return R"({"choice":)" + std::to_string(line.index_of("target")) + "}";
 }
@@ -60,7 +60,7 @@ TEST_P(StandingPicture, IsAnalysedAgainWithOtherSettings) {
   EXPECT_EQ(without.number("frame"), before.number("frame"));
   EXPECT_EQ(without.ellipse("target"), nullptr);
   EXPECT_EQ(without.ellipse("truth") != nullptr, before.ellipse("truth") != nullptr);
-  EXPECT_EQ(client.post("api/snapshot", label_of(before)).status, 400U);  // it is not there now
+  EXPECT_EQ(client.post("api/snapshot", label_of(before)).status, 400U);  // no longer there
   set(client, R"({"min-axis":5})");
   const Line with(lines.next());
   EXPECT_EQ(with.number("pts_ns"), before.number("pts_ns"));
@@ -94,7 +94,7 @@ TEST_P(StandingPicture, IsDrawnAgain) {
   EXPECT_EQ(next(), plain);
 }
 
-// As a slider does. What is shown in the end is by the last of them.
+// Like a slider. The final picture has the last settings.
 TEST_P(StandingPicture, ShowsTheLastOfManySettings) {
   const LiveProgram program({"--source", source()});
   const Client client(program.url());
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(LiveReview,
                          testing::Values("file", "live"),
                          [](const auto& info) { return std::string(info.param); });
 
-// What was followed stays followed where nothing changes.
+// Tracking continues if no setting changes.
 TEST(LiveReview, WhatIsSetToWhatItIsChangesNothing) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());

@@ -33,7 +33,7 @@ TEST(LiveSettings, DescribesEveryPropertyOfTheElement) {
   for (guint i = 0; i < count; ++i) {
     const bool is_setting = specs[i]->owner_type == G_OBJECT_TYPE(element.get()) &&
                             (specs[i]->flags & G_PARAM_WRITABLE) != 0 &&
-                            std::string(specs[i]->name) != "evidence-file";  // no files by HTTP
+                            std::string(specs[i]->name) != "evidence-file";  // no files over HTTP
     JsonObject* described = property(answer, specs[i]->name);
     ASSERT_EQ(described != nullptr, is_setting) << specs[i]->name;
     if (!is_setting) continue;
@@ -95,7 +95,7 @@ void write_calibration(const std::string& file) {
                          "   data: [ 500., 0., 320., 0., 500., 180., 0., 0., 1. ]\n";
 }
 
-// A client has nothing opened but what lies in one folder: no file, and no pipe, which would hold
+// A client can open camera files in one folder only: no other file, and no pipe, which would block
 // the program.
 TEST(LiveSettings, ACameraFileComesFromItsFolderOrNotAtAll) {
   const support::TemporaryFolder folder;
@@ -124,7 +124,7 @@ TEST(LiveSettings, ACameraFileComesFromItsFolderOrNotAtAll) {
     EXPECT_EQ(put(program, wrong), 400U) << wrong;
   }
   EXPECT_EQ(put(closed, cameras + "/front.yaml"), 400U);
-  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // all of them, or none
+  EXPECT_EQ(value_of(client, "min-axis"), 5.0);  // all properties or none
   EXPECT_EQ(put(program, "front.yaml"), 200U);
   const Answer now = client.get("api/properties");
   EXPECT_EQ(json_object_get_string_member(property(now, "camera-file"), "value"),
@@ -157,7 +157,7 @@ TEST(LiveSettings, SetsRegionsAndDirections) {
   EXPECT_EQ(numbers_in(both, "roi", "value"), (Numbers{10, 20, 300, 200}));
   EXPECT_EQ(numbers_in(both, "gravity", "value"), (Numbers{0.5, -9, 1}));
   EXPECT_NE(client.get("api/launch-line").body.find("gravity=<0.5,-9,1>"), std::string::npos);
-  // The default that it tells can be set again.
+  // The reported default can be set again.
   const Answer none = set(R"({"roi":[],"gravity":[]})");
   EXPECT_EQ(numbers_in(none, "roi", "default"), Numbers());
   EXPECT_EQ(numbers_in(none, "roi", "value"), Numbers(4));
@@ -210,7 +210,7 @@ TEST(LiveSettings, PresetsSurviveARestart) {
   g_unsetenv("XDG_DATA_HOME");
 }
 
-// All properties of the tracker that a launch line builds, as the API tells them.
+// All properties of the tracker built from a launch line, as the API reports them.
 std::string built_by(const std::string& line) {
   gchar** words = nullptr;
   EXPECT_TRUE(g_shell_parse_argv(line.c_str(), nullptr, &words, nullptr)) << line;
@@ -226,7 +226,8 @@ std::string built_by(const std::string& line) {
   return live::Properties(track.get(), live::CameraFolder("")).to_json();
 }
 
-// gst-launch-1.0 sets one after the other: no pair may be turned around on the way.
+// gst-launch-1.0 sets properties one by one: no intermediate state may have a minimum above its
+// maximum.
 TEST(LiveSettings, TheLaunchLineBuildsThisVeryElement) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());

@@ -113,7 +113,7 @@ TEST(LiveSource, AFolderIsPlayedAtTheRateThatItIsGiven) {
   EXPECT_EQ(other.wait(), 1);
 }
 
-// A folder's line, once the program has ended and its own names for the pictures are gone.
+// The launch line of a folder after the program has ended and removed its links to the pictures.
 std::string line_of(const std::string& pictures) {
   const LiveProgram program({"--source", pictures, "--fps", "10"});
   return Client(program.url()).get("api/launch-line").body;
@@ -143,7 +143,7 @@ TEST(LiveSource, TheLaunchLineOfAFolderNamesItsPictures) {
   EXPECT_EQ(frames, 12);
 }
 
-// Names without a number in them are linked, in their order, 9 before 10.
+// Pictures without a number in their names are linked in natural order, 9 before 10.
 TEST(LiveSource, TheLaunchLineOfAFolderOfOtherNamesMakesNumbersOfThem) {
   const TemporaryFolder folder;
   const std::string pictures = make_pictures(folder, 3);
@@ -194,7 +194,7 @@ TEST(LiveSource, OfOneThatFailsAfterAFewFramesTheErrorStays) {
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "failed"; }));
   EXPECT_EQ(client.stat("frames"), 4.0);
-  g_usleep(1'500'000);  // it looks each second whether frames have come
+  g_usleep(1'500'000);  // the program checks once a second for frames
   EXPECT_NE(text_in(client, "error"), "");
 }
 
@@ -233,7 +233,7 @@ TEST(LiveSource, ACameraHasTimeForItsFirstFrame) {
   EXPECT_EQ(client.stat("reconnections"), 0.0);
 }
 
-// Also: what is served by RTSP can be read.
+// This also tests that the RTSP output can be read.
 TEST(LiveSource, ComesBackAfterItDropped) {
   auto camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", "0"});
   const std::string address = LiveProgram::address_in(camera->line_with("rtsp://"));
@@ -246,7 +246,7 @@ TEST(LiveSource, ComesBackAfterItDropped) {
   ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "reconnecting"; }));
   EXPECT_TRUE(wait_until([&] { return !text_in(client, "error").empty(); }));
   const double frames = client.stat("frames");
-  // Another program may have the port for a moment.
+  // Another program may briefly hold the port.
   ASSERT_TRUE(wait_until([&] {
     camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", port});
     return !camera->url().empty();

@@ -265,7 +265,7 @@ TEST(TargetSelection, WhileTrackingOnlyWhatCanBeTheSame) {
   EXPECT_FALSE(select_target(found, Ellipse{160.0, 100.0, 38.0, 30.0, 0.0}));
   EXPECT_FALSE(select_target(found, Ellipse{100.0, 100.0, 90.0, 80.0, 0.0}));
   EXPECT_FALSE(select_target(found, Ellipse{100.0, 100.0, 15.0, 12.0, 0.0}));
-  // Nor is a larger one accepted as a member of a smaller one's set.
+  // It accepts no larger ellipse as a member of a smaller one's set either.
   const std::vector<Detection> set = {{{100.0, 100.0, 25.0, 24.0, 0.0}, 1.0, 1.0, 100.0},
                                       {{100.0, 100.0, 19.0, 18.0, 0.0}, 1.0, 1.0, 100.0}};
   EXPECT_EQ(select_target(set, Ellipse{100.0, 100.0, 10.0, 9.0, 0.0})->ellipse.semi_major, 19.0);

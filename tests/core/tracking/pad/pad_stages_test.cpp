@@ -241,7 +241,7 @@ TEST_P(LearnLines, FindsTheStrokesAndNothingElse) {
             << place.transpose();
       }
     }
-    // Most of the outline of the mark: about 5 radii of either.
+    // Most of the mark's outline: about 5 radii for both marks.
     EXPECT_GT(total_length(learned.model), 3.3);
     EXPECT_LT(total_length(learned.model), 6.0);
   }
@@ -302,7 +302,7 @@ TEST(LineLearner, KeepsTheLongestOfMany) {
   for (const PadLine& line : learned.model.lines) {
     shortest = std::min(shortest, (line.to - line.from).norm());
   }
-  // The middle ones are omitted.
+  // The short lines in the middle are omitted.
   EXPECT_GT(shortest, 30.0 / 90.0 - 0.04);
 }
 
@@ -535,7 +535,7 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
           looked.search.samples(), weak_prior(), HomographyChange::Zero(), 12.0, 0.6, 5);
       ASSERT_TRUE(estimate);
       EXPECT_GT(looked.error_px(HomographyChange::Zero()), 1.0) << i;
-      // The rows are of first order: a few hundredths of the change are left.
+      // The rows are linearised: a few hundredths of the change remain.
       EXPECT_LT(looked.error_px(estimate->change), 0.35) << i;
       EXPECT_NEAR(estimate->change(i), -size, 0.1 * std::abs(size)) << i;
     }

@@ -101,7 +101,7 @@ TEST(PadTracker, RefusesWhatHasNoEdges) {
   EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
   EXPECT_FALSE(tracker.is_locked());
   EXPECT_FALSE(tracker.track(whole(frame_of(kPad)), 1.0));
-  // Beside the pad, half as large, and outside of the picture.
+  // Beside the pad, overlapping it, half as large, and outside the picture.
   const Picture picture = frame_of(kPad);
   EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 140.0, 0.0)));
   EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 40.0, 0.0)));
@@ -304,7 +304,7 @@ TEST(PadTracker, TakesAGapForALongerStep) {
   const auto track = tracker.track(part(frame_of(truth_at(25)), region), 5.0);
   ASSERT_TRUE(track && track->is_visible);
   EXPECT_LT(max_difference_px(track->ellipse, truth_at(25)), 0.3);
-  // And goes on as before.
+  // Tracking continues as before.
   EXPECT_LT(
       max_difference_px(blind.track(whole(frame_of(truth_at(26))), 1.0)->ellipse, truth_at(26)),
       0.4);
