@@ -68,13 +68,13 @@ struct Distortion {
 };
 
 template <LensModel kModel>
-ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& places) {
+ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& samples) {
   ELLIPSE_NO_ALIAS
-  for (std::size_t k = 0; k < places.count; ++k) {
-    const float x = by.to_x.scale * places.x[k] + by.to_x.offset;
-    const float y = by.to_y.scale * places.y[k] + by.to_y.offset;
-    const float nx = places.nx[k];
-    const float ny = places.ny[k];
+  for (std::size_t k = 0; k < samples.count; ++k) {
+    const float x = by.to_x.scale * samples.x[k] + by.to_x.offset;
+    const float y = by.to_y.scale * samples.y[k] + by.to_y.offset;
+    const float nx = samples.nx[k];
+    const float ny = samples.ny[k];
     const Distorted<float> at = kModel == LensModel::kFisheye ? kannala_brandt(by.distortion, x, y)
                                                               : brown_conrady(by.distortion, x, y);
     const float x_by_y = at.x_by_y * by.focal_ratio;
@@ -84,23 +84,23 @@ ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& places) {
     const float across_y = at.x_by_x * ny - x_by_y * nx;
     const float along = std::sqrt(across_x * across_x + across_y * across_y);
     const bool is_shown = x * x + y * y <= by.largest_squared;
-    places.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kOutOfRange;
-    places.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kOutOfRange;
-    places.nx[k] = across_x / along;
-    places.ny[k] = across_y / along;
-    places.px_per_ideal_along[k] = along;
-    places.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
+    samples.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kOutOfRange;
+    samples.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kOutOfRange;
+    samples.nx[k] = across_x / along;
+    samples.ny[k] = across_y / along;
+    samples.px_per_ideal_along[k] = along;
+    samples.px_per_ideal[k] = (at.x_by_x * at.y_by_y - x_by_y * y_by_x) / along;
   }
 }
 
-void distort_baseline(LensModel model, const Distortion& by, const CurveSamples& places) {
-  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, places)
-                               : distort_all<LensModel::kBrownConrady>(by, places);
+void distort_baseline(LensModel model, const Distortion& by, const CurveSamples& samples) {
+  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, samples)
+                               : distort_all<LensModel::kBrownConrady>(by, samples);
 }
 
-ELLIPSE_AVX2 void distort_avx2(LensModel model, const Distortion& by, const CurveSamples& places) {
-  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, places)
-                               : distort_all<LensModel::kBrownConrady>(by, places);
+ELLIPSE_AVX2 void distort_avx2(LensModel model, const Distortion& by, const CurveSamples& samples) {
+  model == LensModel::kFisheye ? distort_all<LensModel::kFisheye>(by, samples)
+                               : distort_all<LensModel::kBrownConrady>(by, samples);
 }
 
 void check(bool is_right, const char* what) {
@@ -183,13 +183,14 @@ void Lens::make_table() {
   table_[0] = 1.0F;
   double theta = 0.0;
   for (std::size_t i = 1; i <= kTableSize; ++i) {
-    const double wanted = std::sqrt(static_cast<double>(i) / table_scale_);
+    const double distorted_radius = std::sqrt(static_cast<double>(i) / table_scale_);
     for (int step = 0; step < kTableSteps; ++step) {
       const double t = std::tan(theta);
       const double per_angle = camera_.lens == LensModel::kFisheye ? 1.0 : 1.0 + t * t;
-      theta += (wanted - radial_point(camera_, theta)) / (per_angle * radial_slope(camera_, theta));
+      theta += (distorted_radius - radial_point(camera_, theta)) /
+               (per_angle * radial_slope(camera_, theta));
     }
-    table_[i] = static_cast<float>(std::tan(theta) / wanted);
+    table_[i] = static_cast<float>(std::tan(theta) / distorted_radius);
   }
   table_.back() = table_[kTableSize];
 }
@@ -205,10 +206,10 @@ Vector2d Lens::from_table(const Vector2d& distorted) const {
 
 Vector2d Lens::approximate_ideal(const Vector2d& picture_px) const {
   if (!(table_scale_ > 0.0)) return picture_px;
-  const Vector2d wanted = ray(picture_px);
-  const Vector2d first = from_table(wanted);
+  const Vector2d distorted_ray = ray(picture_px);
+  const Vector2d first = from_table(distorted_ray);
   const Vector2d aside = beside_radial(camera_, first);
-  return pixel(aside.isZero(0.0) ? first : from_table(wanted - aside));
+  return pixel(aside.isZero(0.0) ? first : from_table(distorted_ray - aside));
 }
 
 std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) const {
@@ -221,7 +222,7 @@ std::optional<LensPoint> Lens::picture_from_ideal(const Vector2d& ideal_px) cons
   return point;
 }
 
-void Lens::distort(const Vector2d& origin_px, double scale, const CurveSamples& places) const {
+void Lens::distort(const Vector2d& origin_px, double scale, const CurveSamples& samples) const {
   Distortion by{};
   for (std::size_t i = 0; i < by.distortion.size(); ++i) {
     by.distortion[i] = static_cast<float>(camera_.distortion[i]);
@@ -237,15 +238,15 @@ void Lens::distort(const Vector2d& origin_px, double scale, const CurveSamples& 
   by.to_y = axis(scale * inverse_focal_.y(), first.y());
   by.from_x = axis(focal_.x() / scale, back.x());
   by.from_y = axis(focal_.y() / scale, back.y());
-  (best_simd() == Simd::kAvx2 ? distort_avx2 : distort_baseline)(camera_.lens, by, places);
+  (best_simd() == Simd::kAvx2 ? distort_avx2 : distort_baseline)(camera_.lens, by, samples);
 }
 
 std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) const {
-  const Vector2d wanted = ray(picture_px);
-  const double radius = wanted.norm();
+  const Vector2d distorted_ray = ray(picture_px);
+  const double radius = distorted_ray.norm();
   if (!(radius <= 1.1 * largest_picture_)) return std::nullopt;
   // Initial value: exact at small angles, and at all angles for an equidistant lens.
-  Vector2d p = wanted;
+  Vector2d p = distorted_ray;
   if (camera_.lens == LensModel::kFisheye && radius > 0.0) {
     p *= std::tan(std::min(radius, kWidestRad)) / radius;
   }
@@ -253,7 +254,7 @@ std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) con
     const double beyond = p.squaredNorm() / largest_squared_;
     if (beyond > 1.0) p /= std::sqrt(beyond);
     const LensPoint here = distorted(camera_, p);
-    const Vector2d rest = wanted - here.picture_px;
+    const Vector2d rest = distorted_ray - here.picture_px;
     p += here.slope.inverse() * rest;
     if (rest.cwiseProduct(focal_).squaredNorm() < kNearPx * kNearPx) return pixel(p);
   }

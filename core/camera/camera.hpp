@@ -78,7 +78,7 @@ class Lens {
   /// Distorts a curve in place, within 1e-6 of the picture's size. Samples outside the one-to-one
   /// range become kOutOfRange.
   /// @param origin_px, scale  Sample p is pixel origin + scale p, before and after.
-  void distort(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& places) const;
+  void distort(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& samples) const;
 
   /// Undistorts a point within 1e-9 px, by Newton's method; nullopt if there is no inverse.
   [[nodiscard]] std::optional<Eigen::Vector2d> ideal_from_picture(

@@ -89,8 +89,8 @@ class File {
     try {
       storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     } catch (const cv::Exception& error) {
-      const std::string& told = error.func;  // OpenCV's parsers put their message here
-      throw std::invalid_argument(path_ + line_in(told, added) +
+      const std::string& message = error.func;  // OpenCV's parsers put their message here
+      throw std::invalid_argument(path_ + line_in(message, added) +
                                   ": is not a calibration: " + reason_in(error));
     } catch (const std::exception&) {  // std::length_error for an empty key
       throw std::invalid_argument(path_ + ": is not a calibration");

@@ -276,10 +276,10 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
   follow_solutions(*poses);
   const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
   // Without evidence, keeps the previous selection.
-  constexpr double kUndecided = 1e-3;
+  constexpr double kMinLogOdds = 1e-3;
   odds_ = std::isfinite(odds) ? odds : 0.0;
   const bool is_first = odds_ >= 0.0;
-  odds_ = std::copysign(std::max(std::abs(odds_), kUndecided), odds_);
+  odds_ = std::copysign(std::max(std::abs(odds_), kMinLogOdds), odds_);
   const CirclePose& chosen = (*poses)[is_first ? 0 : 1];
   const CirclePose& other = (*poses)[is_first ? 1 : 0];
 

@@ -76,7 +76,7 @@ class PoseEstimator {
                                                    const Eigen::Vector3d& gravity);
 
   /// Call before a new target, or the same one after a gap.
-  void forget() { *this = {}; }
+  void reset() { *this = {}; }
 
  private:
   void follow_solutions(const std::array<CirclePose, 2>& poses);

@@ -78,8 +78,8 @@ std::optional<Vector2d> LensView::ideal_from_picture(const Vector2d& picture_px)
   return point ? std::optional(in_picture(*point)) : std::nullopt;
 }
 
-void LensView::distort(const Vector2d& origin_px, const CurveSamples& places) const {
-  if (is_distorted()) lens_->distort(in_frame(origin_px), scale_, places);
+void LensView::distort(const Vector2d& origin_px, const CurveSamples& samples) const {
+  if (is_distorted()) lens_->distort(in_frame(origin_px), scale_, samples);
 }
 
 Vector2d LensView::approximate_ideal(const Vector2d& picture_px) const {
@@ -109,8 +109,8 @@ double visible_fraction(const LensView& lens, const Ellipse& ideal, int width, i
 }
 
 void distorted_outline(const LensView& lens, const Ellipse& ideal, std::span<Vector2d> points_px) {
-  for_each_point(ideal, points_px.size(), [&](std::size_t i, const Vector2d& place) {
-    const auto point = lens.picture_from_ideal(place);
+  for_each_point(ideal, points_px.size(), [&](std::size_t i, const Vector2d& ideal_px) {
+    const auto point = lens.picture_from_ideal(ideal_px);
     points_px[i] =
         point ? point->picture_px : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   });
@@ -119,8 +119,8 @@ void distorted_outline(const LensView& lens, const Ellipse& ideal, std::span<Vec
 std::optional<Ellipse> distorted(const LensView& lens, const Ellipse& ideal) {
   if (!lens.is_distorted()) return ideal;
   return mapped(ideal, kFitPoints, [&](const Vector2d& point) {
-    const auto place = lens.picture_from_ideal(point);
-    return place ? std::optional(place->picture_px) : std::nullopt;
+    const auto shown = lens.picture_from_ideal(point);
+    return shown ? std::optional(shown->picture_px) : std::nullopt;
   });
 }
 

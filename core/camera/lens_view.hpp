@@ -33,7 +33,7 @@ class LensView {
       const Eigen::Vector2d& picture_px) const;
 
   /// As in Lens; samples are relative to a pixel. Does nothing without a lens.
-  void distort(const Eigen::Vector2d& origin_px, const CurveSamples& places) const;
+  void distort(const Eigen::Vector2d& origin_px, const CurveSamples& samples) const;
 
   /// As ideal_from_picture(), from a table: within .01 px of the picture; NaN if out of range.
   [[nodiscard]] Eigen::Vector2d approximate_ideal(const Eigen::Vector2d& picture_px) const;

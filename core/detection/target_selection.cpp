@@ -50,8 +50,8 @@ ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> dete
 
 Verdict judge_as_same_target(const Ellipse& candidate, const Ellipse& last) {
   const double apart = (candidate.center() - last.center()).norm();
-  const Verdict place = at_most(Reason::kTooFarFromLast, apart, last.semi_major);
-  if (!place.is_accepted()) return place;
+  const Verdict distance = at_most(Reason::kTooFarFromLast, apart, last.semi_major);
+  if (!distance.is_accepted()) return distance;
   const double axis = 2.0 * candidate.semi_major;
   const double last_axis = 2.0 * last.semi_major;
   const Verdict shrunk = at_least(Reason::kOtherSize, axis, last_axis / kMaxGrowth);
@@ -124,8 +124,8 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
       reject(member, judge_set(set_around(member.ellipse, detections), best), trace);
       continue;
     }
-    const double least = kMinShareOfBestScore * best.best_score;
-    Verdict verdict = at_least(Reason::kWeakInSet, member.score, least);
+    const double min_score = kMinShareOfBestScore * best.best_score;
+    Verdict verdict = at_least(Reason::kWeakInSet, member.score, min_score);
     if (verdict.is_accepted() && target != nullptr) verdict = judge_beside(member, *target);
     if (verdict.is_accepted()) {
       if (target != nullptr) reject(*target, judge_beside(*target, member), trace);

@@ -144,8 +144,8 @@ void ChainTracer::reserve(std::size_t chains) {
 void ChainTracer::trace(GradientMap& map) {
   const auto pixels =
       static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());
-  const std::size_t most = pixels / 4 + 64;
-  pixels_.resize(most + 2 * kLongestWalk + 1);
+  const std::size_t max_pixels = pixels / 4 + 64;
+  pixels_.resize(max_pixels + 2 * kLongestWalk + 1);
   count_ = 0;
   begins_.assign(1, 0);
   is_closed_.clear();
@@ -154,7 +154,7 @@ void ChainTracer::trace(GradientMap& map) {
   const Walk along(map, true);
   for_each_seed(map, [&](std::int32_t pixel) {
     add_chain(pixel, map.maxima(), against, along);
-    return count_ < most;
+    return count_ < max_pixels;
   });
 }
 

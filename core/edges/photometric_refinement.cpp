@@ -53,7 +53,7 @@ struct Crossing {
   std::ptrdiff_t along = 0;             // stride of the line's pixels [bytes]
   float offset = 0.0F;                  // of the crossing from the pixel [px]
   float slope = 0.0F;                   // derivative of the distance from the perimeter
-  float bend = 0.0F;                    // half its second derivative
+  float quadratic = 0.0F;               // half its second derivative
 
   void read(std::uint8_t (&levels)[kLanes]) const {
     const std::uint8_t* next = pixel - kBefore * along;
@@ -85,7 +85,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     const float t = static_cast<float>(lane - kBefore) - crossing.offset;
-    const float distance = t * (crossing.slope + crossing.bend * t);
+    const float distance = t * (crossing.slope + crossing.quadratic * t);
     const float one = distance >= -inside_px && distance <= kOutsidePx ? 1.0F : 0.0F;
     // The step's slope is (1 - x^2)^3: close to a Gaussian, without an exponential.
     const float x = std::min(1.0F, std::max(-1.0F, distance * inverse_step));
@@ -189,7 +189,7 @@ class Band {
   [[nodiscard]] std::span<const Sector> sectors() const { return {sectors_.data(), count_}; }
 
   // The point of the perimeter with this normal.
-  [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector2d& outwards) const {
+  [[nodiscard]] Eigen::Vector2d point_with_normal(const Eigen::Vector2d& outwards) const {
     const Eigen::Vector2d along = shape_ * outwards;
     return center_ + along / std::sqrt(outwards.dot(along));
   }
@@ -205,9 +205,9 @@ class Band {
     Eigen::Vector2d normal;
     normal[other] = side;
     normal[axis] = -forth;
-    const double from = place(normal)[axis];
+    const double from = point_with_normal(normal)[axis];
     normal[axis] = forth;
-    const double to = place(normal)[axis];
+    const double to = point_with_normal(normal)[axis];
     const Eigen::Array2i size(luma_.width, luma_.height);
     const double end = size[axis];
     const int low = static_cast<int>(std::ceil(std::clamp(std::min(from, to), 0.0, end)));
@@ -379,7 +379,7 @@ std::optional<double> fit_edges(const Band& band,
     const Eigen::Vector2d outwards = sector.outwards.normalized();
     const double drawn_in_px = 0.5 * kLensVariance * sector.curvature / sector.lines;
     if (weight > 0.0) {
-      fit.add(band.place(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
+      fit.add(band.point_with_normal(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
     }
   }
   refined.uncertainty = {image_from_pad(refined.ellipse), fit.information()};

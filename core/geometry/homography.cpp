@@ -102,8 +102,8 @@ RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge) {
   const RingMatrix changes = edge.information.ldlt().solve(RingMatrix::Identity());
   RingMatrix covariance = jacobian * changes * jacobian.transpose();
   const double difference = a * a - b * b;
-  const double most = std::sqrt(kUnknownAngle / covariance(4, 4));
-  const double turn = 2.0 * a * b < most * difference ? 2.0 * a * b / difference : most;
+  const double max_turn = std::sqrt(kUnknownAngle / covariance(4, 4));
+  const double turn = 2.0 * a * b < max_turn * difference ? 2.0 * a * b / difference : max_turn;
   covariance.row(4) *= turn;
   covariance.col(4) *= turn;
   return covariance;
@@ -126,21 +126,23 @@ Eigen::Matrix<double, 8, 6> change_by_camera(const Matrix3d& image_from_pad,
   return changes;
 }
 
-std::optional<EdgeView> view_of(const Matrix3d& h, const Vector2d& place, const Vector2d& normal) {
-  const Vector3d seen = h * place.homogeneous();
-  if (!(seen.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
+std::optional<EdgeView> view_of(const Matrix3d& h,
+                                const Vector2d& pad_point,
+                                const Vector2d& normal) {
+  const Vector3d projected = h * pad_point.homogeneous();
+  if (!(projected.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
   EdgeView view;
-  view.point = seen.hnormalized();
+  view.point = projected.hnormalized();
   const Eigen::Matrix2d slope =
-      (h.topLeftCorner<2, 2>() - view.point * h.bottomLeftCorner<1, 2>()) / seen.z();
+      (h.topLeftCorner<2, 2>() - view.point * h.bottomLeftCorner<1, 2>()) / projected.z();
   const Vector2d across = slope.inverse().transpose() * normal;
   view.px_per_unit = 1.0 / across.norm();
   view.normal = view.px_per_unit * across;
-  const double x = place.x();
-  const double y = place.y();
-  const double outwards = normal.dot(place);
+  const double x = pad_point.x();
+  const double y = pad_point.y();
+  const double outwards = normal.dot(pad_point);
   view.row << normal, outwards, normal.x() * x - normal.y() * y, normal.x() * y + normal.y() * x,
-      normal.y() * x - normal.x() * y, normal - outwards * place;
+      normal.y() * x - normal.x() * y, normal - outwards * pad_point;
   view.row *= view.px_per_unit;
   return view;
 }

@@ -75,7 +75,7 @@ struct EdgeView {
 /// @param normal  Unit normal of the edge on the pad.
 /// @return nullopt if the point is behind the camera.
 [[nodiscard]] std::optional<EdgeView> view_of(const Eigen::Matrix3d& image_from_pad,
-                                              const Eigen::Vector2d& place,
+                                              const Eigen::Vector2d& pad_point,
                                               const Eigen::Vector2d& normal);
 
 }  // namespace ellipse

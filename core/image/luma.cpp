@@ -110,15 +110,16 @@ ImageView LumaReader::read(const Rect& region) {
 
   const auto pixels = static_cast<std::size_t>(picture_.width) * picture_.height;
   if (buffer_.size() < pixels) buffer_.resize(pixels);
-  const Rect wanted = bounding(converted_, inside);
-  const Rect done = converted_.empty() ? Rect{wanted.x, wanted.y, wanted.width, 0} : converted_;
+  const Rect required = bounding(converted_, inside);
+  const Rect done =
+      converted_.empty() ? Rect{required.x, required.y, required.width, 0} : converted_;
   const int bottom = done.y + done.height;
   const int right = done.x + done.width;
-  convert({wanted.x, wanted.y, wanted.width, done.y - wanted.y});
-  convert({wanted.x, done.y, done.x - wanted.x, done.height});
-  convert({right, done.y, wanted.x + wanted.width - right, done.height});
-  convert({wanted.x, bottom, wanted.width, wanted.y + wanted.height - bottom});
-  converted_ = wanted;
+  convert({required.x, required.y, required.width, done.y - required.y});
+  convert({required.x, done.y, done.x - required.x, done.height});
+  convert({right, done.y, required.x + required.width - right, done.height});
+  convert({required.x, bottom, required.width, required.y + required.height - bottom});
+  converted_ = required;
   return ImageView{buffer_.data(), picture_.width, picture_.height, picture_.width}.region(inside);
 }
 

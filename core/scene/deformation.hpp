@@ -23,13 +23,13 @@ class Deformation {
   [[nodiscard]] bool is_flat() const { return folds_.empty(); }
 
   /// The point of the pattern visible at a point of the sheet.
-  [[nodiscard]] Eigen::Vector2d pattern_at(const Eigen::Vector2d& seen) const;
+  [[nodiscard]] Eigen::Vector2d pattern_at(const Eigen::Vector2d& deformed) const;
   /// Its derivative.
-  [[nodiscard]] Eigen::Matrix2d slope_at(const Eigen::Vector2d& seen) const;
+  [[nodiscard]] Eigen::Matrix2d slope_at(const Eigen::Vector2d& deformed) const;
   /// The inverse of pattern_at(). The slopes of the displacements must sum to less than one half.
-  [[nodiscard]] Eigen::Vector2d seen_at(const Eigen::Vector2d& pattern) const;
+  [[nodiscard]] Eigen::Vector2d deformed_at(const Eigen::Vector2d& pattern) const;
   /// Relative light at a point of the sheet, 1 if it is flat.
-  [[nodiscard]] double light_at(const Eigen::Vector2d& seen) const;
+  [[nodiscard]] double light_at(const Eigen::Vector2d& deformed) const;
   /// Upper bound of the displacement of the pattern.
   [[nodiscard]] double max_shift() const;
 

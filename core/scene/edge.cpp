@@ -34,11 +34,11 @@ const StepTable kStepTable = make_step_table();
 }  // namespace
 
 double blurred_step(double sigmas) {
-  const double place = (sigmas + kStepReach) * kStepsPerSigma;
-  if (!(place > 0.0)) return 1.0;
-  if (place >= kTableSize) return 0.0;
-  const auto i = static_cast<std::size_t>(place);
-  return std::lerp(kStepTable[i], kStepTable[i + 1], place - static_cast<double>(i));
+  const double position = (sigmas + kStepReach) * kStepsPerSigma;
+  if (!(position > 0.0)) return 1.0;
+  if (position >= kTableSize) return 0.0;
+  const auto i = static_cast<std::size_t>(position);
+  return std::lerp(kStepTable[i], kStepTable[i + 1], position - static_cast<double>(i));
 }
 
 StraightEdge project_half_plane(const Matrix3d& plane_from_image,
@@ -87,8 +87,8 @@ double CircularEdge::coverage(const Vector2d& pixel, double blur_px) const {
 
   // Along the gradient the conic is a parabola; its root is the distance to the edge.
   const Vector2d normal = gradient / slope;
-  const double bend = 2.0 * normal.dot(conic_.topLeftCorner<2, 2>() * normal);
-  const double discriminant = slope * slope - 2.0 * bend * value;
+  const double second_derivative = 2.0 * normal.dot(conic_.topLeftCorner<2, 2>() * normal);
+  const double discriminant = slope * slope - 2.0 * second_derivative * value;
   if (!(discriminant > 0.0)) return value < 0.0 ? 1.0 : 0.0;
   const double slope_at_edge = std::sqrt(discriminant);
   const double distance = 2.0 * value / (slope + slope_at_edge);

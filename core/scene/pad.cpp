@@ -64,11 +64,11 @@ std::vector<double> edge_radii(const Pad& pad) {
 
 PadPicture::PadPicture(const Pad& pad, double blur_px, std::uint64_t seed)
     : pad_(pad), blur_px_(blur_px) {
-  if (pad_.crumple > 0.0) crumple(seed);
+  if (pad_.crumple > 0.0) deform_edges(seed);
 }
 
 // A smooth random deviation from the circle, scaled to the given amplitude.
-void PadPicture::crumple(std::uint64_t seed) {
+void PadPicture::deform_edges(std::uint64_t seed) {
   Random random(seed);
   for (std::size_t k = 0; k < kHarmonics; ++k) {
     const double fall = std::sqrt(static_cast<double>(k) + 1.0);

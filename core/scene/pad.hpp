@@ -78,7 +78,7 @@ class PadPicture {
     StraightEdge right;
   };
 
-  void crumple(std::uint64_t seed);
+  void deform_edges(std::uint64_t seed);
   [[nodiscard]] double painted(const Eigen::Vector2d& pixel) const;
   [[nodiscard]] double mark(const Eigen::Vector2d& pixel) const;
   [[nodiscard]] double inside(const CircularEdge& circle, const Eigen::Vector2d& pixel) const;

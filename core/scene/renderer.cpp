@@ -173,8 +173,8 @@ int SceneRenderer::instants_at(double time_s) const {
   for (const double x : {0.0, 0.5, 1.0}) {
     for (const double y : {0.0, 0.5, 1.0}) {
       if (!lens_map_ && (x == 0.5 || y == 0.5)) continue;
-      const Vector2d place(x * (width_ - 1), y * (height_ - 1));
-      farthest_px = std::max(farthest_px, moved_px(end_from_begin, place));
+      const Vector2d pixel(x * (width_ - 1), y * (height_ - 1));
+      farthest_px = std::max(farthest_px, moved_px(end_from_begin, pixel));
     }
   }
   const double spacing_px = kInstantSpacing * scene_.sensor.blur_px;
@@ -334,15 +334,15 @@ void SceneRenderer::fill_ground(Block& block) const {
   for (int y = 0; y < block.height; ++y) {
     Vector3d q = ground_from_image_ * Vector3d(block.left, block.top + y, 1.0);
     const double last_depth = q.z() + steps * step.z();
-    const bool is_seen = q.z() > 0.0 && last_depth > 0.0;
-    const float first = is_seen ? coarseness(q.z()) : 0.0F;
+    const bool is_in_front = q.z() > 0.0 && last_depth > 0.0;
+    const float first = is_in_front ? coarseness(q.z()) : 0.0F;
     const float change =
-        is_seen ? (coarseness(last_depth) - first) / static_cast<float>(steps) : 0.0F;
+        is_in_front ? (coarseness(last_depth) - first) / static_cast<float>(steps) : 0.0F;
     for (int x = 0; x < block.width; ++x, q += step) {
       float& light = block.at(x, y);
       if (!(q.z() > 0.0)) {
         light = kSkyLevel;
-      } else if (ground_.is_plain() || !is_seen) {
+      } else if (ground_.is_plain() || !is_in_front) {
         light = static_cast<float>(ground_.mean());
       } else {
         const auto px = static_cast<float>(q.x() / q.z());
@@ -356,9 +356,9 @@ void SceneRenderer::fill_ground(Block& block) const {
 void SceneRenderer::add_pad(Block& block) const {
   const Pad& pad = scene_.pad;
   block.for_each_pixel([&](const Vector2d& pixel, float& light) {
-    const bool is_seen =
+    const bool is_visible =
         block.is_in_front || plane_from_image_.row(2).dot(pixel.homogeneous()) > 0.0;
-    if (!is_seen) return;
+    if (!is_visible) return;
     const PadPicture::Layers layers = pad_.at(pixel);
     double mixed = light;
     mixed += layers.rim * (pad.rim_level - mixed);

@@ -101,29 +101,30 @@ void ShapeEdge::make_table(std::uint64_t seed) {
 
 double ShapeEdge::radius_at(double angle_rad) const {
   if (radii_.empty()) return 1.0;
-  const double place = (angle_rad / kTwoPi - std::floor(angle_rad / kTwoPi)) * kTableSize;
-  const auto i = static_cast<std::size_t>(place) % kTableSize;
+  const double position = (angle_rad / kTwoPi - std::floor(angle_rad / kTwoPi)) * kTableSize;
+  const auto i = static_cast<std::size_t>(position) % kTableSize;
   const auto next = (i + 1) % kTableSize;
-  return std::lerp(
-      static_cast<double>(radii_[i]), static_cast<double>(radii_[next]), place - std::floor(place));
+  return std::lerp(static_cast<double>(radii_[i]),
+                   static_cast<double>(radii_[next]),
+                   position - std::floor(position));
 }
 
 Vector2d ShapeEdge::outline_at(double angle_rad) const {
   return radius_at(angle_rad) * Vector2d(std::cos(angle_rad), std::sin(angle_rad));
 }
 
-ShapeEdge::Nearness ShapeEdge::from_radius(const Vector2d& place) const {
-  const double r = place.norm();
+ShapeEdge::Nearness ShapeEdge::from_radius(const Vector2d& point) const {
+  const double r = point.norm();
   if (!(r > 0.0)) return {-inner_, {1.0, 0.0}};
-  if (radii_.empty()) return {r - 1.0, place / r};
+  if (radii_.empty()) return {r - 1.0, point / r};
   constexpr double kStep = kTwoPi / kTableSize;
-  const double angle = std::atan2(place.y(), place.x());
+  const double angle = std::atan2(point.y(), point.x());
   const double per_rad = (radius_at(angle + kStep) - radius_at(angle - kStep)) / (2.0 * kStep);
-  const Vector2d turned(-place.y(), place.x());
-  return {r - radius_at(angle), place / r - per_rad / (r * r) * turned};
+  const Vector2d turned(-point.y(), point.x());
+  return {r - radius_at(angle), point / r - per_rad / (r * r) * turned};
 }
 
-ShapeEdge::Nearness ShapeEdge::from_corners(const Vector2d& place) const {
+ShapeEdge::Nearness ShapeEdge::from_corners(const Vector2d& point) const {
   double nearest = std::numeric_limits<double>::infinity();
   Vector2d from_outline(1.0, 0.0);
   bool is_inside = false;
@@ -131,14 +132,14 @@ ShapeEdge::Nearness ShapeEdge::from_corners(const Vector2d& place) const {
     const Vector2d& a = corners_[j];
     const Vector2d& b = corners_[i];
     const Vector2d along = b - a;
-    const double t = std::clamp((place - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const Vector2d off = place - a - t * along;
+    const double t = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vector2d off = point - a - t * along;
     if (off.squaredNorm() < nearest) {
       nearest = off.squaredNorm();
       from_outline = off;
     }
-    const bool is_crossed = (a.y() > place.y()) != (b.y() > place.y());
-    if (is_crossed && place.x() < a.x() + (place.y() - a.y()) / along.y() * along.x()) {
+    const bool is_crossed = (a.y() > point.y()) != (b.y() > point.y());
+    if (is_crossed && point.x() < a.x() + (point.y() - a.y()) / along.y() * along.x()) {
       is_inside = !is_inside;
     }
   }
@@ -149,17 +150,17 @@ ShapeEdge::Nearness ShapeEdge::from_corners(const Vector2d& place) const {
   return {sign * distance - amount_, gradient};
 }
 
-ShapeEdge::Nearness ShapeEdge::at(const Vector2d& place) const {
-  if (outline_ == Outline::kPolygon) return from_corners(place);
-  if (outline_ != Outline::kMesh) return from_radius(place);
-  const Vector2d off(place.x() - std::round(place.x()), place.y() - std::round(place.y()));
+ShapeEdge::Nearness ShapeEdge::at(const Vector2d& point) const {
+  if (outline_ == Outline::kPolygon) return from_corners(point);
+  if (outline_ != Outline::kMesh) return from_radius(point);
+  const Vector2d off(point.x() - std::round(point.x()), point.y() - std::round(point.y()));
   const bool is_x = std::abs(off.x()) < std::abs(off.y());
   const double d = is_x ? off.x() : off.y();
   const double sign = d < 0.0 ? -1.0 : 1.0;
   return {std::abs(d) - amount_, is_x ? Vector2d(sign, 0.0) : Vector2d(0.0, sign)};
 }
 
-double ShapeEdge::mesh_coverage(const Vector2d& place,
+double ShapeEdge::mesh_coverage(const Vector2d& point,
                                 const Matrix2d& point_per_px,
                                 double blur_px) const {
   double uncovered = 1.0;
@@ -169,7 +170,7 @@ double ShapeEdge::mesh_coverage(const Vector2d& place,
     double share = 2.0 * amount_;
     // Wires closer to each other than this blur to an even grey.
     if (sigma < 0.4) {
-      const double d = std::abs(place(axis) - std::round(place(axis)));
+      const double d = std::abs(point(axis) - std::round(point(axis)));
       const auto wire = [&](double off) {
         return blurred_step((off - amount_) / sigma) - blurred_step((off + amount_) / sigma);
       };
@@ -180,28 +181,28 @@ double ShapeEdge::mesh_coverage(const Vector2d& place,
   return 1.0 - uncovered;
 }
 
-double ShapeEdge::coverage(const Vector2d& place,
+double ShapeEdge::coverage(const Vector2d& point,
                            const Matrix2d& point_per_px,
                            double blur_px) const {
-  if (outline_ == Outline::kMesh) return mesh_coverage(place, point_per_px, blur_px);
-  const Nearness edge = at(place);
+  if (outline_ == Outline::kMesh) return mesh_coverage(point, point_per_px, blur_px);
+  const Nearness edge = at(point);
   const double per_px = (point_per_px.transpose() * edge.gradient).norm();
   const double blur = blur_px * per_px;
   const double sigma = std::sqrt(blur * blur + softness_ * softness_);
   const double whole = blurred_step(edge.distance / sigma);
   if (!(hole_ > 0.0) || whole <= 0.0) return whole;
-  return whole - blurred_step(hole_ * at(place / hole_).distance / sigma);
+  return whole - blurred_step(hole_ * at(point / hole_).distance / sigma);
 }
 
-double ShapeEdge::clearance(const Vector2d& place) const {
+double ShapeEdge::clearance(const Vector2d& point) const {
   if (outline_ == Outline::kMesh) return 0.0;
   if (outline_ == Outline::kPolygon) {
-    const double outer = from_corners(place).distance;
+    const double outer = from_corners(point).distance;
     if (outer > 0.0 || !(hole_ > 0.0)) return outer;
-    const double hole = hole_ * from_corners(place / hole_).distance;
+    const double hole = hole_ * from_corners(point / hole_).distance;
     return hole < 0.0 ? -hole : std::max(outer, -hole);
   }
-  const double r = place.norm();
+  const double r = point.norm();
   if (r > extent_) return r - extent_;
   if (!(hole_ > 0.0)) return std::min(0.0, r - inner_);
   if (r < hole_ * inner_) return hole_ * inner_ - r;

@@ -32,7 +32,7 @@ struct Shape {
   Outline outline = Outline::kEllipse;
   double amount = 0.0;  ///< Parameter of the outline.
   std::vector<Eigen::Vector2d> corners;
-  Eigen::Affine2d place = Eigen::Affine2d::Identity();  ///< From its frame to the sheet.
+  Eigen::Affine2d sheet_from_shape = Eigen::Affine2d::Identity();  ///< From its frame to the sheet.
   double hole = 0.0;      ///< Scale of a hole of the same form; 0 = none.
   double softness = 0.0;  ///< Standard deviation of its edge's ramp [units of the shape].
   Paint paint;
@@ -51,17 +51,17 @@ class ShapeEdge {
     double distance = 0.0;               ///< Above 0 outside; to first order.
     Eigen::Vector2d gradient{1.0, 0.0};  ///< Of the distance.
   };
-  [[nodiscard]] Nearness at(const Eigen::Vector2d& place) const;
+  [[nodiscard]] Nearness at(const Eigen::Vector2d& point) const;
 
   /// Share of the light at a point that comes from the shape.
   /// @param point_per_px  Derivative of the place by the picture's pixels.
-  [[nodiscard]] double coverage(const Eigen::Vector2d& place,
+  [[nodiscard]] double coverage(const Eigen::Vector2d& point,
                                 const Eigen::Matrix2d& point_per_px,
                                 double blur_px) const;
 
   /// Signed lower bound of the distance to the next edge: above 0 outside the paint, below 0
   /// inside; 0 = unknown.
-  [[nodiscard]] double clearance(const Eigen::Vector2d& place) const;
+  [[nodiscard]] double clearance(const Eigen::Vector2d& point) const;
 
   /// The point on the outline in a direction; not for polygons and meshes.
   [[nodiscard]] Eigen::Vector2d outline_at(double angle_rad) const;
@@ -74,9 +74,9 @@ class ShapeEdge {
 
   void make_table(std::uint64_t seed);
   [[nodiscard]] double radius_at(double angle_rad) const;
-  [[nodiscard]] Nearness from_radius(const Eigen::Vector2d& place) const;
-  [[nodiscard]] Nearness from_corners(const Eigen::Vector2d& place) const;
-  [[nodiscard]] double mesh_coverage(const Eigen::Vector2d& place,
+  [[nodiscard]] Nearness from_radius(const Eigen::Vector2d& point) const;
+  [[nodiscard]] Nearness from_corners(const Eigen::Vector2d& point) const;
+  [[nodiscard]] double mesh_coverage(const Eigen::Vector2d& point,
                                      const Eigen::Matrix2d& point_per_px,
                                      double blur_px) const;
 

@@ -86,7 +86,7 @@ class RoundEdges {
 }  // namespace
 
 struct SheetPicture::Sample {
-  Vector2d seen;             // on the sheet
+  Vector2d on_sheet;         // the visible point of the sheet
   Vector2d at_shape;         // in the shape's frame
   Matrix2d at_shape_per_px;  // its derivative by the picture's pixels
   bool is_in_front = false;
@@ -101,16 +101,17 @@ struct SheetPicture::Sample {
     const double horizon = (kStepReach * picture.blur_px_ + 1.0) * std::hypot(m(2, 0), per_y.z());
     is_in_front = q.z() > horizon;
     if (!is_in_front) return;
-    seen = q.hnormalized();
+    on_sheet = q.hnormalized();
     Matrix2d per_px;
-    per_px << (m.block<2, 1>(0, 0) - seen * m(2, 0)), (per_y.head<2>() - seen * per_y.z());
+    per_px << (m.block<2, 1>(0, 0) - on_sheet * m(2, 0)), (per_y.head<2>() - on_sheet * per_y.z());
     const Eigen::Affine2d& to_shape = picture.shape_from_sheet_[shape];
     if (picture.deformation_.is_flat()) {
-      at_shape = to_shape * seen;
+      at_shape = to_shape * on_sheet;
       at_shape_per_px = to_shape.linear() * per_px / q.z();
     } else {
-      at_shape = to_shape * picture.deformation_.pattern_at(seen);
-      at_shape_per_px = to_shape.linear() * picture.deformation_.slope_at(seen) * per_px / q.z();
+      at_shape = to_shape * picture.deformation_.pattern_at(on_sheet);
+      at_shape_per_px =
+          to_shape.linear() * picture.deformation_.slope_at(on_sheet) * per_px / q.z();
     }
   }
 };
@@ -121,12 +122,12 @@ SheetPicture::SheetPicture(const Sheet& sheet, double lens_blur_px)
       deformation_(sheet.folds) {
   for (const Shape& shape : sheet_.shapes) {
     edges_.emplace_back(shape);
-    shape_from_sheet_.push_back(shape.place.inverse());
+    shape_from_sheet_.push_back(shape.sheet_from_shape.inverse());
   }
 }
 
-Vector2d SheetPicture::to_shape(std::size_t shape, const Vector2d& seen) const {
-  return shape_from_sheet_[shape] * deformation_.pattern_at(seen);
+Vector2d SheetPicture::to_shape(std::size_t shape, const Vector2d& on_sheet) const {
+  return shape_from_sheet_[shape] * deformation_.pattern_at(on_sheet);
 }
 
 // Whether CircularEdge renders the shape exactly.
@@ -154,7 +155,7 @@ Patch SheetPicture::bounds(const SheetView& view, std::size_t shape, const Patch
     const Matrix3d image_from_sheet = view.at_row(patch.top + 0.5 * part * patch.height).inverse();
     for (int corner = 0; corner < 4; ++corner) {
       const Vector2d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0);
-      const Vector2d at = sheet_.shapes[shape].place * Vector2d(reach * sign);
+      const Vector2d at = sheet_.shapes[shape].sheet_from_shape * Vector2d(reach * sign);
       for (const double sx : {-shift, shift}) {
         for (const double sy : {-shift, shift}) {
           const Vector3d q = image_from_sheet * (at + Vector2d(sx, sy)).homogeneous();
@@ -265,10 +266,10 @@ double SheetPicture::paint_at(std::size_t shape, const Sample& sample) const {
     level *= kAmbient + (1.0 - kAmbient) * std::max(0.0, normal.dot(what.paint.lit_from));
   }
   if (what.paint.texture > 0.0) {
-    const Vector2d place = what.place * sample.at_shape;
-    level += what.paint.texture * lattice_noise(what.paint.grain * place, what.seed);
+    const Vector2d pattern = what.sheet_from_shape * sample.at_shape;
+    level += what.paint.texture * lattice_noise(what.paint.grain * pattern, what.seed);
   }
-  return deformation_.is_flat() ? level : level * deformation_.light_at(sample.seen);
+  return deformation_.is_flat() ? level : level * deformation_.light_at(sample.on_sheet);
 }
 
 bool SheetPicture::hides(const SheetView& view, const Vector2d& px, std::size_t from) const {
@@ -288,14 +289,14 @@ std::optional<Vector2d> SheetPicture::outline_at(const SheetView& view,
                                                  std::size_t shape,
                                                  double factor,
                                                  double angle_rad) const {
-  const Vector2d pattern =
-      sheet_.shapes[shape].place * Vector2d(factor * edges_[shape].outline_at(angle_rad));
-  const Vector3d seen = deformation_.seen_at(pattern).homogeneous();
+  const Vector2d pattern = sheet_.shapes[shape].sheet_from_shape *
+                           Vector2d(factor * edges_[shape].outline_at(angle_rad));
+  const Vector3d on_sheet = deformation_.deformed_at(pattern).homogeneous();
   // With a rolling shutter the row depends on the result; iterates, as views of rows differ little.
   const int steps = view.is_rolling() ? 8 : 1;
   Vector2d px(0.0, 0.0);
   for (int i = 0; i < steps; ++i) {
-    const Vector3d q = view.at_row(px.y()).inverse() * seen;
+    const Vector3d q = view.at_row(px.y()).inverse() * on_sheet;
     if (!(q.z() > 0.0)) return std::nullopt;
     px = q.hnormalized();
   }

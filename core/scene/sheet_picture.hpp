@@ -51,7 +51,7 @@ class SheetPicture {
                                                     const SheetView& view,
                                                     const Patch& block) const;
   [[nodiscard]] double paint_at(std::size_t shape, const Sample& sample) const;
-  [[nodiscard]] Eigen::Vector2d to_shape(std::size_t shape, const Eigen::Vector2d& seen) const;
+  [[nodiscard]] Eigen::Vector2d to_shape(std::size_t shape, const Eigen::Vector2d& on_sheet) const;
   [[nodiscard]] bool is_exact(std::size_t shape) const;
 
   Sheet sheet_;

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 
 // The views of a sheet in a frame: one, or one for each of two fields.
-struct Seen {
+struct ViewedSheet {
   SheetPicture picture;
   std::vector<SheetView> views;
 };
@@ -36,7 +36,7 @@ Sheet edges_of(const Pad& pad) {
   Sheet sheet;
   for (const double radius : edge_radii(pad)) {
     Shape& shape = sheet.shapes.emplace_back();
-    shape.place.scale(radius);
+    shape.sheet_from_shape.scale(radius);
     shape.paint.opacity = 0.0;
     shape.is_listed = true;
     shape.is_target = radius == 1.0;
@@ -45,14 +45,15 @@ Sheet edges_of(const Pad& pad) {
 }
 
 // First the pad, then the scene's sheets.
-std::vector<Seen> look_at_all(const Scene& scene, const Camera& camera, double time_s) {
-  std::vector<Seen> all;
+std::vector<ViewedSheet> look_at_all(const Scene& scene, const Camera& camera, double time_s) {
+  std::vector<ViewedSheet> all;
   std::vector<Sheet> sheets{edges_of(scene.pad)};
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
   for (const Sheet& sheet : sheets) {
-    Seen& seen = all.emplace_back(Seen{SheetPicture(sheet, scene.sensor.blur_px), {}});
+    ViewedSheet& viewed =
+        all.emplace_back(ViewedSheet{SheetPicture(sheet, scene.sensor.blur_px), {}});
     for (const double at_s : field_times(scene, time_s)) {
-      if (const auto view = view_of(sheet, scene, camera, at_s)) seen.views.push_back(*view);
+      if (const auto view = view_of(sheet, scene, camera, at_s)) viewed.views.push_back(*view);
     }
   }
   return all;
@@ -61,8 +62,8 @@ std::vector<Seen> look_at_all(const Scene& scene, const Camera& camera, double t
 // The share of an outline inside the frame that no sheet hides.
 class Visibility {
  public:
-  Visibility(const Camera& camera, const std::vector<Seen>& seen)
-      : camera_(camera), lens_(camera), seen_(seen) {}
+  Visibility(const Camera& camera, const std::vector<ViewedSheet>& viewed)
+      : camera_(camera), lens_(camera), viewed_(viewed) {}
 
   // Hidden by a sheet's shapes from `shape` on, and by all later sheets.
   [[nodiscard]] double of(const std::vector<Vector2d>& outline,
@@ -95,26 +96,26 @@ class Visibility {
   }
 
   [[nodiscard]] bool is_hidden(const Vector2d& px, std::size_t sheet, std::size_t shape) const {
-    for (std::size_t i = sheet; i < seen_.size(); ++i) {
-      if (seen_[i].views.empty()) continue;
+    for (std::size_t i = sheet; i < viewed_.size(); ++i) {
+      if (viewed_[i].views.empty()) continue;
       const std::size_t from = i == sheet ? shape : 0;
-      if (seen_[i].picture.hides(seen_[i].views.front(), px, from)) return true;
+      if (viewed_[i].picture.hides(viewed_[i].views.front(), px, from)) return true;
     }
     return false;
   }
 
   const Camera& camera_;
   Lens lens_;
-  const std::vector<Seen>& seen_;
+  const std::vector<ViewedSheet>& viewed_;
 };
 
 // Points of a shape's outline in the frame; empty if a part of it is not in front of the camera.
-std::vector<Vector2d> outline_of(const Seen& seen, std::size_t shape, double factor) {
+std::vector<Vector2d> outline_of(const ViewedSheet& viewed, std::size_t shape, double factor) {
   std::vector<Vector2d> points;
-  for (const SheetView& view : seen.views) {
+  for (const SheetView& view : viewed.views) {
     for (int i = 0; i < kSamples; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kSamples;
-      const auto px = seen.picture.outline_at(view, shape, factor, angle);
+      const auto px = viewed.picture.outline_at(view, shape, factor, angle);
       if (!px) return {};
       points.push_back(*px);
     }
@@ -139,23 +140,23 @@ std::optional<TrueEllipse> best_fit(const std::vector<Vector2d>& outline) {
   return result;
 }
 
-bool is_exact(const Seen& seen, const Shape& shape) {
-  return shape.outline == Outline::kEllipse && seen.picture.sheet().folds.empty() &&
-         seen.views.size() == 1 && !seen.views.front().is_rolling();
+bool is_exact(const ViewedSheet& viewed, const Shape& shape) {
+  return shape.outline == Outline::kEllipse && viewed.picture.sheet().folds.empty() &&
+         viewed.views.size() == 1 && !viewed.views.front().is_rolling();
 }
 
-std::optional<TrueEllipse> true_ellipse(const Seen& seen,
+std::optional<TrueEllipse> true_ellipse(const ViewedSheet& viewed,
                                         const Shape& shape,
                                         double factor,
                                         const std::vector<Vector2d>& outline) {
-  if (!is_exact(seen, shape)) return best_fit(outline);
+  if (!is_exact(viewed, shape)) return best_fit(outline);
   const Matrix3d image_from_shape =
-      seen.views.front().sheet_from_image.inverse() * shape.place.matrix();
+      viewed.views.front().sheet_from_image.inverse() * shape.sheet_from_shape.matrix();
   const auto ellipse = project_circle(image_from_shape, factor);
   return ellipse ? std::optional(TrueEllipse{*ellipse}) : std::nullopt;
 }
 
-void add_sheet(const std::vector<Seen>& all,
+void add_sheet(const std::vector<ViewedSheet>& all,
                std::size_t sheet,
                const Visibility& visibility,
                std::vector<TrueEllipse>& found) {
@@ -180,12 +181,12 @@ void add_sheet(const std::vector<Seen>& all,
 std::vector<TrueEllipse> true_ellipses(
     const Scene& scene, double time_s, int width, int height, double min_semi_minor_px) {
   const Camera camera = camera_of(scene, width, height);
-  const std::vector<Seen> seen = look_at_all(scene, camera, time_s);
-  const Visibility visibility(camera, seen);
+  const std::vector<ViewedSheet> viewed = look_at_all(scene, camera, time_s);
+  const Visibility visibility(camera, viewed);
   std::vector<TrueEllipse> found;
-  add_sheet(seen, 0, visibility, found);
+  add_sheet(viewed, 0, visibility, found);
   for (TrueEllipse& edge : found) edge.deviation_px += scene.pad.crumple * edge.ellipse.semi_major;
-  for (std::size_t i = 1; i < seen.size(); ++i) add_sheet(seen, i, visibility, found);
+  for (std::size_t i = 1; i < viewed.size(); ++i) add_sheet(viewed, i, visibility, found);
   std::erase_if(found, [&](const TrueEllipse& e) {
     return !(e.visible_fraction > 0.0) || !(e.ellipse.semi_minor >= min_semi_minor_px);
   });

@@ -16,9 +16,9 @@ constexpr std::array kShares = {38, 12, 6, 7, 7, 6, 10, 14};
 
 WildTheme theme_of(std::uint64_t seed) {
   Random random(hash(seed ^ 0x7468656d65U));
-  int place = random.below(100);
+  int draw = random.below(100);
   std::size_t theme = 0;
-  while (place >= kShares[theme]) place -= kShares[theme++];
+  while (draw >= kShares[theme]) draw -= kShares[theme++];
   return static_cast<WildTheme>(theme);
 }
 

@@ -70,7 +70,7 @@ void Draft::netting() {
   const double spacing = log_between(0.02, 0.14);
   const double shear = kind == 0 ? random.between(-0.1, 0.1) : random.between(0.4, 0.8) * sign();
   Shape wires = mesh(spacing, spacing * random.between(0.05, 0.16), shear, paint(grey));
-  wires.place.prerotate(random.between(0.0, kTwoPi));
+  wires.sheet_from_shape.prerotate(random.between(0.0, kTwoPi));
   net.shapes.push_back(wires);
   if (chance(0.6)) {
     net.folds.push_back({Vector2d(random.between(-6.0, 6.0), random.between(-6.0, 6.0)),

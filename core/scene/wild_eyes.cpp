@@ -76,7 +76,7 @@ void add_eyeball(Draft& draft, const Tones& tones) {
   pupil.softness = draft.log_between(0.01, 0.06);
   pupil.is_listed = true;
   pupil.is_target = true;
-  pupil.place.scale(Vector2d(1.0, random.between(0.9, 1.0)));
+  pupil.sheet_from_shape.scale(Vector2d(1.0, random.between(0.9, 1.0)));
   ball.shapes.push_back(pupil);
   draft.note("pupil");
 }

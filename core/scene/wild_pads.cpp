@@ -256,8 +256,9 @@ void make_polygons(Draft& draft) {
   }
   const bool is_square = draft.chance(0.3);
   draft.note(is_square ? "rounded-square" : "polygon");
-  const double most = max_corners(radius_px * std::cos(tilt) * 0.75, draft.scene().sensor.blur_px);
-  const auto corners = regular_corners(5 + draft.random.below(static_cast<int>(most) - 4),
+  const double corner_limit =
+      max_corners(radius_px * std::cos(tilt) * 0.75, draft.scene().sensor.blur_px);
+  const auto corners = regular_corners(5 + draft.random.below(static_cast<int>(corner_limit) - 4),
                                        draft.random.between(0.0, kTwoPi));
   const double rounding = draft.random.between(0.0, 0.35);
   double grey = greys.paint;
@@ -265,7 +266,7 @@ void make_polygons(Draft& draft) {
   while (size > 0.6) {
     Shape shape = is_square ? box({0.0, 0.0}, {0.9, 0.9}, 0.0, draft.paint(grey, 3.0), rounding)
                             : polygon(corners, draft.paint(grey, 3.0));
-    shape.place = Eigen::Scaling(size) * shape.place;
+    shape.sheet_from_shape = Eigen::Scaling(size) * shape.sheet_from_shape;
     sheet.shapes.push_back(shape);
     grey = greys.paint + greys.around - grey;
     if (draft.chance(0.4)) break;

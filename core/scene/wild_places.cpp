@@ -79,7 +79,7 @@ Shape balloon(Draft& draft, Sheet& sheet, const Paint& paint) {
   Shape body = disc({0.0, 0.0}, 1.0, paint);
   body.outline = Outline::kEgg;
   body.amount = draft.random.between(0.04, 0.13);
-  body.place.rotate(-0.5 * std::numbers::pi);
+  body.sheet_from_shape.rotate(-0.5 * std::numbers::pi);
   const Vector3d sun = paint.lit_from;
   body.paint.lit_from = {-sun.y(), sun.x(), sun.z()};
   return body;

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 Shape disc(const Vector2d& center, double radius, const Paint& paint) {
   Shape shape;
-  shape.place.translate(center).scale(radius);
+  shape.sheet_from_shape.translate(center).scale(radius);
   shape.paint = paint;
   return shape;
 }
@@ -40,14 +40,14 @@ Shape box(const Vector2d& center,
       {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}},
       paint,
       rounding);
-  shape.place.translate(center).rotate(turn_rad);
+  shape.sheet_from_shape.translate(center).rotate(turn_rad);
   return shape;
 }
 
 Shape stroke(const Vector2d& from, const Vector2d& to, double width, const Paint& paint) {
   const Vector2d middle = 0.5 * (from + to);
   Shape shape = polygon({from - middle, to - middle}, paint, 0.5 * width);
-  shape.place.translate(middle);
+  shape.sheet_from_shape.translate(middle);
   return shape;
 }
 
@@ -64,7 +64,7 @@ Shape mesh(double spacing, double wire_width, double shear_rad, const Paint& pai
   Shape shape;
   shape.outline = Outline::kMesh;
   shape.amount = 0.5 * wire_width / spacing;
-  shape.place.linear() << spacing, spacing * std::sin(shear_rad), 0.0,
+  shape.sheet_from_shape.linear() << spacing, spacing * std::sin(shear_rad), 0.0,
       spacing * std::cos(shear_rad);
   shape.paint = paint;
   return shape;
@@ -123,7 +123,7 @@ std::vector<Shape> glyph(char letter, double bar_width, const Paint& paint) {
 void place(std::vector<Shape>& shapes, const Vector2d& to, double scale, double turn_rad) {
   Eigen::Affine2d move = Eigen::Affine2d::Identity();
   move.translate(to).rotate(turn_rad).scale(scale);
-  for (Shape& shape : shapes) shape.place = move * shape.place;
+  for (Shape& shape : shapes) shape.sheet_from_shape = move * shape.sheet_from_shape;
 }
 
 Matrix3d level_frame(const Vector3d& at, double scale, double turn_rad) {

@@ -93,7 +93,7 @@ void add_sign(Draft& draft, Sheet& sheet, bool is_round) {
                     draft.paint(greys.paint)),
             polygon(regular_corners(corners, std::numbers::pi / (corners == 8 ? 8.0 : 6.0)),
                     draft.paint(greys.around))};
-    sign.back().place.scale(0.75);
+    sign.back().sheet_from_shape.scale(0.75);
   }
   std::vector<Shape> mark =
       glyph(static_cast<char>('1' + 3 * random.below(3)), 0.25, draft.paint(greys.paint));

@@ -38,12 +38,12 @@ Thresholds FrameSearch::tracking_thresholds(int scale) const {
 }
 
 Thresholds FrameSearch::thresholds_at(int scale,
-                                      const Overlaps& wanted,
+                                      const Overlaps& requested,
                                       const Overlaps& own) const {
   Thresholds thresholds = settings_.limits.at_scale(scale);
   thresholds.wants_all = settings_.wants_candidates;
-  thresholds.contour_overlap = or_own(wanted.contour, own.contour);
-  thresholds.ellipse_overlap = or_own(wanted.ellipse, own.ellipse);
+  thresholds.contour_overlap = or_own(requested.contour, own.contour);
+  thresholds.ellipse_overlap = or_own(requested.ellipse, own.ellipse);
   return thresholds;
 }
 

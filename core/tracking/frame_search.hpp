@@ -67,7 +67,7 @@ class FrameSearch {
 
  private:
   [[nodiscard]] Thresholds thresholds_at(int scale,
-                                         const Overlaps& wanted,
+                                         const Overlaps& requested,
                                          const Overlaps& own) const;
 
   TrackerSettings settings_;

@@ -16,12 +16,12 @@ constexpr double kEnoughToJudge = 0.5;    // min visible share of the perimeter
 constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
 
 // Crops a window to an ellipse and its surroundings.
-LumaWindow part_around(const LumaWindow& window, const Ellipse& seen) {
+LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
   const Rect whole{static_cast<int>(window.origin_px.x()),
                    static_cast<int>(window.origin_px.y()),
                    window.luma.width,
                    window.luma.height};
-  const Rect around = intersect(calculate_roi(seen,
+  const Rect around = intersect(calculate_roi(outline,
                                               kJudgedExpansion,
                                               kCoarsestScale,
                                               static_cast<int>(window.frame_px.x()),
@@ -54,10 +54,10 @@ void OutlineJudge::judge(Detector& detector,
                          const Target& target,
                          const Thresholds& limits) {
   max_visible_ = std::max(max_visible_, target.visible_fraction);
-  const auto seen = distorted(window.lens, target.ellipse);
-  if (!seen || !is_due(target)) return;
+  const auto outline = distorted(window.lens, target.ellipse);
+  if (!outline || !is_due(target)) return;
   judged_overlap_ = target.ellipse_overlap;
-  const LumaWindow part = part_around(window, *seen);
+  const LumaWindow part = part_around(window, *outline);
   const Eigen::Vector2d& origin = part.origin_px;
   Thresholds thresholds = limits;
   thresholds.contour_overlap = detector.tracking_overlaps().contour;

@@ -56,8 +56,9 @@ void RedetectTracker::prepare_next_frame(const ScopedFrame& frame,
   if (!target) return;
   last_target_ = target->ellipse;
   const Rect whole = frame.pixels.bounds();
-  const auto seen = distorted(frame.lens, target->ellipse);
-  roi_ = seen ? calculate_roi(*seen, roi_expansion, scale_, whole.width, whole.height) : whole;
+  const auto outline = distorted(frame.lens, target->ellipse);
+  roi_ =
+      outline ? calculate_roi(*outline, roi_expansion, scale_, whole.width, whole.height) : whole;
 }
 
 int next_scale(int scale, int max_scale, double size_px, double min_size_px, double max_size_px) {

@@ -39,9 +39,9 @@ std::string blurb_of(const std::string& description, const SettingEffect& effect
 TrackerSettings in_force(const TrackerSettings& settings) {
   TrackerSettings result = settings;
   const auto detector = make_detector(settings.detector);
-  const auto fill = [](Overlaps& wanted, const Overlaps& own) {
-    if (wanted.contour == 0.0) wanted.contour = own.contour;
-    if (wanted.ellipse == 0.0) wanted.ellipse = own.ellipse;
+  const auto fill = [](Overlaps& overlaps, const Overlaps& own) {
+    if (overlaps.contour == 0.0) overlaps.contour = own.contour;
+    if (overlaps.ellipse == 0.0) overlaps.ellipse = own.ellipse;
   };
   fill(result.detect_overlaps, detector->detecting_overlaps());
   fill(result.track_overlaps, detector->tracking_overlaps());

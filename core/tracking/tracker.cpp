@@ -124,22 +124,22 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
 // The new state does not depend on the previous one.
 TrackerState Tracker::state_after(const std::optional<Target>& target) const {
   if (!target) return TrackerState::kSearching;
-  if (judge_->log_odds() < wanted_log_odds()) return TrackerState::kConfirming;
+  if (judge_->log_odds() < required_log_odds()) return TrackerState::kConfirming;
   if (target->state == TargetState::kPredicted) return TrackerState::kCoasting;
   return TrackerState::kFollowing;
 }
 
-double Tracker::wanted_log_odds() const {
+double Tracker::required_log_odds() const {
   const bool has_limit = search_->detector().has_probability();
-  const double wanted = has_limit ? log_odds(settings_.limits.min_probability) : 0.0;
-  return std::min(wanted, TargetOdds::kMax);
+  const double required = has_limit ? log_odds(settings_.limits.min_probability) : 0.0;
+  return std::min(required, TargetOdds::kMax);
 }
 
 // Detects unless a visible target has sufficient odds; then only periodically, since a better
 // target may have come into view.
 bool Tracker::needs_detection(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  return !is_visible || judge_->log_odds() < wanted_log_odds() || is_detection_due();
+  return !is_visible || judge_->log_odds() < required_log_odds() || is_detection_due();
 }
 
 bool Tracker::is_detection_due() const {
@@ -181,8 +181,8 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  const auto is_rival = [&](const std::optional<Target>& seen) {
-    return seen && (!is_visible || is_better(*seen, *followed));
+  const auto is_rival = [&](const std::optional<Target>& candidate) {
+    return candidate && (!is_visible || is_better(*candidate, *followed));
   };
   since_detection_s_ = 0.0;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
@@ -248,7 +248,7 @@ RingUncertainty Tracker::uncertainty_of(const Target& target) const {
 // Adds the pose, which needs a camera.
 void Tracker::locate(Target& target) {
   const bool is_followed = pad_tracker_->is_locked();
-  if (target.id != located_id_) pose_estimator_.forget();
+  if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
   target.pose = pose_estimator_.estimate(
       *lens_,
@@ -292,7 +292,7 @@ void Tracker::reset() {
   search_->begin({});
   *redetect_tracker_ = {};
   pad_tracker_->release();
-  pose_estimator_.forget();
+  pose_estimator_.reset();
 }
 
 void Tracker::configure(const TrackerSettings& settings) {

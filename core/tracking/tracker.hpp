@@ -92,7 +92,7 @@ class Tracker {
 
   [[nodiscard]] std::optional<Target> follow(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;
-  [[nodiscard]] double wanted_log_odds() const;
+  [[nodiscard]] double required_log_odds() const;
   [[nodiscard]] bool needs_detection(const std::optional<Target>& followed) const;
   [[nodiscard]] bool is_detection_due() const;
   [[nodiscard]] std::optional<Target> follow_edges(const ScopedFrame& frame, double elapsed_s);

@@ -58,8 +58,8 @@ Eigen::Vector2d ideal_normal(const LensView& lens,
                              const Eigen::Vector2d& ideal_px,
                              const Eigen::Vector2d& in_picture) {
   if (!lens.is_distorted()) return in_picture;
-  const auto place = lens.picture_from_ideal(ideal_px);
-  return place ? (place->slope.transpose() * in_picture).normalized() : in_picture;
+  const auto shown = lens.picture_from_ideal(ideal_px);
+  return shown ? (shown->slope.transpose() * in_picture).normalized() : in_picture;
 }
 
 }  // namespace

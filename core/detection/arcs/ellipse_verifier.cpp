@@ -133,10 +133,10 @@ Verdict EllipseVerifier::judge_prospect(double max_growth,
                                         const MeasuredEllipse& measured) const {
   const Verdict enough = judge_edges();
   if (!enough.is_accepted()) return enough;
-  const double wanted = thresholds.min_probability;
+  const double required = thresholds.min_probability;
   const double reachable = table.log_odds(measured.features) + max_growth;
-  if (wanted == 1.0 || reachable >= std::log(wanted / (1.0 - wanted))) return {};
-  return at_least(Reason::kUnlikely, table.probability(measured.features), wanted);
+  if (required == 1.0 || reachable >= std::log(required / (1.0 - required))) return {};
+  return at_least(Reason::kUnlikely, table.probability(measured.features), required);
 }
 
 // Least squares with Tukey's weights.

@@ -323,11 +323,11 @@ std::span<const Detection> ContourDetector::detect(const Picture& picture,
 std::optional<double> ContourDetector::log_odds_of(const Picture& picture,
                                                    const Ellipse& e,
                                                    const Thresholds& thresholds) {
-  const auto seen = distorted(picture.lens, e);
-  if (picture.luma.empty() || !seen) return std::nullopt;
+  const auto in_picture = distorted(picture.lens, e);
+  if (picture.luma.empty() || !in_picture) return std::nullopt;
   detect_edges(picture.luma, thresholds);
   cv::dilate(edges_, thick_edges_, cv::Mat());
-  const double overlap = perimeter_support(*seen, view_of(thick_edges_)).ellipse_overlap();
+  const double overlap = perimeter_support(*in_picture, view_of(thick_edges_)).ellipse_overlap();
   return log_odds(overlap) - log_odds(thresholds.ellipse_overlap);
 }
 

@@ -70,7 +70,7 @@ class Patch {
             is_inside ? luma.at(static_cast<float>(at.x()), static_cast<float>(at.y())) : kOutside;
       }
     }
-    const auto most = static_cast<float>(kSaturation * contrast);
+    const auto saturation = static_cast<float>(kSaturation * contrast);
     for (int j = 1; j + 1 < kCells; ++j) {
       for (int i = 1; i + 1 < kCells; ++i) {
         const float left = levels[index(i - 1, j)];
@@ -81,7 +81,7 @@ class Patch {
         if (!is_known_[index(i, j)]) continue;
         const float x = beyond - left;
         const float y = below - above;
-        const float scale = 1.0F / std::max(most, std::sqrt(x * x + y * y));
+        const float scale = 1.0F / std::max(saturation, std::sqrt(x * x + y * y));
         gradients_[index(i, j)] = {x * scale, y * scale};
       }
     }
@@ -92,18 +92,18 @@ class Patch {
   // @param step  Stride over its points.
   [[nodiscard]] double agreement(const Template& circle, int x, int y, std::size_t step = 1) const {
     float sum = 0.0F;
-    int seen = 0;
-    const int least = std::max(1, kMinVisible / static_cast<int>(step));
+    int visible = 0;
+    const int min_visible = std::max(1, kMinVisible / static_cast<int>(step));
     for (std::size_t k = 0; k < circle.size(); k += step) {
       const TemplatePoint& point = circle[k];
       const int i = x + point.x;
       const int j = y + point.y;
       if (i < 1 || j < 1 || i + 1 >= kCells || j + 1 >= kCells || !is_known_[index(i, j)]) continue;
-      ++seen;
+      ++visible;
       const CellGradient& g = gradients_[index(i, j)];
       sum += std::max(0.0F, g.x * point.nx + g.y * point.ny);
     }
-    return seen >= least ? static_cast<double>(sum) / (seen + least) : 0.0;
+    return visible >= min_visible ? static_cast<double>(sum) / (visible + min_visible) : 0.0;
   }
 
  private:

@@ -51,7 +51,7 @@ struct Profile {
 };
 
 // Keeps the strongest local maxima of the difference between the boxes after and before a position.
-void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample& sample) {
+void keep_edges(const Profile& profile, float min_contrast, double reach_px, EdgeSample& sample) {
   const auto& sums = profile.sums;
   const std::size_t half = profile.box;
   const float scale = 1.0F / static_cast<float>(half);
@@ -61,7 +61,7 @@ void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample
   }
   for (std::size_t i = half + 1; i + half < profile.count; ++i) {
     const float here = rises[i];
-    if (here < least || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    if (here < min_contrast || rises[i - 1] > here || rises[i + 1] >= here) continue;
     const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
     const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
     const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
@@ -80,11 +80,11 @@ void keep_edges(const Profile& profile, float least, double reach_px, EdgeSample
 }  // namespace
 
 void EdgeSearch::add(const Eigen::Matrix3d& view,
-                     const Eigen::Vector2d& place,
+                     const Eigen::Vector2d& pad_point,
                      const Eigen::Vector2d& to_bright,
                      double contrast,
                      int feature) {
-  const auto edge = view_of(view, place, to_bright);
+  const auto edge = view_of(view, pad_point, to_bright);
   if (!edge || samples_.size() >= kMaxSamples) return;
   EdgeSample& sample = samples_.emplace_back();
   sample.view = *edge;
@@ -285,8 +285,8 @@ void EdgeSearch::search_along(const ImageView& luma,
   profile.step_px = static_cast<float>(step_px);
   profile.middle_px = static_cast<float>(slope * (middle - crossing));
   profile.read(pixel, stride);
-  const double least = std::max(kMinContrast, kMinContrastShare * gain * sample.contrast);
-  keep_edges(profile, static_cast<float>(least), reach_px, sample);
+  const double min_contrast = std::max(kMinContrast, kMinContrastShare * gain * sample.contrast);
+  keep_edges(profile, static_cast<float>(min_contrast), reach_px, sample);
 }
 
 }  // namespace ellipse

@@ -67,7 +67,7 @@ class EdgeSearch {
                      int feature);
   void sample_line(const Placement& placement, const PadLine& line, int feature);
   void add(const Eigen::Matrix3d& view,
-           const Eigen::Vector2d& place,
+           const Eigen::Vector2d& pad_point,
            const Eigen::Vector2d& to_bright,
            double contrast,
            int feature);

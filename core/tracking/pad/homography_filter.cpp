@@ -9,12 +9,12 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kFocalOverWidth = 0.8;  // if no camera is known
-constexpr double kAlongShare = 0.7;      // share of the shift along the optical axis
-constexpr double kSlack = 0.0015;        // sigma of stretch and tilt for unmodelled effects
-constexpr double kLittleSlack = 0.05;    // share of that variance for size and rotation
-constexpr double kMinVariance = 1e-9;    // variance added to all parameters
-constexpr double kMaxTurn = 0.05;        // max sigma of the rotation that rings leave open [rad]
+constexpr double kFocalOverWidth = 0.8;      // if no camera is known
+constexpr double kAlongShare = 0.7;          // share of the shift along the optical axis
+constexpr double kUnmodelledSigma = 0.0015;  // sigma of stretch and tilt for unmodelled effects
+constexpr double kUnmodelledShare = 0.05;    // share of that variance for size and rotation
+constexpr double kMinVariance = 1e-9;        // variance added to all parameters
+constexpr double kMaxTurn = 0.05;  // max sigma of the rotation that rings leave open [rad]
 
 // Changes of a view by one-sigma camera motions, one per column.
 Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pad,
@@ -56,7 +56,7 @@ HomographyChange carried(const HomographyChange& velocity,
   const auto here = typical_changes(from, camera, turn_rad, shift);
   const auto there = typical_changes(to, camera, turn_rad, shift);
   Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
-  normal.diagonal().array() += kSlack * kSlack;
+  normal.diagonal().array() += kUnmodelledSigma * kUnmodelledSigma;
   const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
   return velocity + (there - here) * motion;
 }
@@ -73,10 +73,10 @@ HomographyFilter HomographyFilter::after(double frames,
   next.homography_velocity =
       homography_velocity + frames * velocity_variance + 0.5 * frames * noise;
   next.velocity_variance = velocity_variance + noise;
-  const double much = kSlack * kSlack;
-  const double little = kLittleSlack * much;
+  const double large = kUnmodelledSigma * kUnmodelledSigma;
+  const double small = kUnmodelledShare * large;
   next.pose.diagonal() +=
-      (HomographyChange() << kMinVariance, kMinVariance, little, much, much, little, much, much)
+      (HomographyChange() << kMinVariance, kMinVariance, small, large, large, small, large, large)
           .finished();
   next.pose.diagonal().array() += kMinVariance;
   return next;

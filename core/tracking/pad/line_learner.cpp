@@ -64,7 +64,7 @@ void LineLearner::take(const ImageView& luma, const PadView& view) {
 }
 
 // Removes gradient maxima caused by the image border.
-void LineLearner::forget_maxima_at_border() {
+void LineLearner::clear_maxima_at_border() {
   const auto is_shown = [&](int x, int y) {
     const int pixel = y * kSize + x;
     return pixels_[static_cast<std::size_t>(pixel)] != 0;
@@ -93,9 +93,9 @@ Eigen::Vector2d LineLearner::pad_point_of(std::int32_t pixel) const {
 
 void LineLearner::learn(PadModel& model) {
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
-  const double least = kMinContrastShare * model.circles.front().contrast * kGradientOfStep;
-  map_.compute(above, {least / kGradientGain, least / kGradientGain});
-  forget_maxima_at_border();
+  const double min_gradient = kMinContrastShare * model.circles.front().contrast * kGradientOfStep;
+  map_.compute(above, {min_gradient / kGradientGain, min_gradient / kGradientGain});
+  clear_maxima_at_border();
   chains_.trace(map_);
   lines_.clear();
   for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);
@@ -141,8 +141,8 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   if (length < kMinLength) return;
   const Eigen::Vector2d middle = 0.5 * (from + to);
   for (const PadCircle& circle : model.circles) {
-    const auto is_beside = [&](const Eigen::Vector2d& place) {
-      return std::abs(place.norm() - circle.radius) < kBesideCircle;
+    const auto is_beside = [&](const Eigen::Vector2d& point) {
+      return std::abs(point.norm() - circle.radius) < kBesideCircle;
     };
     if (is_beside(from) && is_beside(middle) && is_beside(to)) return;
   }
@@ -168,10 +168,10 @@ PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
     const Gradient* here = map_.gradients() + pixel;
     const bool is_flat = std::abs(here->x) > std::abs(here->y);
     const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : map_.stride());
-    Eigen::Vector2d place = pad_point_of(pixel) - middle;
-    place[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
-    sum += place;
-    squares += place * place.transpose();
+    Eigen::Vector2d from_middle = pad_point_of(pixel) - middle;
+    from_middle[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
+    sum += from_middle;
+    squares += from_middle * from_middle.transpose();
     gradient += Eigen::Vector2d(here->x, here->y);
   }
   const auto count = static_cast<double>(pixels.size());

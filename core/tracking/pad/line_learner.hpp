@@ -42,7 +42,7 @@ class LineLearner {
   static constexpr int kSize = 208;              // of the top view [px]
   static constexpr double kPixel = 2.0 / kSize;  // [radii]
 
-  void forget_maxima_at_border();
+  void clear_maxima_at_border();
   void split(std::span<const std::int32_t> pixels, const PadModel& model);
   [[nodiscard]] PadLine line_through(std::span<const std::int32_t> pixels,
                                      const Eigen::Vector2d& from,

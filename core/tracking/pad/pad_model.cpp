@@ -65,25 +65,25 @@ class RadialProfile {
   // Share of the visible angles with a step of the same sign and at least half the size.
   [[nodiscard]] double agreement(int i) const {
     const double whole = step(i);
-    int seen = 0;
+    int visible = 0;
     int agreed = 0;
     for (int k = 0; k < kAngles; ++k) {
       const float outside = level(std::min(i + half_width_, kRadii - 1), k);
       const float inside = level(std::max(i - half_width_, 0), k);
       if (outside < 0.0F || inside < 0.0F) continue;
-      ++seen;
+      ++visible;
       agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
     }
-    return seen > 0 ? static_cast<double>(agreed) / seen : 0.0;
+    return visible > 0 ? static_cast<double>(agreed) / visible : 0.0;
   }
 
  private:
   [[nodiscard]] float level(int i, int k) const {
     const double radius = radius_at(i);
-    const auto seen = view_.at(radius * *(directions_.begin() + k));
-    if (!seen) return static_cast<float>(kUnknown);
-    const double x = seen->point.x();
-    const double y = seen->point.y();
+    const auto projected = view_.at(radius * *(directions_.begin() + k));
+    if (!projected) return static_cast<float>(kUnknown);
+    const double x = projected->point.x();
+    const double y = projected->point.y();
     if (!(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
       return static_cast<float>(kUnknown);
     }
@@ -91,16 +91,16 @@ class RadialProfile {
   }
 
   [[nodiscard]] double median(int i) const {
-    std::array<float, kAngles> seen;
-    auto end = seen.begin();
+    std::array<float, kAngles> levels;
+    auto end = levels.begin();
     for (int k = 0; k < kAngles; ++k) {
       const float here = level(i, k);
       if (here >= 0.0F) *end++ = here;
     }
-    const auto count = end - seen.begin();
+    const auto count = end - levels.begin();
     if (count < kMinVisible) return kUnknown;
-    std::nth_element(seen.begin(), seen.begin() + count / 2, end);
-    return seen[static_cast<std::size_t>(count / 2)];
+    std::nth_element(levels.begin(), levels.begin() + count / 2, end);
+    return levels[static_cast<std::size_t>(count / 2)];
   }
 
   const ImageView& luma_;

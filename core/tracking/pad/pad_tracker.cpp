@@ -102,18 +102,18 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
       views[count++] = view / view(2, 2);
     }
   }
-  double most = 0.0;
+  double max_contrast = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     auto model = learn_circles(window.luma, view_in(window, views[i]), ring_ratio_);
     if (!model) continue;
     double contrast = 0.0;
     for (const PadCircle& circle : model->circles) contrast += circle.contrast;
-    if (contrast <= most) continue;
-    most = contrast;
+    if (contrast <= max_contrast) continue;
+    max_contrast = contrast;
     model_ = std::move(*model);
     view_ = views[i];
   }
-  return most > 0.0;
+  return max_contrast > 0.0;
 }
 
 bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
@@ -243,12 +243,12 @@ HomographyChange PadTracker::best_hypothesis(std::span<const EdgeSample> samples
                                              double reach_px,
                                              double fit_px) {
   HomographyChange best = HomographyChange::Zero();
-  double most = explained(samples, best, fit_px);
+  double best_score = explained(samples, best, fit_px);
   const auto consider = [&](const std::optional<HomographyEstimate>& estimate) {
     if (!estimate) return;
     const double score = explained(samples, estimate->change, fit_px);
-    if (score <= most) return;
-    most = score;
+    if (score <= best_score) return;
+    best_score = score;
     best = estimate->change;
   };
   consider(solve_homography(samples, prior, HomographyChange::Zero(), reach_px, kEdgeSigmaPx, 3));

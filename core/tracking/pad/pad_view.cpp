@@ -10,13 +10,14 @@ namespace ellipse {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::optional<ProjectedPoint> PadView::at(const Vector2d& place) const {
+std::optional<ProjectedPoint> PadView::at(const Vector2d& pad_point) const {
   const Eigen::Matrix3d& h = ideal_from_pad;
-  const Vector3d seen = h * place.homogeneous();
-  if (!(seen.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
+  const Vector3d projected = h * pad_point.homogeneous();
+  if (!(projected.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
   ProjectedPoint result;
-  result.point = seen.hnormalized();
-  result.slope = (h.topLeftCorner<2, 2>() - result.point * h.bottomLeftCorner<1, 2>()) / seen.z();
+  result.point = projected.hnormalized();
+  result.slope =
+      (h.topLeftCorner<2, 2>() - result.point * h.bottomLeftCorner<1, 2>()) / projected.z();
   if (!lens.is_distorted()) return result;
   const auto shown = lens.picture_from_ideal(result.point);
   if (!shown) return std::nullopt;

@@ -23,7 +23,7 @@ struct PadView {
   LensView lens;
 
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
-  [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& place) const;
+  [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& pad_point) const;
 
   /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;

@@ -51,10 +51,10 @@ VisiblePart::VisiblePart(const PadView& view, const ImageView& luma)
   borders_.row(3) = rect.bottom * h.row(2) - h.row(1);
 }
 
-bool VisiblePart::is_visible_distorted(const Eigen::Vector2d& place) const {
-  const auto seen = view_.at(place);
-  return seen && seen->point.x() >= kMarginPx && seen->point.y() >= kMarginPx &&
-         seen->point.x() <= right_px_ && seen->point.y() <= bottom_px_;
+bool VisiblePart::is_visible_distorted(const Eigen::Vector2d& pad_point) const {
+  const auto projected = view_.at(pad_point);
+  return projected && projected->point.x() >= kMarginPx && projected->point.y() >= kMarginPx &&
+         projected->point.x() <= right_px_ && projected->point.y() <= bottom_px_;
 }
 
 Interval VisiblePart::clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {

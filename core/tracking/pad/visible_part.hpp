@@ -14,10 +14,10 @@ class VisiblePart {
  public:
   VisiblePart(const PadView& view, const ImageView& luma);
 
-  [[nodiscard]] bool has(const Eigen::Vector2d& place) const {
+  [[nodiscard]] bool has(const Eigen::Vector2d& pad_point) const {
     const bool is_within =
-        ((borders_.leftCols<2>() * place + borders_.col(2)).array() >= 0.0).all();
-    return is_within || (view_.lens.is_distorted() && is_visible_distorted(place));
+        ((borders_.leftCols<2>() * pad_point + borders_.col(2)).array() >= 0.0).all();
+    return is_within || (view_.lens.is_distorted() && is_visible_distorted(pad_point));
   }
 
   /// The visible part of a line, parameterized from 0 to 1; empty if end <= begin. With distortion
@@ -25,7 +25,7 @@ class VisiblePart {
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
-  [[nodiscard]] bool is_visible_distorted(const Eigen::Vector2d& place) const;
+  [[nodiscard]] bool is_visible_distorted(const Eigen::Vector2d& pad_point) const;
   [[nodiscard]] double farthest(const Eigen::Vector2d& from,
                                 const Eigen::Vector2d& to,
                                 double inside,

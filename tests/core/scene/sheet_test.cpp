@@ -40,14 +40,14 @@ TEST(Deformation, SeenAtInvertsPatternAt) {
   const Deformation deformation(
       {{{2.0, 1.0}, 0.3, {0.05, 0.1}, 0.0}, {{-1.0, 3.0}, 1.0, {0.04, -0.06}, 0.0}});
   for (double angle = 0.0; angle < 6.0; angle += 0.5) {
-    const Eigen::Vector2d place(std::cos(angle), std::sin(angle));
-    const Eigen::Vector2d seen = deformation.seen_at(place);
-    EXPECT_LE((deformation.pattern_at(seen) - place).norm(), 1e-10);
-    EXPECT_GT((seen - place).norm(), 1e-4);
+    const Eigen::Vector2d point(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d deformed = deformation.deformed_at(point);
+    EXPECT_LE((deformation.pattern_at(deformed) - point).norm(), 1e-10);
+    EXPECT_GT((deformed - point).norm(), 1e-4);
     const Eigen::Vector2d step(1e-5, -2e-5);
     const Eigen::Vector2d moved =
-        deformation.pattern_at(seen + step) - deformation.pattern_at(seen);
-    EXPECT_LE((moved - deformation.slope_at(seen) * step).norm(), 1e-8);
+        deformation.pattern_at(deformed + step) - deformation.pattern_at(deformed);
+    EXPECT_LE((moved - deformation.slope_at(deformed) * step).norm(), 1e-8);
   }
 }
 
