@@ -74,12 +74,12 @@ void Canvas::cover_line(const Vector2d& from, const Vector2d& to, double width_p
   const Vector2d along = length > 0.0 ? Vector2d(way / length) : Vector2d::Zero();
   const double reach = 0.5 * width_px + 0.5;
   const double max_share = std::min(1.0, width_px);  // of a pixel, for lines thinner than 1 px
-  const Vector2d least = from.cwiseMin(to).array() - reach;
-  const Vector2d most = from.cwiseMax(to).array() + reach;
-  const int bottom = static_cast<int>(std::min(height_ - 1.0, std::floor(most.y())));
-  for (int y = static_cast<int>(std::max(0.0, std::ceil(least.y()))); y <= bottom; ++y) {
-    double left = least.x();
-    double right = most.x();
+  const Vector2d box_min = from.cwiseMin(to).array() - reach;
+  const Vector2d box_max = from.cwiseMax(to).array() + reach;
+  const int bottom = static_cast<int>(std::min(height_ - 1.0, std::floor(box_max.y())));
+  for (int y = static_cast<int>(std::max(0.0, std::ceil(box_min.y()))); y <= bottom; ++y) {
+    double left = box_min.x();
+    double right = box_max.x();
     if (std::abs(along.y()) > 1e-6) {  // restricts the row to the line
       const double middle = from.x() + (y - from.y()) * along.x() / along.y();
       left = std::max(left, middle - reach / std::abs(along.y()));

@@ -87,7 +87,7 @@ void attach_composition(GstBuffer* buffer, const Canvas& canvas) {
   GstVideoOverlayComposition* composition = below != nullptr
                                                 ? gst_video_overlay_composition_copy(below->overlay)
                                                 : gst_video_overlay_composition_new(nullptr);
-  for (const auto& [place, block] : blocks) {
+  for (const auto& [position, block] : blocks) {
     if (block.left >= block.right) continue;
     GstVideoOverlayRectangle* rectangle = rectangle_of(block);
     gst_video_overlay_composition_add_rectangle(composition, rectangle);

@@ -60,8 +60,8 @@ std::optional<Label> make_label(std::string text, int frame_width, int frame_hei
            2 * side_margin_px(scale);
   };
   double scale = (5.0 + frame_height / 60.0) / kCapitalPx;
-  const int wanted = width_at(scale);
-  if (wanted > frame_width) scale *= static_cast<double>(frame_width) / wanted;
+  const int full_width = width_at(scale);
+  if (full_width > frame_width) scale *= static_cast<double>(frame_width) / full_width;
   const int width = width_at(scale);
   if (scale < kMinScale || width > frame_width) return std::nullopt;
   return Label{std::move(text), scale, {0, 0, width, height_px(scale)}};

@@ -89,13 +89,13 @@ void attach_object(GstBuffer* buffer,
   if (meta.id != 0) add_tracking(relations, sighting, object.id);
 }
 
-std::optional<ellipse::Rect> next_object(GstBuffer* buffer, gpointer* state, GQuark wanted) {
+std::optional<ellipse::Rect> next_object(GstBuffer* buffer, gpointer* state, GQuark object_class) {
   GstAnalyticsRelationMeta* relations = gst_buffer_get_analytics_relation_meta(buffer);
   if (relations == nullptr) return std::nullopt;
   const GstAnalyticsMtdType type = gst_analytics_od_mtd_get_mtd_type();
   GstAnalyticsODMtd object;
   while (gst_analytics_relation_meta_iterate(relations, state, type, &object) != FALSE) {
-    if (wanted != 0 && gst_analytics_od_mtd_get_obj_type(&object) != wanted) continue;
+    if (object_class != 0 && gst_analytics_od_mtd_get_obj_type(&object) != object_class) continue;
     ellipse::Rect box;
     gst_analytics_od_mtd_get_location(&object, &box.x, &box.y, &box.width, &box.height, nullptr);
     return box;
@@ -116,7 +116,7 @@ void attach_object(GstBuffer* /*buffer*/,
 
 std::optional<ellipse::Rect> next_object(GstBuffer* /*buffer*/,
                                          gpointer* /*state*/,
-                                         GQuark /*wanted*/) {
+                                         GQuark /*object_class*/) {
   return std::nullopt;
 }
 

@@ -37,8 +37,8 @@ void attach_object(GstBuffer* buffer,
 
 /// Iterates over the objects that elements upstream have detected. Allocates nothing.
 /// @param state   nullptr before the first call.
-/// @param wanted  The class of the objects; 0 = any.
+/// @param object_class  The class of the objects; 0 = any.
 /// @return The upright bounding box [px], which may reach beyond the frame; nullopt after the last.
 [[nodiscard]] std::optional<ellipse::Rect> next_object(GstBuffer* buffer,
                                                        gpointer* state,
-                                                       GQuark wanted);
+                                                       GQuark object_class);

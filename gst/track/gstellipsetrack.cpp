@@ -74,8 +74,8 @@ static std::string validation_error(const TrackProperties& properties) {
 }
 
 // Applies a change if the result is valid. In the state NULL an invalid combination is kept in
-// `wanted` and takes effect once another change makes it valid: the two values of a pair may be set
-// in any order. @return Why the change is rejected; empty if it is accepted.
+// `pending` and takes effect once another change makes it valid: the two values of a pair may be
+// set in any order. @return Why the change is rejected; empty if it is accepted.
 static std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
   TrackProperties next = shared.preset.value_or(shared.properties);
   change.apply_to(next);
@@ -84,9 +84,9 @@ static std::string changed(TrackShared& shared, const PropertyChange& change, bo
     return "";
   }
   if (is_stopped) {
-    if (!shared.wanted) shared.wanted = shared.properties;
-    change.apply_to(*shared.wanted);
-    if (validation_error(*shared.wanted).empty()) next = *shared.wanted;
+    if (!shared.pending) shared.pending = shared.properties;
+    change.apply_to(*shared.pending);
+    if (validation_error(*shared.pending).empty()) next = *shared.pending;
   }
   std::string misfit = validation_error(next);
   if (misfit.empty()) shared.properties = next;
@@ -102,12 +102,12 @@ static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
 
 // A rejected value that a controller sets at every frame is reported once, until a value is
 // accepted again.
-static bool is_already_reported(GstEllipseTrack* self, const GParamSpec* pspec, bool is_refused) {
+static bool is_already_reported(GstEllipseTrack* self, const GParamSpec* pspec, bool is_rejected) {
   const bool is_repeated = is_controlled(self, pspec);
   GST_OBJECT_LOCK(self);
-  std::set<std::string>& refused = self->shared->refused;
-  const bool is_news = is_refused ? refused.insert(pspec->name).second : false;
-  if (!is_refused) refused.erase(pspec->name);
+  std::set<std::string>& rejected = self->shared->rejected;
+  const bool is_news = is_rejected ? rejected.insert(pspec->name).second : false;
+  if (!is_rejected) rejected.erase(pspec->name);
   GST_OBJECT_UNLOCK(self);
   return is_repeated && !is_news;
 }
@@ -136,11 +136,11 @@ static std::string try_set(GstEllipseTrack* self,
     const PropertyChange change(which, value);  // may read a file
     const ObjectLock lock(self);
     std::string misfit = changed(shared, change, is_stopped(self));
-    shared.senseless.erase(name);
+    shared.value_errors.erase(name);
     return misfit;
   } catch (const std::exception& error) {
     const ObjectLock lock(self);
-    if (is_stopped(self)) shared.senseless[name] = error.what();
+    if (is_stopped(self)) shared.value_errors[name] = error.what();
     return error.what();
   }
 }
@@ -198,13 +198,13 @@ static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* na
   gboolean is_loaded = load_one_by_one(preset, name);
   std::string refusal;
   GST_OBJECT_LOCK(self);
-  const TrackProperties wanted = shared.preset.value_or(shared.properties);
+  const TrackProperties loaded = shared.preset.value_or(shared.properties);
   try {
-    wanted.tracker.validate();
+    loaded.tracker.validate();
     if (is_loaded) {
-      shared.properties = wanted;
-      shared.wanted.reset();
-      shared.senseless.clear();
+      shared.properties = loaded;
+      shared.pending.reset();
+      shared.value_errors.clear();
     }
   } catch (const std::exception& error) {
     refusal = error.what();
@@ -313,9 +313,9 @@ static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
 static std::string obstacle_to_start(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const ObjectLock lock(self);
-  std::string obstacle = shared.wanted ? validation_error(*shared.wanted) : "";
-  if (!shared.senseless.empty()) obstacle = shared.senseless.begin()->second;
-  if (obstacle.empty()) shared.wanted.reset();
+  std::string obstacle = shared.pending ? validation_error(*shared.pending) : "";
+  if (!shared.value_errors.empty()) obstacle = shared.value_errors.begin()->second;
+  if (obstacle.empty()) shared.pending.reset();
   return obstacle;
 }
 

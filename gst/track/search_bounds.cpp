@@ -43,17 +43,17 @@ ellipse::Rect box_around_regions(GstBuffer* buffer,
                                  const std::string& type,
                                  const ellipse::Rect& frame) {
   ellipse::Rect box;
-  const GQuark wanted = type.empty() ? 0 : g_quark_try_string(type.c_str());
-  if (!type.empty() && wanted == 0) return box;
+  const GQuark type_quark = type.empty() ? 0 : g_quark_try_string(type.c_str());
+  if (!type.empty() && type_quark == 0) return box;
   gpointer state = nullptr;
   while (GstMeta* meta = gst_buffer_iterate_meta_filtered(
              buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
-    if (wanted != 0 && roi->roi_type != wanted) continue;
+    if (type_quark != 0 && roi->roi_type != type_quark) continue;
     box = united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
   }
   state = nullptr;
-  while (const auto object = next_object(buffer, &state, wanted)) {
+  while (const auto object = next_object(buffer, &state, type_quark)) {
     box = united(box, clipped(object->x, object->y, object->width, object->height, frame));
   }
   return box;

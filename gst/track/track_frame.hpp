@@ -42,11 +42,11 @@ struct TrackShared {
   GstClockTime reported_latency = 0;
   bool is_live = false;
   bool reset_is_due = false;
-  std::set<std::string> refused;  ///< Properties whose last new value was rejected.
+  std::set<std::string> rejected;  ///< Properties whose last new value was rejected.
   /// In the state NULL: all requested values, which may not be valid together yet.
-  std::optional<TrackProperties> wanted;
+  std::optional<TrackProperties> pending;
   /// Errors of values set in the state NULL that are invalid by themselves, by property name.
-  std::map<std::string, std::string> senseless;
+  std::map<std::string, std::string> value_errors;
 };
 
 struct _GstEllipseTrack {

@@ -114,12 +114,12 @@ void write_rect(const ellipse::Rect& rect, GValue* value) {
 }
 
 bool analytics_from(const GValue* value) {
-  const bool is_wanted = g_value_get_boolean(value) != FALSE;
-  if (is_wanted && !has_analytics()) {
+  const bool is_enabled = g_value_get_boolean(value) != FALSE;
+  if (is_enabled && !has_analytics()) {
     throw std::invalid_argument(
         "attach-analytics needs a build with GStreamer 1.24 or later and gstreamer-analytics-1.0");
   }
-  return is_wanted;
+  return is_enabled;
 }
 
 // nullptr if the property is not one of the tracker's numbers.

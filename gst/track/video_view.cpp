@@ -85,16 +85,16 @@ void report_unsupported_caps(GstBaseTransform* element, GstCaps* caps) {
   gst_clear_caps(&begun);
   if (!is_stream) return;
   GstCaps* served = gst_pad_get_pad_template_caps(sink);
-  gchar* refused = gst_caps_to_string(caps);
+  gchar* caps_text = gst_caps_to_string(caps);
   GST_ELEMENT_ERROR(
       element,
       STREAM,
       FORMAT,
       ("Cannot read %s. Put videoconvert upstream, or use one of %s, in system memory.",
-       refused,
+       caps_text,
        formats_of(served).c_str()),
       (nullptr));
-  g_free(refused);
+  g_free(caps_text);
   gst_caps_unref(served);
 }
 
