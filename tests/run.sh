@@ -10,7 +10,7 @@
 # Ends with the failures and a line "N passed, N failed, N skipped".
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
-least_coverage=90
+min_coverage=90
 passed=0
 failed=0
 skipped=0
@@ -106,7 +106,7 @@ case "${1:-}" in
     find "$project/build-coverage" -name '*.gcda' -delete
     run build-coverage --no-suite long
     check gcovr --root "$project" --object-directory "$project/build-coverage" \
-      --filter "$project/core/" --filter "$project/gst/" --fail-under-line "$least_coverage"
+      --filter "$project/core/" --filter "$project/gst/" --fail-under-line "$min_coverage"
     ;;
   --long)
     check build build

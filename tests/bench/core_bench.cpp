@@ -106,12 +106,12 @@ TargetEdge target_edge_of(const Frame& frame) {
   TargetEdge edge;
   edge.ellipse = frame.truth.outer_edge.value();
   cv::dilate(reference.edges(), edge.thick_edges, cv::Mat());
-  double most = 0.0;
+  double max_pixels = 0.0;
   for (const auto& contour : reference.contours()) {
     const double on_ellipse = ellipse::contour_overlap(contour, edge.ellipse);
     const double pixels = on_ellipse * static_cast<double>(contour.size());
-    if (pixels > most) edge.contour = contour;
-    most = std::max(most, pixels);
+    if (pixels > max_pixels) edge.contour = contour;
+    max_pixels = std::max(max_pixels, pixels);
   }
   for (const cv::Point& pixel : edge.contour) edge.points.emplace_back(pixel.x, pixel.y);
   return edge;

@@ -70,8 +70,8 @@ std::int64_t iterations_at(const Size& size) {
 }  // namespace
 
 std::size_t there_and_back(std::size_t turn, std::size_t count) {
-  const std::size_t place = turn % (2 * count - 2);
-  return std::min(place, 2 * count - 2 - place);
+  const std::size_t phase = turn % (2 * count - 2);
+  return std::min(phase, 2 * count - 2 - phase);
 }
 
 double seconds(const std::function<void()>& call) {

@@ -137,11 +137,11 @@ TEST_F(Allocations, NoneInScaler) {
 TEST_F(Allocations, NoneInArcDetector) {
   for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
     ArcDetector detector;
-    for (const int least_contour : {50, 20}) {  // the default, and shorter
+    for (const int min_contour : {50, 20}) {  // the default, and shorter
       Thresholds thresholds;
-      thresholds.min_contour_size = least_contour;
+      thresholds.min_contour_size = min_contour;
       const auto detect = [&] { return detector.detect(picture.view(), thresholds).size(); };
-      EXPECT_EQ(steady_allocations_of(detect), 0) << least_contour;
+      EXPECT_EQ(steady_allocations_of(detect), 0) << min_contour;
     }
   }
 }

@@ -53,42 +53,42 @@ INSTANTIATE_TEST_SUITE_P(Lens, DistortedPicture, testing::Values("barrel", "fish
 TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
   ArcDetector detector;
   for (const double time_s : {0.0, 1.0, 2.5, 4.0}) {
-    const Shot seen = shot(time_s);
-    const auto target = select_target(detector.detect({seen.picture.view(), lens_}, {}));
-    ASSERT_TRUE(target && seen.truth.outer_edge) << time_s;
-    EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.15) << time_s;
+    const Shot frame = shot(time_s);
+    const auto target = select_target(detector.detect({frame.picture.view(), lens_}, {}));
+    ASSERT_TRUE(target && frame.truth.outer_edge) << time_s;
+    EXPECT_LT(max_difference_px(target->ellipse, *frame.truth.outer_edge), 0.15) << time_s;
   }
 }
 
 // Without a lens model, the detected ellipse differs from that in the ideal plane.
 TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
   ArcDetector detector;
-  const Shot seen = shot(1.0);
-  const auto target = select_target(detector.detect(seen.picture.view(), {}));
-  const bool is_same = target && max_difference_px(target->ellipse, *seen.truth.outer_edge) < 0.45;
+  const Shot frame = shot(1.0);
+  const auto target = select_target(detector.detect(frame.picture.view(), {}));
+  const bool is_same = target && max_difference_px(target->ellipse, *frame.truth.outer_edge) < 0.45;
   EXPECT_FALSE(is_same);
 }
 
 TEST_P(DistortedPicture, ContoursAreTakenToTheIdealPlane) {
   ContourDetector detector;
   scene_.flight.lowest *= 4.0;  // so small that its distorted image is nearly an ellipse
-  const Shot seen = shot(1.0);
-  const auto target = select_target(detector.detect({seen.picture.view(), lens_}, {}));
-  ASSERT_TRUE(target && seen.truth.outer_edge);
-  EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 0.5);
+  const Shot frame = shot(1.0);
+  const auto target = select_target(detector.detect({frame.picture.view(), lens_}, {}));
+  ASSERT_TRUE(target && frame.truth.outer_edge);
+  EXPECT_LT(max_difference_px(target->ellipse, *frame.truth.outer_edge), 0.5);
 }
 
 TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
-  const Shot seen = shot(1.0);
-  ASSERT_TRUE(seen.truth.outer_edge);
-  Ellipse guess = translated(*seen.truth.outer_edge, 0.4, -0.3);
+  const Shot frame = shot(1.0);
+  ASSERT_TRUE(frame.truth.outer_edge);
+  Ellipse guess = translated(*frame.truth.outer_edge, 0.4, -0.3);
   guess.semi_major += 0.3;
-  const ellipse::Picture picture(seen.picture.view(), lens_);
+  const ellipse::Picture picture(frame.picture.view(), lens_);
   const auto refined = refined_on_picture(picture, guess, Polarity::kBrightInside, 200.0);
   const auto other = refined_on_picture(picture, guess, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined || other);
   const Ellipse& e = refined ? refined->ellipse : other->ellipse;
-  EXPECT_LT(max_difference_px(e, *seen.truth.outer_edge), 0.1);
+  EXPECT_LT(max_difference_px(e, *frame.truth.outer_edge), 0.1);
 }
 
 TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
@@ -98,7 +98,7 @@ TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
   Tracker tracker(settings);
   SceneRenderer renderer(scene_);
   Picture picture(kWidth, kHeight);
-  double least_visible = 1.0;
+  double min_visible = 1.0;
   int right = 0;
   int shown = 0;
   for (int i = 0; i < 130; ++i) {
@@ -107,13 +107,13 @@ TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
     const auto target = tracker.process(picture.view(), i * 33'333'333LL);
     if (!truth.outer_edge || truth.visible_fraction < 0.3) continue;
     ++shown;
-    least_visible = std::min(least_visible, truth.visible_fraction);
+    min_visible = std::min(min_visible, truth.visible_fraction);
     const double tolerance = 0.02 * truth.outer_edge->semi_major;
     right += target && max_difference_px(target->ellipse, *truth.outer_edge) < tolerance ? 1 : 0;
     if (!target) continue;
     EXPECT_NEAR(target->visible_fraction, truth.visible_fraction, 0.03) << i;
   }
-  EXPECT_LT(least_visible, 0.5);
+  EXPECT_LT(min_visible, 0.5);
   EXPECT_GT(shown, 60);
   EXPECT_GE(right, 0.99 * shown);
 }
@@ -124,11 +124,11 @@ TEST_P(DistortedPicture, IsFollowedByTheirDetectionsToo) {
   settings.tracking = TrackingMode::kRedetect;
   Tracker tracker(settings);
   for (int i = 0; i < 10; ++i) {
-    const Shot seen = shot(1.0 + i / 30.0);
-    const auto target = tracker.process(seen.picture.view(), i * 33'333'333LL);
+    const Shot frame = shot(1.0 + i / 30.0);
+    const auto target = tracker.process(frame.picture.view(), i * 33'333'333LL);
     ASSERT_TRUE(target) << i;
     EXPECT_EQ(target->state == TargetState::kTracked, i > 0);
-    EXPECT_LT(max_difference_px(target->ellipse, *seen.truth.outer_edge), 1.0) << i;
+    EXPECT_LT(max_difference_px(target->ellipse, *frame.truth.outer_edge), 1.0) << i;
   }
 }
 

@@ -97,9 +97,9 @@ TEST(Thresholds, ShrinkWithThePicture) {
 TEST(TrackerSettings, EachNumberIsSetByItsName) {
   for (const SettingInfo& info : setting_infos()) {
     TrackerSettings settings;
-    const double wanted = info.is_integer ? 100.0 : 0.5 * info.range.max;
-    set_by_name(settings, info.name, std::to_string(wanted));
-    EXPECT_EQ(info.get(settings), wanted) << info.name;
+    const double value = info.is_integer ? 100.0 : 0.5 * info.range.max;
+    set_by_name(settings, info.name, std::to_string(value));
+    EXPECT_EQ(info.get(settings), value) << info.name;
   }
 }
 

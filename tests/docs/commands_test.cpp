@@ -177,12 +177,12 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
 
   // Checks a recording: each line has the time and the target of a frame of the video.
   void check_clock(const std::string& video, const std::string& written) const {
-    const auto seen = json_lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
+    const auto viewed = json_lines_of(view_in("filesrc location=" + file(video) + " ! decodebin"));
     const auto lines = json_lines_of(support::contents_of(file(written)));
-    ASSERT_EQ(seen.size(), lines.size());
+    ASSERT_EQ(viewed.size(), lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      EXPECT_NEAR(seen[i].pts_ns, lines[i].pts_ns, 1e6) << "frame " << i;
-      EXPECT_NEAR(std::hypot(seen[i].cx - lines[i].cx, seen[i].cy - lines[i].cy), 0.0, 1.0)
+      EXPECT_NEAR(viewed[i].pts_ns, lines[i].pts_ns, 1e6) << "frame " << i;
+      EXPECT_NEAR(std::hypot(viewed[i].cx - lines[i].cx, viewed[i].cy - lines[i].cy), 0.0, 1.0)
           << "frame " << i;
     }
   }

@@ -45,18 +45,18 @@ TEST_P(Figures, AreAsTheDocumentSays) {
   const support::TemporaryFolder folder;
   support::ShellJob job(text, folder.file(""), "job");
   EXPECT_EQ(job.wait_for_end(), 0) << text << job.errors();
-  std::smatch told;
+  std::smatch counts;
   const std::regex comment("# a target in (\\d+) of (\\d+) frames\n");
-  if (!std::regex_search(text, told, comment)) {
+  if (!std::regex_search(text, counts, comment)) {
     EXPECT_TRUE(text.starts_with("# ")) << "neither a number of targets nor a reason: " << text;
     EXPECT_NE(job.output(), "") << text;
     return;
   }
   const auto lines = recipes::json_lines_of(job.output());
-  EXPECT_EQ(lines.size(), std::stoul(told[2])) << text;
+  EXPECT_EQ(lines.size(), std::stoul(counts[2])) << text;
   const auto found = std::count_if(
       lines.begin(), lines.end(), [](const recipes::JsonLine& line) { return line.has_target; });
-  const double expected = std::stod(told[1]);
+  const double expected = std::stod(counts[1]);
   EXPECT_NEAR(static_cast<double>(found), expected, expected == 0.0 ? 0.0 : 2.0) << text;
 }
 

@@ -146,9 +146,10 @@ class HandMade : public testing::Test {
     methods_.push_back(std::make_unique<Scripted>(answers));
   }
 
-  Evaluation run(Rule rule, int most = 100) {
-    return evaluate(
-        sequences(), methods_, rule, [most](const Frame&) mutable { return --most > 0; });
+  Evaluation run(Rule rule, int max_frames = 100) {
+    return evaluate(sequences(), methods_, rule, [max_frames](const Frame&) mutable {
+      return --max_frames > 0;
+    });
   }
   std::vector<Sequence>& sequences() {
     all_ = {sequence_};
@@ -250,14 +251,14 @@ TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
 }
 
 TEST_F(HandMade, WhatIsToldIsNotJudged) {
-  class Told : public Method {
+  class GivenTruth : public Method {
    public:
-    Told() : Method("told") {}
+    GivenTruth() : Method("told") {}
     Answer find(const Frame&, const cv::Mat&, std::int64_t) override {
       return {kTarget, 1, std::nan(""), true};
     }
   };
-  methods_[0] = std::make_unique<Told>();
+  methods_[0] = std::make_unique<GivenTruth>();
   const Evaluation evaluation = run(Rule::kIou);
   EXPECT_EQ(measures(evaluation).count(Outcome::kNotJudged), static_cast<int>(kFrames));
   std::ostringstream lines;

@@ -105,13 +105,13 @@ TEST(CameraView, PutsThePadWhereTheVehicleSeesIt) {
   Motion vehicle;
   vehicle.position = {-1.0, 0.5, 6.0};  // the pad is ahead of it, and to its right
   const Platform platform(Course::kStraight, 0.0, 0.0);
-  const auto seen = ellipse::project_circle(view_of(rig, vehicle, platform).image_from_pad, 1.0);
-  ASSERT_TRUE(seen);
-  EXPECT_LT(seen->cy, rig.camera.cy);
-  EXPECT_GT(seen->cx, rig.camera.cx);
+  const auto outline = ellipse::project_circle(view_of(rig, vehicle, platform).image_from_pad, 1.0);
+  ASSERT_TRUE(outline);
+  EXPECT_LT(outline->cy, rig.camera.cy);
+  EXPECT_GT(outline->cx, rig.camera.cx);
   const double height = vehicle.position.z() + rig.position.z();
-  EXPECT_NEAR(seen->cx, rig.camera.cx + rig.camera.fx * 0.5 / height, 1e-6);
-  EXPECT_NEAR(seen->semi_major, rig.camera.fx * rig.pad_radius / height, 1e-6);
+  EXPECT_NEAR(outline->cx, rig.camera.cx + rig.camera.fx * 0.5 / height, 1e-6);
+  EXPECT_NEAR(outline->semi_major, rig.camera.fx * rig.pad_radius / height, 1e-6);
 }
 
 TEST(CameraView, FindsTheWayBackToThePad) {
@@ -182,13 +182,13 @@ class Hover {
   void fly_for(double duration_s, bool is_visible, double visible_fraction = 1.0) {
     const int frames = static_cast<int>(std::lround(30.0 * duration_s));
     for (int i = 0; i < frames; ++i, ++frame_) {
-      Observation seen;
-      seen.time_s = frame_ / 30.0;
-      seen.own = own_;
-      if (is_visible) seen.pad = aside_ - own_.position;
-      seen.error = error_;
-      seen.visible_fraction = visible_fraction;
-      last_ = controller_->update(seen.time_s, own_, seen);
+      Observation observation;
+      observation.time_s = frame_ / 30.0;
+      observation.own = own_;
+      if (is_visible) observation.pad = aside_ - own_.position;
+      observation.error = error_;
+      observation.visible_fraction = visible_fraction;
+      last_ = controller_->update(observation.time_s, own_, observation);
       own_.velocity = last_.velocity;
       own_.position += last_.velocity / 30.0;
     }

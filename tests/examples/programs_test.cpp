@@ -213,9 +213,9 @@ TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   std::ifstream in(folder_ / "json");
   const std::string json((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const std::size_t place = json.find("\"method\":\"always wrong\"");
-  ASSERT_NE(place, std::string::npos) << json;
-  EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", place), std::string::npos) << json;
+  const std::size_t position = json.find("\"method\":\"always wrong\"");
+  ASSERT_NE(position, std::string::npos) << json;
+  EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", position), std::string::npos) << json;
 }
 
 TEST_F(Programs, EvaluateReadsAFolderOfDataSetsIntoOneTable) {

@@ -24,7 +24,7 @@ const ellipse::Ellipse kOther{60.0, 60.0, 30.0, 30.0, 0.0};
 constexpr double kOut = -1.0;  // nothing of the target is in view
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-enum class Says { kRight, kNear, kWrong, kNone, kTold };
+enum class Says { kRight, kNear, kWrong, kNone, kGiven };
 
 struct Step {
   double visible;
@@ -40,8 +40,8 @@ Result result_of(const Step& step) {
   ellipse::Ellipse half = step.visible > 0.0 ? kTarget : kAround;
   Result result;
   result.processing_ms = 2.0;
-  if (step.says == Says::kRight || step.says == Says::kTold) result.answer = half;
-  result.is_given = step.says == Says::kTold;
+  if (step.says == Says::kRight || step.says == Says::kGiven) result.answer = half;
+  result.is_given = step.says == Says::kGiven;
   if (result.is_given) result.processing_ms = std::nan("");
   half.cx += 0.03 * half.semi_major;
   half.semi_major *= 0.5;
@@ -52,9 +52,9 @@ Result result_of(const Step& step) {
 }
 
 // One method's prepared answers to some sequences.
-class Told {
+class PreparedAnswers {
  public:
-  explicit Told(const std::vector<std::vector<Step>>& steps) {
+  explicit PreparedAnswers(const std::vector<std::vector<Step>>& steps) {
     evaluation_.methods.push_back({"told", {}, {}});
     for (const auto& list : steps) sequences_.push_back({"hand", "made", frames_of(list), {}});
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -81,7 +81,7 @@ class Told {
 };
 
 TrackingMeasures measured(const std::vector<Step>& steps) {
-  return Told({steps}).measures();
+  return PreparedAnswers({steps}).measures();
 }
 
 TEST(Tracking, SortsFramesByTheVisiblePart) {
@@ -167,19 +167,19 @@ TEST(Tracking, CountsFramesUntilALostTargetIsRightAgain) {
   // Never lost; lost in full view; target given.
   EXPECT_EQ(returns({{0.2, Says::kRight}, {0.1, Says::kNear}, missed, found}), List{});
   EXPECT_EQ(returns({missed, found}), List{});
-  EXPECT_EQ(returns({gone, missed, {0.8, Says::kTold}, found}), List{});
+  EXPECT_EQ(returns({gone, missed, {0.8, Says::kGiven}, found}), List{});
 }
 
 TEST(Tracking, WhatWasToldCountsAsGivenAlone) {
-  const TrackingMeasures m = measured({{1.0, Says::kTold}, {1.0, Says::kRight}});
+  const TrackingMeasures m = measured({{1.0, Says::kGiven}, {1.0, Says::kRight}});
   EXPECT_EQ(m.given, 1);
   EXPECT_EQ(m.ranges[0].frames, 1);
   EXPECT_EQ(m.times_ms, std::vector<double>{2.0});
 }
 
 TEST(Tracking, EachSequenceBeginsAfresh) {
-  const Told two({{{1.0, Says::kRight}, {kOut, Says::kNone}},
-                  {{0.2, Says::kWrong}, {0.8, Says::kNone}, {0.8, Says::kRight}}});
+  const PreparedAnswers two({{{1.0, Says::kRight}, {kOut, Says::kNone}},
+                             {{0.2, Says::kWrong}, {0.8, Says::kNone}, {0.8, Says::kRight}}});
   const TrackingMeasures m = two.measures();
   EXPECT_TRUE(m.returns.empty());
   EXPECT_EQ(m.wrong(), 1);  // before the second sequence begins
@@ -189,18 +189,18 @@ TEST(Tracking, EachSequenceBeginsAfresh) {
 }
 
 TEST(Tracking, TablesShowSharesAndFrames) {
-  const Told told({{{1.0, Says::kRight},
-                    {0.2, Says::kWrong},
-                    {0.8, Says::kNone},
-                    {0.8, Says::kRight},
-                    {kOut, Says::kWrong},
-                    {kOut, Says::kNone},
-                    {0.7, Says::kNone}}});
+  const PreparedAnswers answers({{{1.0, Says::kRight},
+                                  {0.2, Says::kWrong},
+                                  {0.8, Says::kNone},
+                                  {0.8, Says::kRight},
+                                  {kOut, Says::kWrong},
+                                  {kOut, Says::kNone},
+                                  {0.7, Says::kNone}}});
   using Rows = std::vector<std::vector<std::string>>;
-  EXPECT_EQ(visibility_table(told.evaluation(), "hand").rows,
+  EXPECT_EQ(visibility_table(answers.evaluation(), "hand").rows,
             (Rows{{"60 % and more", "told", "4", "0.5000", "0.5000", "0.5000", "0.0000", "0.5000"},
                   {"15 to 30 %", "told", "1", "0.0000", "0.0000", "0.0000", "1.0000", "0.0000"}}));
-  const Rows following = following_table(told.evaluation(), "hand").rows;
+  const Rows following = following_table(answers.evaluation(), "hand").rows;
   EXPECT_EQ(following,
             (Rows{{"told",
                    "2",
@@ -216,7 +216,7 @@ TEST(Tracking, TablesShowSharesAndFrames) {
                    "2.000",
                    "0.000"}}));
   std::ostringstream json;
-  write_json_tracking(json, told.measures());
+  write_json_tracking(json, answers.measures());
   EXPECT_NE(json.str().find("\"15 to 30 %\":{\"frames\":1,\"right\":0"), std::string::npos);
   EXPECT_NE(json.str().find("\"frames_to_return_max\":null"), std::string::npos) << json.str();
 }

@@ -110,8 +110,8 @@ inline void set_number(GstElement* element, GParamSpec* spec, double number) {
 inline void set_at_random(GstElement* element, GParamSpec* spec, ellipse::Random& random) {
   const bool is_extreme = random.below(8) == 0;
   const auto which = static_cast<std::size_t>(random.below(int(kExtremes.size())));
-  const double most = std::array{1.0, 5.0, 1000.0}.at(static_cast<std::size_t>(random.below(3)));
-  set_number(element, spec, is_extreme ? kExtremes.at(which) : random.between(0.0, most));
+  const double max = std::array{1.0, 5.0, 1000.0}.at(static_cast<std::size_t>(random.below(3)));
+  set_number(element, spec, is_extreme ? kExtremes.at(which) : random.between(0.0, max));
 }
 
 /// Suppresses warnings and rejected values, of which there are thousands, while it exists.

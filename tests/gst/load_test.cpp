@@ -114,10 +114,10 @@ TEST(TrackStats, TellsTimesOfTheLastFrames) {
   EXPECT_EQ(stats.latency(), 0U);
   for (guint64 i = 0; i < 50; ++i) stats.add_analysed(std::nullopt, GST_SECOND);
   for (guint64 i = 1; i <= 1024; ++i) stats.add_analysed(std::nullopt, i * GST_USECOND);
-  const Owned<GstStructure> told(stats.to_structure());
+  const Owned<GstStructure> structure(stats.to_structure());
   const auto time = [&](const char* name) {
     guint64 value = 0;
-    EXPECT_TRUE(gst_structure_get_uint64(told.get(), name, &value)) << name;
+    EXPECT_TRUE(gst_structure_get_uint64(structure.get(), name, &value)) << name;
     return value;
   };
   EXPECT_EQ(time("processing-time-median"), 513 * GST_USECOND);
@@ -138,8 +138,8 @@ TEST(TrackStats, TellsPredictedFromTracked) {
   }
   stats.add_analysed(std::nullopt, 1);
   stats.add_skipped(Skip::kLate);
-  const Owned<GstStructure> told(stats.to_structure());
-  gchar* text = gst_structure_to_string(told.get());
+  const Owned<GstStructure> structure(stats.to_structure());
+  gchar* text = gst_structure_to_string(structure.get());
   for (const char* part : {"frames=(guint64)6",
                            "detected=(guint64)1",
                            " tracked=(guint64)2",
@@ -155,7 +155,7 @@ TEST(EllipseTrackLoad, SearchesCoarserThenSkipsAndSaysSo) {
   const auto harness = tracker("max-processing-time=1 tracking=none messages=none");
   GstElement* element = element_of(harness);
   BusTap bus(element);
-  std::string told;
+  std::string steps;
   for (int i = 0; i < 22; ++i) {
     const auto out = push(harness, gray_buffer_of(ring_picture()));
     ASSERT_TRUE(out);  // no frame is dropped
@@ -181,9 +181,9 @@ TEST(EllipseTrackLoad, SearchesCoarserThenSkipsAndSaysSo) {
                                   &skipped,
                                   nullptr));
     EXPECT_TRUE(is_overloaded);
-    told += std::to_string(i) + ":" + std::to_string(scale) + "/" + std::to_string(skipped) + " ";
+    steps += std::to_string(i) + ":" + std::to_string(scale) + "/" + std::to_string(skipped) + " ";
   }
-  EXPECT_EQ(told, "2:2/0 5:4/0 8:8/0 11:8/1 17:8/3 ");
+  EXPECT_EQ(steps, "2:2/0 5:4/0 8:8/0 11:8/1 17:8/3 ");
   EXPECT_EQ(stat(element, "analysed"), 16U);
   EXPECT_EQ(stat(element, "skipped-load"), 6U);
 }

@@ -105,16 +105,16 @@ TEST(EllipseTestSrc, HasEachPattern) {
 }
 
 TEST(EllipseTestSrc, HasEachSceneByName) {
-  std::set<std::string> seen;
+  std::set<std::string> distinct;
   for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
     const std::string name = scene.name;
     const auto buffer = first_frame("scene=" + name, caps_of("GRAY8", 160, 90));
-    EXPECT_TRUE(seen.insert(bytes_of(buffer)).second) << name;
+    EXPECT_TRUE(distinct.insert(bytes_of(buffer)).second) << name;
     const bool has_truth =
         gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH) != nullptr;
     EXPECT_EQ(has_truth, name != "negative") << name;
   }
-  EXPECT_GE(seen.size(), 18U);
+  EXPECT_GE(distinct.size(), 18U);
 }
 
 TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
@@ -168,7 +168,7 @@ std::vector<const GstEllipseMeta*> truths_of(GstBuffer* buffer) {
 }
 
 TEST(EllipseTestSrc, AWildSceneCarriesAllItsEllipses) {
-  std::size_t most = 0;
+  std::size_t max_truths = 0;
   bool has_none = false;
   for (const int seed : {1, 2, 8, 24, 40}) {
     const auto buffer =
@@ -182,10 +182,10 @@ TEST(EllipseTestSrc, AWildSceneCarriesAllItsEllipses) {
       EXPECT_EQ(truths[i]->semi_minor, expected[i].ellipse.semi_minor) << seed;
       EXPECT_EQ(truths[i]->visible_fraction, expected[i].visible_fraction) << seed;
     }
-    most = std::max(most, truths.size());
+    max_truths = std::max(max_truths, truths.size());
     has_none = has_none || truths.empty();
   }
-  EXPECT_GT(most, 20U);
+  EXPECT_GT(max_truths, 20U);
   EXPECT_TRUE(has_none);
 }
 

@@ -300,15 +300,15 @@ TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
 
 // The maximum difference from the background within 2 px of a point.
 int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int background) {
-  int most = 0;
+  int max_difference = 0;
   const int cx = static_cast<int>(std::lround(point.x()));
   const int cy = static_cast<int>(std::lround(point.y()));
   for (int y = cy - 2; y <= cy + 2; ++y) {
     for (int x = cx - 2; x <= cx + 2; ++x) {
-      most = std::max(most, std::abs(picture.view().row(y)[x] - background));
+      max_difference = std::max(max_difference, std::abs(picture.view().row(y)[x] - background));
     }
   }
-  return most;
+  return max_difference;
 }
 
 // Without colour a line is grey, possibly the grey of the background.
@@ -330,8 +330,8 @@ TEST(EllipseOverlay, IsSeenOnAnyGreyInAFormatWithoutColour) {
         const auto out = push(harness, std::move(buffer));
         const Picture picture = support::picture_of(out.get(), info);
         const bool is_region = std::string(element).ends_with("roi");
-        const Eigen::Vector2d place = is_region ? Eigen::Vector2d(50.0, 20.0) : e.point_at(1.0);
-        EXPECT_GE(contrast_near(picture, place, level), 64) << element << color << " on " << level;
+        const Eigen::Vector2d point = is_region ? Eigen::Vector2d(50.0, 20.0) : e.point_at(1.0);
+        EXPECT_GE(contrast_near(picture, point, level), 64) << element << color << " on " << level;
       }
     }
   }

@@ -196,11 +196,11 @@ TEST_F(PoseElement, TellsItInMessagesAndStructures) {
   EXPECT_EQ(meta->n_outline, 0U);
   const auto message = bus.pop(GST_MESSAGE_ELEMENT);
   ASSERT_TRUE(message);
-  const GstStructure* told = gst_message_get_structure(message.get());
+  const GstStructure* fields = gst_message_get_structure(message.get());
   double z = 0.0;
-  EXPECT_TRUE(gst_structure_get_double(told, "position_z", &z));
+  EXPECT_TRUE(gst_structure_get_double(fields, "position_z", &z));
   EXPECT_EQ(z, meta->position_z);
-  EXPECT_EQ(gst_value_array_get_size(gst_structure_get_value(told, "position_covariance")), 6U);
+  EXPECT_EQ(gst_value_array_get_size(gst_structure_get_value(fields, "position_covariance")), 6U);
 }
 
 // The scene has no lens, so its undistorted outline is no ellipse. The reported outline must lie on
@@ -215,11 +215,11 @@ TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
   ASSERT_NE(meta, nullptr);
   ASSERT_EQ(meta->n_outline, 64U);
-  const ellipse::Ellipse seen = *ellipse::project_circle(
+  const ellipse::Ellipse expected = *ellipse::project_circle(
       ellipse::image_from_pad(ellipse::scene_by_name("orbit"), 0.0, 640, 360), 1.0);
   for (guint i = 0; i < meta->n_outline; ++i) {
     const Vector2d point(meta->outline[2 * i], meta->outline[2 * i + 1]);
-    EXPECT_LT(std::abs(ellipse::sampson_distance(seen, point)), 0.5) << i;
+    EXPECT_LT(std::abs(ellipse::sampson_distance(expected, point)), 0.5) << i;
   }
 }
 

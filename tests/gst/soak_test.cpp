@@ -36,12 +36,12 @@ std::int64_t resident_kib() {
 
 // Minimum growth over the windows after the first: a leak grows in each, an allocator's cache does
 // not.
-std::int64_t least_growth(const std::vector<std::int64_t>& resident) {
-  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+std::int64_t min_growth(const std::vector<std::int64_t>& resident) {
+  std::int64_t min_kib = std::numeric_limits<std::int64_t>::max();
   for (std::size_t i = 1; i < resident.size(); ++i) {
-    least = std::min(least, resident[i] - resident[i - 1]);
+    min_kib = std::min(min_kib, resident[i] - resident[i - 1]);
   }
-  return least;
+  return min_kib;
 }
 
 // A pad that leaves the picture and returns, then one that is hidden at times.
@@ -88,13 +88,13 @@ TEST_P(Soaks, KeepTheirMemory) {
   for (const std::int64_t kib : resident) std::cout << ' ' << kib;
   std::cout << " KiB\n";
   EXPECT_GT(lines_with_target, static_cast<std::uint64_t>(frames) / 4);
-  EXPECT_LT(least_growth(resident), kGrowthKiB);
+  EXPECT_LT(min_growth(resident), kGrowthKiB);
 }
 
-TEST(LeastGrowth, TellsALeakFromAnAllocatorsWhim) {
-  EXPECT_EQ(least_growth({100, 3000, 3000, 3000, 3000}), 0);  // grown once, then constant
-  EXPECT_EQ(least_growth({100, 120, 90, 130, 70}), -60);
-  EXPECT_EQ(least_growth({100, 200, 310, 420, 5000}), 100);
+TEST(MinGrowth, TellsALeakFromAllocatorNoise) {
+  EXPECT_EQ(min_growth({100, 3000, 3000, 3000, 3000}), 0);  // grown once, then constant
+  EXPECT_EQ(min_growth({100, 120, 90, 130, 70}), -60);
+  EXPECT_EQ(min_growth({100, 200, 310, 420, 5000}), 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -196,7 +196,7 @@ TEST(Stress, AStormOfSeeksLeavesNoTrace) {
   pipeline.pause();
   ASSERT_TRUE(seek(pipeline.get(), 0.0));
   pipeline.pause();
-  pipeline.forget_messages();  // including the EOS of an earlier seek
+  pipeline.clear_messages();  // including the EOS of an earlier seek
   pipeline.play();
   ASSERT_EQ(pipeline.wait_for_end(), "");
   EXPECT_EQ(numbered_from_one(verdicts.all()), undisturbed);

@@ -266,7 +266,7 @@ class Pipeline {
   }
   void play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
   /// Discards the messages on the bus.
-  void forget_messages() {
+  void clear_messages() {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     while (Owned<GstMessage>(gst_bus_pop(bus))) continue;
     gst_object_unref(bus);

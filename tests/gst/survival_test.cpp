@@ -83,12 +83,12 @@ std::string verdict_on(double error_px, double tolerance_px = kRightPx) {
   return error_px >= kWrongPx ? "wrong" : "off by " + std::to_string(error_px) + " px";
 }
 
-double difference_px(const GstEllipseMeta& meta, const ellipse::Ellipse& seen) {
+double difference_px(const GstEllipseMeta& meta, const ellipse::Ellipse& detected) {
   const ellipse::Ellipse carried{
       meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
   double farthest = 0.0;
   for (int i = 0; i < 32; ++i) {
-    const double distance = ellipse::sampson_distance(seen, carried.point_at(0.2 * i));
+    const double distance = ellipse::sampson_distance(detected, carried.point_at(0.2 * i));
     farthest = std::max(farthest, std::abs(distance));
   }
   return farthest;
@@ -119,33 +119,33 @@ class Witness {
 
   void judge(GstBuffer* buffer, const GstVideoInfo& info) {
     const support::Picture picture = support::picture_of(buffer, info);
-    const auto seen = tracker_.process(picture.view(), 0);
-    ellipses_.insert(verdict_on_ellipses(buffer, seen));
-    regions_.insert(verdict_on_region(buffer, seen));
+    const auto detected = tracker_.process(picture.view(), 0);
+    ellipses_.insert(verdict_on_ellipses(buffer, detected));
+    regions_.insert(verdict_on_region(buffer, detected));
     ++frames_;
   }
 
   static std::string verdict_on_ellipses(GstBuffer* buffer,
-                                         const std::optional<ellipse::Target>& seen) {
+                                         const std::optional<ellipse::Target>& detected) {
     const auto* truth = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
     const auto* target = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
     const bool has_search = gst_buffer_get_ellipse_search_meta(buffer) != nullptr;
     if (truth == nullptr && target == nullptr && !has_search) return "lost";
     if (truth == nullptr || target == nullptr || !has_search) return "lost in part";
-    if (!seen) return "nothing to compare with";
-    const std::string verdict = verdict_on(difference_px(*truth, seen->ellipse));
-    return verdict == verdict_on(difference_px(*target, seen->ellipse)) ? verdict : "mixed";
+    if (!detected) return "nothing to compare with";
+    const std::string verdict = verdict_on(difference_px(*truth, detected->ellipse));
+    return verdict == verdict_on(difference_px(*target, detected->ellipse)) ? verdict : "mixed";
   }
 
   static std::string verdict_on_region(GstBuffer* buffer,
-                                       const std::optional<ellipse::Target>& seen) {
+                                       const std::optional<ellipse::Target>& detected) {
     auto* meta = reinterpret_cast<GstVideoRegionOfInterestMeta*>(
         gst_buffer_get_meta(buffer, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE));
     if (meta == nullptr) return "lost";
-    if (!seen) return "nothing to compare with";
-    const Eigen::Vector2d half = ellipse::half_extent(seen->ellipse);
-    const Eigen::Vector2d first = seen->ellipse.center() - half;
-    const Eigen::Vector2d last = seen->ellipse.center() + half;
+    if (!detected) return "nothing to compare with";
+    const Eigen::Vector2d half = ellipse::half_extent(detected->ellipse);
+    const Eigen::Vector2d first = detected->ellipse.center() - half;
+    const Eigen::Vector2d last = detected->ellipse.center() + half;
     const double error_px = std::max({std::abs(meta->x - first.x()),
                                       std::abs(meta->y - first.y()),
                                       std::abs(meta->x + meta->w - 1.0 - last.x()),

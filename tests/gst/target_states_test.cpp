@@ -47,42 +47,42 @@ Picture picture_of(Sight sight, int frame) {
 }
 
 // State and id of a target, and the tracker's state, as reported in one of the three ways.
-using Told = std::string;
+using Report = std::string;
 
-Told told(const std::string& state, std::uint64_t id, const std::string& tracker) {
+Report report(const std::string& state, std::uint64_t id, const std::string& tracker) {
   return (id == 0 ? "lost" : state + " " + std::to_string(id)) + ", " + tracker;
 }
 
-Told by_metadata(GstBuffer* buffer) {
+Report by_metadata(GstBuffer* buffer) {
   const GstEllipseSearchMeta* search = gst_buffer_get_ellipse_search_meta(buffer);
   const char* tracker = gst_ellipse_search_meta_get_tracker_state_name(search);
   const GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TARGET);
-  if (meta == nullptr) return told("", 0, tracker);
+  if (meta == nullptr) return report("", 0, tracker);
   const Owned<GstStructure> structure(gst_ellipse_meta_to_structure(meta));
-  return told(gst_structure_get_string(structure.get(), "state"), meta->id, tracker);
+  return report(gst_structure_get_string(structure.get(), "state"), meta->id, tracker);
 }
 
-Told by_message(BusTap& bus) {
+Report by_message(BusTap& bus) {
   const auto message = bus.pop(GST_MESSAGE_ELEMENT);
   if (!message) return "nothing";
   const GstStructure* structure = gst_message_get_structure(message.get());
   guint64 id = 0;
   gst_structure_get_uint64(structure, "id", &id);
-  return told(gst_structure_get_string(structure, "state"),
-              id,
-              gst_structure_get_string(structure, "tracker"));
+  return report(gst_structure_get_string(structure, "state"),
+                id,
+                gst_structure_get_string(structure, "tracker"));
 }
 
-Told by_line(GstBuffer* line) {
+Report by_line(GstBuffer* line) {
   const auto lines = support::parse_ndjson(std::istringstream(support::bytes_of(line)));
   JsonObject* frame = object_of(lines.at(0));
   const char* tracker = json_object_get_string_member(frame, "tracker");
   JsonArray* targets = json_object_get_array_member(frame, "targets");
-  if (json_array_get_length(targets) == 0) return told("", 0, tracker);
+  if (json_array_get_length(targets) == 0) return report("", 0, tracker);
   JsonObject* target = json_array_get_object_element(targets, 0);
-  return told(json_object_get_string_member(target, "state"),
-              static_cast<std::uint64_t>(json_object_get_int_member(target, "id")),
-              tracker);
+  return report(json_object_get_string_member(target, "state"),
+                static_cast<std::uint64_t>(json_object_get_int_member(target, "id")),
+                tracker);
 }
 
 std::string tracker_in_stats(GstElement* element) {
@@ -91,12 +91,12 @@ std::string tracker_in_stats(GstElement* element) {
 }
 
 GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
-  *static_cast<Told*>(data) = by_metadata(GST_PAD_PROBE_INFO_BUFFER(info));
+  *static_cast<Report*>(data) = by_metadata(GST_PAD_PROBE_INFO_BUFFER(info));
   return GST_PAD_PROBE_OK;
 }
 
 // The states in the metadata of each frame; fails if messages or lines differ.
-std::vector<Told> story() {
+std::vector<Report> story() {
   // With the default min-probability, half a pad would be detected again.
   const auto harness = support::harness_of(
       "ellipsetrack name=t min-probability=0.99 "
@@ -105,11 +105,11 @@ std::vector<Told> story() {
       "application/x-ndjson");
   GstElement* element = support::element_of(harness);
   BusTap bus(element);
-  Told on_buffer;
+  Report on_buffer;
   GstPad* pad = gst_element_get_static_pad(element, "src");
   gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, note_metadata, &on_buffer, nullptr);
   gst_object_unref(pad);
-  std::vector<Told> story;
+  std::vector<Report> story;
   for (const Shot& shot : kShots) {
     for (int i = 0; i < shot.frames; ++i) {
       const int frame = static_cast<int>(story.size());
@@ -127,7 +127,7 @@ std::vector<Told> story() {
 }
 
 // Run-length encoding of the states.
-std::string summary_of(const std::vector<Told>& story) {
+std::string summary_of(const std::vector<Report>& story) {
   std::string summary;
   for (std::size_t first = 0, i = 0; i < story.size(); ++i) {
     if (i + 1 < story.size() && story[i + 1] == story[first]) continue;
@@ -160,7 +160,7 @@ TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
   BusTap bus(support::element_of(harness));
   ellipse::Scene scene = support::plain_ring();
   scene.pad.pattern = ellipse::Pattern::kDisc;
-  std::vector<Told> story;
+  std::vector<Report> story;
   for (int frame = 0; frame < 60; ++frame) {
     auto buffer = support::gray_buffer_of(
         support::rendered(scene, {-8.0 + 0.1 * frame, 110.0, 40.0, 32.0, 0.3}));
@@ -181,12 +181,12 @@ TEST(TargetStates, AreFollowedOrSearchedForWhereEdgesAreNotFollowed) {
                                              support::caps_of("GRAY8", 320, 240),
                                              "application/x-ndjson");
     gst_util_set_object_arg(G_OBJECT(support::element_of(harness)), "tracking", tracking.c_str());
-    const auto told_of = [&](Sight sight) {
+    const auto report_of = [&](Sight sight) {
       auto buffer = support::gray_buffer_of(picture_of(sight, 0));
       return by_line(support::push(harness, std::move(buffer)).get());
     };
-    EXPECT_EQ(told_of(Sight::kClear), "detected 1, following") << tracking;
-    EXPECT_EQ(told_of(Sight::kHidden), "lost, searching") << tracking;
+    EXPECT_EQ(report_of(Sight::kClear), "detected 1, following") << tracking;
+    EXPECT_EQ(report_of(Sight::kHidden), "lost, searching") << tracking;
   }
 }
 
@@ -200,7 +200,7 @@ TEST(TargetStates, AreSearchedForAfterAReset) {
   EXPECT_EQ(tracker_in_stats(element), "searching");
 }
 
-struct Seen {
+struct ShownFrame {
   std::uint64_t id;
   double visible;  // of the true ellipse
 };
@@ -208,7 +208,7 @@ struct Seen {
 GstPadProbeReturn note_truth(GstPad*, GstPadProbeInfo* info, gpointer data) {
   GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
   const GstEllipseMeta* truth = gst_buffer_get_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
-  static_cast<std::vector<Seen>*>(data)->push_back(
+  static_cast<std::vector<ShownFrame>*>(data)->push_back(
       {support::verdict_on(buffer).id, truth != nullptr ? truth->visible_fraction : 0.0});
   return GST_PAD_PROBE_OK;
 }
@@ -238,7 +238,7 @@ TEST(TargetStates, HaveTheProbabilityOfAllFramesSoFar) {
 }
 
 TEST(TargetStates, NumbersChangeOnlyWhileThePadIsOutOfThePicture) {
-  std::vector<Seen> frames;
+  std::vector<ShownFrame> frames;
   ASSERT_EQ(support::run_pipeline(
                 "ellipsetestsrc scene=reenter num-buffers=400 ! "
                 "video/x-raw,width=320,height=180 ! ellipsetrack ! fakesink name=out",
@@ -252,17 +252,17 @@ TEST(TargetStates, NumbersChangeOnlyWhileThePadIsOutOfThePicture) {
             "");
   ASSERT_EQ(frames.size(), 400U);
   std::uint64_t last_id = 0;
-  double least_visible = 1.0;  // since a target was found
+  double min_visible = 1.0;  // since a target was found
   int changes = 0;
-  for (const Seen& frame : frames) {
-    least_visible = std::min(least_visible, frame.visible);
+  for (const ShownFrame& frame : frames) {
+    min_visible = std::min(min_visible, frame.visible);
     if (frame.id == 0) continue;
     if (last_id != 0 && frame.id != last_id) {
-      EXPECT_LT(least_visible, 0.1);
+      EXPECT_LT(min_visible, 0.1);
       ++changes;
     }
     last_id = frame.id;
-    least_visible = 1.0;
+    min_visible = 1.0;
   }
   EXPECT_GE(changes, 1);
 }

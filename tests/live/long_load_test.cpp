@@ -31,9 +31,9 @@ struct Pace {
 Pace run(const Client& client) {
   const double first = client.stat("frames");
   const gint64 start_us = g_get_monotonic_time();
-  const gint64 most_us = 10 * 60 * G_USEC_PER_SEC;
+  const gint64 max_us = 10 * 60 * G_USEC_PER_SEC;
   double frames = 0.0;
-  while (frames < kFrames && g_get_monotonic_time() - start_us < most_us) {
+  while (frames < kFrames && g_get_monotonic_time() - start_us < max_us) {
     wait_until([] { return false; }, 1);
     frames = client.stat("frames") - first;
   }

@@ -50,7 +50,7 @@ struct Case {
 // `right` and `all` count the last frame of a sequence if its two solutions are more than kApartRad
 // apart.
 struct Tally {
-  int told = 0;
+  int estimates = 0;
   std::array<int, 5> right{};  // by certainty: .5 to .6, ... .9 to 1
   std::array<int, 5> all{};
   std::vector<double> depth_errors;  // of all frames, relative
@@ -117,14 +117,15 @@ void watch(const Case& test, std::uint64_t seed, Tally& tally) {
     const auto target =
         tracker.process(picture.view(), static_cast<std::int64_t>(frame * 1e9 / 30));
     if (!target || !target->pose) continue;
-    ++tally.told;
-    const TargetPose& told = *target->pose;
-    const bool is_right =
-        angle_between(told.normal, pose.normal) <= angle_between(told.other_normal, pose.normal);
-    const Vector3d& nearest = is_right ? told.position_m : told.other_position_m;
+    ++tally.estimates;
+    const TargetPose& estimate = *target->pose;
+    const bool is_right = angle_between(estimate.normal, pose.normal) <=
+                          angle_between(estimate.other_normal, pose.normal);
+    const Vector3d& nearest = is_right ? estimate.position_m : estimate.other_position_m;
     tally.depth_errors.push_back(nearest.norm() / pose.position.norm() - 1.0);
-    if (frame < kFrames - 1 || angle_between(told.normal, told.other_normal) < kApartRad) continue;
-    const int bin = std::clamp(static_cast<int>((told.certainty - 0.5) * 10.0), 0, 4);
+    if (frame < kFrames - 1 || angle_between(estimate.normal, estimate.other_normal) < kApartRad)
+      continue;
+    const int bin = std::clamp(static_cast<int>((estimate.certainty - 0.5) * 10.0), 0, 4);
     ++tally.all[static_cast<std::size_t>(bin)];
     tally.right[static_cast<std::size_t>(bin)] += is_right ? 1 : 0;
   }
@@ -141,14 +142,14 @@ TEST_P(PoseCertainty, IsNotOverstated) {
   std::nth_element(tally.depth_errors.begin(), middle, tally.depth_errors.end());
   std::printf("%-9s %d of %d frames, depth %+.4f (median); right",
               test.name,
-              tally.told,
+              tally.estimates,
               kPoses * kFrames,
               *middle);
   for (std::size_t i = 0; i < tally.all.size(); ++i) {
     std::printf(" %d/%d", tally.right[i], tally.all[i]);
   }
   std::printf(" by certainty .5-.6 ... .9-1\n");
-  EXPECT_GE(tally.told, kPoses * kFrames * 9 / 10);
+  EXPECT_GE(tally.estimates, kPoses * kFrames * 9 / 10);
   // At most 2 % of the answers above .9 may be wrong.
   EXPECT_LE(tally.all[4] - tally.right[4], tally.all[4] / 50);
   for (std::size_t i = 1; i < 4; ++i) {

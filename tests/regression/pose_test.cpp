@@ -47,7 +47,7 @@ struct Errors {
   std::vector<double> depth;       // along it, relative to the distance
   std::vector<double> normal_rad;  // where the aspect is below .95
   std::vector<double> squared;     // normalised, of the right solution
-  int told = 0;
+  int estimates = 0;
   int frames = 0;
   int tilted = 0;  // by 10 degrees and more
   int wrong = 0;   // of these, the other solution
@@ -86,7 +86,7 @@ class Approach {
   Vector3d aim_;
 };
 
-void compare(const TargetPose& pose, const Ellipse& seen, const Matrix3d& view, Errors& errors) {
+void compare(const TargetPose& pose, const Ellipse& outline, const Matrix3d& view, Errors& errors) {
   Matrix3d plane = Camera::with_hfov(kHfovRad, kWidth, kHeight).matrix().inverse() * view;
   plane *= kRadius_m / plane.col(0).norm();
   const Vector3d truth = plane.col(2);
@@ -96,7 +96,7 @@ void compare(const TargetPose& pose, const Ellipse& seen, const Matrix3d& view, 
   errors.aside.push_back((error - error.dot(bearing) * bearing).norm() / truth.norm());
   errors.depth.push_back(std::abs(error.dot(bearing)) / truth.norm());
   const double off = angle_between(pose.normal, normal);
-  if (seen.semi_minor < 0.95 * seen.semi_major) errors.normal_rad.push_back(off);
+  if (outline.semi_minor < 0.95 * outline.semi_major) errors.normal_rad.push_back(off);
   const bool is_right = off <= angle_between(pose.other_normal, normal);
   if (angle_between(normal, -bearing) >= std::numbers::pi / 18.0) {
     ++errors.tilted;
@@ -126,7 +126,7 @@ void fly(std::uint64_t seed, Pattern pattern, Errors& errors) {
         tracker.process(picture.view(), static_cast<std::int64_t>(frame * 1e9 / 30));
     ++errors.frames;
     if (!target || !target->pose) continue;
-    ++errors.told;
+    ++errors.estimates;
     compare(*target->pose, target->ellipse, view, errors);
   }
 }
@@ -144,7 +144,7 @@ TEST(PoseRegression, FromFifteenMetresToOne) {
   std::printf(
       "%d of %d frames; aside %.5f, depth %.5f, normal %.4f rad (median); wrong %d of %d; "
       "normalised error squared: median %.2f, %.3f within 95 %%\n",
-      errors.told,
+      errors.estimates,
       errors.frames,
       quantile(errors.aside, 0.5),
       quantile(errors.depth, 0.5),
@@ -153,7 +153,7 @@ TEST(PoseRegression, FromFifteenMetresToOne) {
       errors.tilted,
       quantile(errors.squared, 0.5),
       static_cast<double>(inside) / static_cast<double>(errors.squared.size()));
-  EXPECT_GE(errors.told, errors.frames * 98 / 100);
+  EXPECT_GE(errors.estimates, errors.frames * 98 / 100);
   EXPECT_LE(quantile(errors.aside, 0.5), 0.002);
   EXPECT_LE(quantile(errors.depth, 0.5), 0.01);
   EXPECT_LE(quantile(errors.aside, 0.95), 0.01);

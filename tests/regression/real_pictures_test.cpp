@@ -28,8 +28,8 @@ constexpr double kSameEllipseIou = 0.8;
 /// The values measured when the row was last written. An improved detector moves them.
 struct Limits {
   const char* detector;  ///< Its nick.
-  int least_right;       ///< Labelled ellipses that are found.
-  int most_false;        ///< Pictures without an ellipse that show a target.
+  int min_right;         ///< Labelled ellipses that are found.
+  int max_false;         ///< Pictures without an ellipse that show a target.
 };
 
 constexpr Limits kLimits[] = {
@@ -120,7 +120,7 @@ TEST_P(RealPictures, ShowTheirEllipses) {
     }
   }
   RecordProperty("right", right);
-  EXPECT_GE(right, GetParam().least_right) << "missed:\n" << missed.str();
+  EXPECT_GE(right, GetParam().min_right) << "missed:\n" << missed.str();
 }
 
 TEST_P(RealPictures, WithoutEllipsesShowNoTarget) {
@@ -136,7 +136,7 @@ TEST_P(RealPictures, WithoutEllipsesShowNoTarget) {
           << target->ellipse.semi_major << " and " << target->ellipse.semi_minor << '\n';
   }
   RecordProperty("false", wrong);
-  EXPECT_LE(wrong, GetParam().most_false) << "found:\n" << found.str();
+  EXPECT_LE(wrong, GetParam().max_false) << "found:\n" << found.str();
 }
 
 INSTANTIATE_TEST_SUITE_P(Detectors, RealPictures, testing::ValuesIn(kLimits), [](const auto& info) {

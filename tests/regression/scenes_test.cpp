@@ -33,8 +33,8 @@ struct Limits {
   int frames;
   const char* detector;
   const char* tracking;
-  int least_right;  ///< Frames with the right target.
-  int most_false;   ///< Frames with another target, or with one although none is visible.
+  int min_right;  ///< Frames with the right target.
+  int max_false;  ///< Frames with another target, or with one although none is visible.
 };
 
 constexpr Limits kLimits[] = {
@@ -151,8 +151,8 @@ class Watched {
     const std::string name = std::string(limits_.detector) + '+' + limits_.tracking;
     testing::Test::RecordProperty(name + " right", right_);
     testing::Test::RecordProperty(name + " false", false_);
-    EXPECT_GE(right_, limits_.least_right) << name;
-    EXPECT_LE(false_, limits_.most_false) << name;
+    EXPECT_GE(right_, limits_.min_right) << name;
+    EXPECT_LE(false_, limits_.max_false) << name;
   }
 
  private:

@@ -122,9 +122,9 @@ class ChildProcess {
     if (setup.session == Session::kOwnGroup) setpgid(process, process);  // before it is signalled
     failure.in.close();
     int error = 0;
-    const std::string told = failure.out.read_some();  // ends when the program starts
-    if (told.size() != sizeof error) return 0;
-    told.copy(reinterpret_cast<char*>(&error), sizeof error);
+    const std::string report = failure.out.read_some();  // ends when the program starts
+    if (report.size() != sizeof error) return 0;
+    report.copy(reinterpret_cast<char*>(&error), sizeof error);
     wait();
     process_ = 0;
     status_ = kNoStatus;

@@ -84,16 +84,16 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
   view.distort(origin,
                {kCount, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   for (std::size_t k = 0; k < kCount; ++k) {
-    const auto place = view.picture_from_ideal(origin + ideal[k]);
-    ASSERT_TRUE(place);
-    EXPECT_LT((origin + Vector2d(x[k], y[k]) - place->picture_px).norm(), 5e-4);
+    const auto expected = view.picture_from_ideal(origin + ideal[k]);
+    ASSERT_TRUE(expected);
+    EXPECT_LT((origin + Vector2d(x[k], y[k]) - expected->picture_px).norm(), 5e-4);
     // The tangent stays a tangent; a step across the curve scales by `across`.
-    const Vector2d tangent = place->slope * Vector2d(-normal[k].y(), normal[k].x());
-    const Vector2d bent_normal(nx[k], ny[k]);
-    EXPECT_NEAR(bent_normal.norm(), 1.0, 1e-5);
-    EXPECT_NEAR(bent_normal.dot(tangent.normalized()), 0.0, 1e-4);
+    const Vector2d tangent = expected->slope * Vector2d(-normal[k].y(), normal[k].x());
+    const Vector2d distorted_normal(nx[k], ny[k]);
+    EXPECT_NEAR(distorted_normal.norm(), 1.0, 1e-5);
+    EXPECT_NEAR(distorted_normal.dot(tangent.normalized()), 0.0, 1e-4);
     EXPECT_NEAR(along[k], tangent.norm(), 1e-4);
-    EXPECT_NEAR(across[k], bent_normal.dot(place->slope * normal[k]), 1e-4);
+    EXPECT_NEAR(across[k], distorted_normal.dot(expected->slope * normal[k]), 1e-4);
   }
 }
 
@@ -110,12 +110,12 @@ TEST_P(EachLensView, WhatIsBentIsUnbent) {
   const LensView view(lens_);
   const Ellipse small{
       250.0, 200.0, 9.0, 6.0, 0.4};  // so small that its distorted image is an ellipse
-  const auto seen = distorted(view, small);
-  ASSERT_TRUE(seen);
-  const auto back = undistorted(view, *seen);
+  const auto shown = distorted(view, small);
+  ASSERT_TRUE(shown);
+  const auto back = undistorted(view, *shown);
   ASSERT_TRUE(back);
   EXPECT_LT(max_difference_px(*back, small), 0.01);
-  EXPECT_GT(max_difference_px(*seen, small), 0.2);
+  EXPECT_GT(max_difference_px(*shown, small), 0.2);
 }
 
 TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
@@ -150,10 +150,10 @@ TEST_P(EachLensView, EdgesMoveAsTheirRowsSay) {
     // The point on the pad visible there.
     const auto ideal = view.ideal_from_picture(sample.view.point);
     ASSERT_TRUE(ideal);
-    const Vector2d place = (pose.inverse() * ideal->homogeneous()).hnormalized();
+    const Vector2d pad_point = (pose.inverse() * ideal->homogeneous()).hnormalized();
     for (int i = 0; i < 8; ++i) {
       const Matrix3d changed = moved(pose, kStep * HomographyChange::Unit(i));
-      const auto there = PadView(changed, view).at(place);
+      const auto there = PadView(changed, view).at(pad_point);
       ASSERT_TRUE(there);
       const double moved_px = sample.view.normal.dot(there->point - sample.view.point);
       EXPECT_NEAR(moved_px / kStep, sample.view.row(i), 0.3) << i;

@@ -201,10 +201,10 @@ TEST_P(DetectionTraceOf, SaysInnerEdge) {
 TEST_P(DetectionTraceOf, SaysWhereTheTargetWas) {
   Ellipse last = kRing;
   last.cx -= 100.0;
-  const Verdict place =
+  const Verdict distance =
       verdict_for(Reason::kTooFarFromLast, rendered(plain_ring(), kRing), {}, last);
-  EXPECT_NEAR(place.measured, 100.0, 0.5);
-  EXPECT_EQ(place.limit, last.semi_major);
+  EXPECT_NEAR(distance.measured, 100.0, 0.5);
+  EXPECT_EQ(distance.limit, last.semi_major);
   last = scaled(kRing, 3.0);
   last.cx = kRing.cx;
   last.cy = kRing.cy;
@@ -312,7 +312,7 @@ TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
 }
 
 TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
-  int refused = 0;
+  int rejected = 0;
   for (const char* name : {"approach", "glare", "occluded"}) {
     const Look look = look_at(GetParam(), of_scene(name, 6.0), [](auto& t) {
       t.ellipse_overlap = 0.97;
@@ -323,10 +323,10 @@ TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
       if (reason_info(verdict.reason).setting != std::string_view("ellipse-overlap")) continue;
       EXPECT_EQ(verdict.limit, 0.97) << to_text(verdict);
       EXPECT_LT(verdict.measured, 0.97) << to_text(verdict);
-      ++refused;
+      ++rejected;
     }
   }
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(rejected, 0);
 }
 
 TEST(DetectionTrace, OfArcsMeasuresTheProbabilityThatWouldTakeIt) {

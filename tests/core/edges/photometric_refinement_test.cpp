@@ -155,9 +155,10 @@ TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
 TEST(PhotometricRefinement, GivesNothingWhereThereIsNoSuchEdge) {
   const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
   const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
-  const auto refined = [&](const ImageView& luma, Polarity polarity, double inside, double least) {
-    return refined_photometrically(luma, truth, polarity, inside, least).has_value();
-  };
+  const auto refined =
+      [&](const ImageView& luma, Polarity polarity, double inside, double min_contrast) {
+        return refined_photometrically(luma, truth, polarity, inside, min_contrast).has_value();
+      };
   EXPECT_TRUE(refined(picture.view(), Polarity::kDarkInside, 9.0, 20.0));
   EXPECT_FALSE(refined(picture.view(), Polarity::kBrightInside, 9.0, 20.0));
   EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, 9.0, 200.0));

@@ -22,8 +22,8 @@ Matrix3d tilted_view() {
   return view;
 }
 
-Vector2d seen(const Matrix3d& view, const Vector2d& place) {
-  return (view * place.homogeneous()).hnormalized();
+Vector2d projected(const Matrix3d& view, const Vector2d& point) {
+  return (view * point.homogeneous()).hnormalized();
 }
 
 TEST(Homography, ShowsTheOuterCircleAsItsEllipse) {
@@ -35,21 +35,22 @@ TEST(Homography, ShowsTheOuterCircleAsItsEllipse) {
 
 TEST(Homography, IsLaidUponAnOuterEdge) {
   const Matrix3d view = tilted_view();
-  const Ellipse seen_edge = project_circle(view, 1.0).value();
-  for (const Ellipse& e : {seen_edge,
-                           translated(seen_edge, 3.0, -2.0),
+  const Ellipse outer_edge = project_circle(view, 1.0).value();
+  for (const Ellipse& e : {outer_edge,
+                           translated(outer_edge, 3.0, -2.0),
                            Ellipse{312.0, 171.0, 90.0, 50.0, 0.7},
                            Ellipse{300.0, 165.0, 70.0, 70.0, 0.0}}) {
     const auto laid = with_outer_edge(view, e);
     ASSERT_TRUE(laid);
     EXPECT_LT(max_difference_px(project_circle(*laid, 1.0).value(), e), 1e-8);
   }
-  EXPECT_LT((with_outer_edge(view, seen_edge).value() - view).norm(), 1e-8 * view.norm());
-  const Ellipse moved_edge = translated(seen_edge, 3.0, -2.0);
+  EXPECT_LT((with_outer_edge(view, outer_edge).value() - view).norm(), 1e-8 * view.norm());
+  const Ellipse moved_edge = translated(outer_edge, 3.0, -2.0);
   const Vector2d mark(0.4, 0.1);  // moves with the edge
-  const Vector2d by = seen(with_outer_edge(view, moved_edge).value(), mark) - seen(view, mark);
+  const Vector2d by =
+      projected(with_outer_edge(view, moved_edge).value(), mark) - projected(view, mark);
   EXPECT_LT((by - Vector2d(3.0, -2.0)).norm(), 0.2);
-  EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), seen_edge));
+  EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), outer_edge));
 }
 
 TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {
@@ -57,16 +58,16 @@ TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {
   constexpr double kStep = 1e-6;
   for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
     const Vector2d normal(std::cos(angle), std::sin(angle));
-    const Vector2d place = 0.8 * normal + Vector2d(0.1, -0.2);
-    const auto edge = view_of(view, place, normal);
+    const Vector2d point = 0.8 * normal + Vector2d(0.1, -0.2);
+    const auto edge = view_of(view, point, normal);
     ASSERT_TRUE(edge);
-    EXPECT_LT((edge->point - seen(view, place)).norm(), 1e-9);
+    EXPECT_LT((edge->point - projected(view, point)).norm(), 1e-9);
     for (int i = 0; i < 8; ++i) {
       const Matrix3d changed = moved(view, kStep * HomographyChange::Unit(i));
-      const double moved_px = edge->normal.dot(seen(changed, place) - edge->point);
+      const double moved_px = edge->normal.dot(projected(changed, point) - edge->point);
       EXPECT_NEAR(moved_px / kStep, edge->row(i), 1e-3) << i;
     }
-    const double along = edge->normal.dot(seen(view, place + kStep * normal) - edge->point);
+    const double along = edge->normal.dot(projected(view, point + kStep * normal) - edge->point);
     EXPECT_NEAR(along / kStep, edge->px_per_unit, 1e-3);
   }
 }
@@ -112,10 +113,11 @@ TEST(Homography, FollowsTheCamera) {
       after.col(2) += kStep * Vector3d::Unit(i - 3);
     }
     const Matrix3d expected = k * after;
-    const Matrix3d told = moved(view, kStep * HomographyChange(changes.col(i)));
-    for (const Vector2d& place : {Vector2d(0.9, 0.1), Vector2d(-0.5, 0.7), Vector2d(0.0, 0.0)}) {
-      const Vector2d motion = seen(expected, place) - seen(view, place);
-      EXPECT_LT((seen(told, place) - seen(expected, place)).norm(), 1e-3 * motion.norm() + 1e-9);
+    const Matrix3d predicted = moved(view, kStep * HomographyChange(changes.col(i)));
+    for (const Vector2d& point : {Vector2d(0.9, 0.1), Vector2d(-0.5, 0.7), Vector2d(0.0, 0.0)}) {
+      const Vector2d motion = projected(expected, point) - projected(view, point);
+      EXPECT_LT((projected(predicted, point) - projected(expected, point)).norm(),
+                1e-3 * motion.norm() + 1e-9);
     }
   }
 }

@@ -133,8 +133,8 @@ TEST_P(EachLayout, PartsAreThoseOfTheWhole) {
       LumaReader reader;
       reader.begin(picture);
       for (int part = 0; part < 4; ++part) {
-        const auto any = [&](int least, int most) {
-          return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+        const auto any = [&](int min, int max) {
+          return min + static_cast<int>(random() % static_cast<unsigned>(max - min + 1));
         };
         const Rect region{any(-5, kWidth), any(-5, kHeight), any(0, kWidth), any(0, kHeight)};
         EXPECT_EQ(levels_of(reader.read(region)), levels_of(expected.region(region)));

@@ -109,8 +109,8 @@ EdgeErrors edge_errors(const Scene& scene, const Picture& picture, const Ellipse
                            (scene.ground.level - scene.pad.paint_level);
       if (!(share > 0.2 && share < 0.8)) continue;
       const Vector2d pixel(x, y);
-      const double seen_px = scene.sensor.blur_px * sigmas_of(share);
-      const double error_px = std::abs(seen_px - distance_px(lens, truth, pixel));
+      const double measured_px = scene.sensor.blur_px * sigmas_of(share);
+      const double error_px = std::abs(measured_px - distance_px(lens, truth, pixel));
       errors.all.push_back(error_px);
       if ((pixel - middle).norm() > 2.0 / 3.0 * middle.norm()) {
         errors.at_corners.push_back(error_px);
@@ -132,13 +132,13 @@ TEST_P(SceneLens, TruthIsWhatThePixelsShow) {
   const Lens lens(camera());
   SceneRenderer renderer(scene);
   EdgeErrors errors;
-  for (const Vector2d& place : {Vector2d(320, 180),
-                                Vector2d(90, 70),
-                                Vector2d(560, 80),
-                                Vector2d(580, 300),
-                                Vector2d(60, 310),
-                                Vector2d(320, 20)}) {
-    const Vector2d ideal = lens.ideal_from_picture(place).value();
+  for (const Vector2d& centre_px : {Vector2d(320, 180),
+                                    Vector2d(90, 70),
+                                    Vector2d(560, 80),
+                                    Vector2d(580, 300),
+                                    Vector2d(60, 310),
+                                    Vector2d(320, 20)}) {
+    const Vector2d ideal = lens.ideal_from_picture(centre_px).value();
     const Ellipse disc{ideal.x(), ideal.y(), 110.0, 85.0, 0.3};
     Picture picture(kWidth, kHeight);
     const Truth truth = renderer.render(image_from_pad(disc), 0, picture.writable());

@@ -319,7 +319,7 @@ TEST(GroundTexture, LooksAtAPicture) {
 }
 
 TEST(GroundTexture, KindsDiffer) {
-  std::set<std::vector<float>> seen;
+  std::set<std::vector<float>> distinct;
   for (std::size_t kind = 0; kind < ground_nicks().size(); ++kind) {
     Ground ground;
     ground.kind = static_cast<GroundKind>(kind);
@@ -328,7 +328,7 @@ TEST(GroundTexture, KindsDiffer) {
     for (int i = 0; i < 400 && !texture.is_plain(); ++i) {
       lights.push_back(texture.at(0.03F * static_cast<float>(i), 5.0F, -1.0F));
     }
-    EXPECT_TRUE(seen.insert(lights).second) << ground_nicks()[kind];
+    EXPECT_TRUE(distinct.insert(lights).second) << ground_nicks()[kind];
   }
 }
 
@@ -345,10 +345,10 @@ cv::Rect covered_by_square(int first_px, int last_px) {
       if (tile.at<float>(y, x) == 3.0F) covered.emplace_back(x, y);
     }
   }
-  const auto [least, most] = std::minmax_element(
+  const auto [leftmost, rightmost] = std::minmax_element(
       covered.begin(), covered.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  const cv::Rect box(covered.front(), cv::Point(most->x + 1, covered.back().y + 1));
-  EXPECT_EQ(box.x, least->x);
+  const cv::Rect box(covered.front(), cv::Point(rightmost->x + 1, covered.back().y + 1));
+  EXPECT_EQ(box.x, leftmost->x);
   EXPECT_EQ(box.area(), static_cast<int>(covered.size()));
   return box;
 }

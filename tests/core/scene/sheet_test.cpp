@@ -36,7 +36,7 @@ Picture render(const Scene& scene, double time_s = 0.0) {
   return picture;
 }
 
-TEST(Deformation, SeenAtInvertsPatternAt) {
+TEST(Deformation, DeformedAtInvertsPatternAt) {
   const Deformation deformation(
       {{{2.0, 1.0}, 0.3, {0.05, 0.1}, 0.0}, {{-1.0, 3.0}, 1.0, {0.04, -0.06}, 0.0}});
   for (double angle = 0.0; angle < 6.0; angle += 0.5) {

@@ -140,12 +140,12 @@ TEST(WildTruth, OfDeformedShapesIsTheBestEllipseAndItsDeviation) {
 }
 
 TEST(Wild, SeedAndFrameDecideThePicture) {
-  std::set<std::vector<std::uint8_t>> seen;
+  std::set<std::vector<std::uint8_t>> distinct;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const Wild wild = make_wild(seed);
     const Picture picture = render(wild);
     EXPECT_EQ(picture.pixels, render(make_wild(seed)).pixels) << seed;
-    EXPECT_TRUE(seen.insert(picture.pixels).second) << seed;
+    EXPECT_TRUE(distinct.insert(picture.pixels).second) << seed;
     EXPECT_EQ(wild.things, make_wild(seed).things);
   }
   const Wild wild = make_wild(3);
@@ -246,7 +246,7 @@ double contrast_across(const TrueEllipse& truth, const Picture& picture, double 
 
 TEST(Wild, WhatTheTruthListsIsThereToBeSeen) {
   int listed = 0;
-  int seen = 0;
+  int visible = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     const Wild wild = make_wild(seed);
     const auto ellipses = true_ellipses(wild.scene, 0.0, wild.width, wild.height);
@@ -256,10 +256,10 @@ TEST(Wild, WhatTheTruthListsIsThereToBeSeen) {
     if (!target.is_target || target.visible_fraction < 0.5) continue;
     if (target.ellipse.semi_minor < 2.0 * reach_px) continue;
     ++listed;
-    seen += std::abs(contrast_across(target, render(wild), reach_px)) > 3.0 ? 1 : 0;
+    visible += std::abs(contrast_across(target, render(wild), reach_px)) > 3.0 ? 1 : 0;
   }
   EXPECT_GT(listed, 40);
-  EXPECT_GE(seen, 0.93 * listed);
+  EXPECT_GE(visible, 0.93 * listed);
 }
 
 }  // namespace

@@ -151,12 +151,13 @@ TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
   Scene scene = plain_ring();
   scene.sensor.read_noise = 0.0;
   scene.sensor.blur_px = 2.0;
-  constexpr int kPlaces = 60;
+  constexpr int kPositions = 60;
   std::array<Eigen::Vector2d, 3> mean_error;
   mean_error.fill({0.0, 0.0});
   FrameSearch search(make_detector(DetectorKind::kArcs));
-  for (int place = 0; place < kPlaces; ++place) {
-    const Ellipse truth{310.37 + 0.71 * place, 171.81 + 0.37 * place, 130.0, 110.0, 0.3 * place};
+  for (int position = 0; position < kPositions; ++position) {
+    const Ellipse truth{
+        310.37 + 0.71 * position, 171.81 + 0.37 * position, 130.0, 110.0, 0.3 * position};
     const Picture picture = rendered(scene, truth, 640, 360);
     RedetectTracker tracker;
     for (int step = 0; step < 3; ++step) {
@@ -165,7 +166,7 @@ TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
       const Target target = tracker.track_target(frame, search, {}).value();
       EXPECT_EQ(target.scale, 1 << step);
       mean_error[static_cast<std::size_t>(step)] +=
-          (target.ellipse.center() - truth.center()) / kPlaces;
+          (target.ellipse.center() - truth.center()) / kPositions;
     }
   }
   for (const Eigen::Vector2d& error : mean_error) {

@@ -80,11 +80,11 @@ TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
     const cv::Mat picture = picture_in(message);
     ASSERT_EQ(picture.cols, line.number("width"));
     JsonObject* target = line.ellipse("target");
-    const auto seen = ellipse::Tracker().process(
+    const auto detected = ellipse::Tracker().process(
         ellipse::ImageView{picture.data, picture.cols, picture.rows, picture.cols}, 0);
-    if (target == nullptr || !seen) continue;
-    EXPECT_NEAR(json_object_get_double_member(target, "cx"), seen->ellipse.cx, 8.0);
-    EXPECT_NEAR(json_object_get_double_member(target, "cy"), seen->ellipse.cy, 8.0);
+    if (target == nullptr || !detected) continue;
+    EXPECT_NEAR(json_object_get_double_member(target, "cx"), detected->ellipse.cx, 8.0);
+    EXPECT_NEAR(json_object_get_double_member(target, "cy"), detected->ellipse.cy, 8.0);
     ++compared;
   }
   EXPECT_GT(compared, 20);

@@ -56,17 +56,17 @@ TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
   LiveProgram program({});
   const Client client(program.url());
   std::mt19937 random(7);
-  long least_growth_kib = std::numeric_limits<long>::max();
+  long min_growth_kib = std::numeric_limits<long>::max();
   long before = 0;
   for (int round = 0; round < 5; ++round) {
     send_garbage(program, random, 1000);
     ASSERT_TRUE(wait_until([&] { return client.get("api/target").status == 200; }));
     const long now = program.memory_kib("VmRSS");
-    if (round > 0) least_growth_kib = std::min(least_growth_kib, now - before);
+    if (round > 0) min_growth_kib = std::min(min_growth_kib, now - before);
     before = now;
   }
   if (support::kHasPlainMemory) {
-    EXPECT_LT(least_growth_kib, 256) << "in a round of 1000 requests";
+    EXPECT_LT(min_growth_kib, 256) << "in a round of 1000 requests";
   }
   EXPECT_EQ(program.stop(), 0);
 }

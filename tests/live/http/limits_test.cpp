@@ -139,13 +139,13 @@ TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
   const LiveProgram program({});
   const Client client(program.url());
   std::vector<std::unique_ptr<RawClient>> watching;
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < 140; ++i) {
     watching.push_back(std::make_unique<RawClient>(program.port()));
     watching.back()->send(get("/api/events"));
-    refused += watching.back()->receive().find(" 503 ") != std::string::npos ? 1 : 0;
+    rejected += watching.back()->receive().find(" 503 ") != std::string::npos ? 1 : 0;
   }
-  EXPECT_EQ(refused, 20);
+  EXPECT_EQ(rejected, 20);
   EXPECT_EQ(client.get("api/target").status, 200U);
   SocketClient video(program.url(), "ws/video");
   EXPECT_TRUE(wait_until([&] { return !video.is_open(); }));

@@ -65,12 +65,12 @@ TEST_P(Transport, RtspHasTheOverlayDrawnIn) {
                          "location=" +
                          folder.file("frame-%d.rgb")),
             30);
-  int most_green = 0;
+  int max_green = 0;
   for (int i = 0; i < 30; ++i) {
     const std::string file = folder.file("frame-" + std::to_string(i) + ".rgb");
-    most_green = std::max(most_green, green_pixels(file));
+    max_green = std::max(max_green, green_pixels(file));
   }
-  EXPECT_GT(most_green, 100);
+  EXPECT_GT(max_green, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(LiveOutput,

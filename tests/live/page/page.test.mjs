@@ -8,7 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { setTimeout } from "node:timers/promises";
-import { kMostMs, openPage, shownBy, startBrowser, startProgram, stopPrograms } from "./program.mjs";
+import { kTimeoutMs, openPage, shownBy, startBrowser, startProgram, stopPrograms } from "./program.mjs";
 import "./guide.test.mjs";
 import "./layout.test.mjs";
 import { largestDistance } from "./ring.mjs";
@@ -42,12 +42,12 @@ const stateIs = (page, state) => page.waitForSelector(`#state[data-state=${state
 
 /** Polls until there is a result; @returns it. */
 async function eventually(what, look) {
-  for (const end = Date.now() + kMostMs; Date.now() < end;) {
+  for (const end = Date.now() + kTimeoutMs; Date.now() < end;) {
     const found = await look();
     if (found !== undefined) return found;
     await setTimeout(20);
   }
-  assert.fail(`not within ${kMostMs} ms: ${what}`);
+  assert.fail(`not within ${kTimeoutMs} ms: ${what}`);
 }
 
 /** The values of all properties once the program has this one: it arrives after the page shows it. */
@@ -69,9 +69,9 @@ function standsStill(page, program) {
 }
 
 /** Drags the scrub bar and waits for the program's answer. */
-async function scrubTo(page, place) {
+async function scrubTo(page, position) {
   const isSought = page.waitForResponse((answer) => answer.url().endsWith("/api/seek"));
-  await page.locator("#scrub").fill(place);
+  await page.locator("#scrub").fill(position);
   await isSought;
 }
 
@@ -121,7 +121,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
 
   it("tells no rate by a clock that stands still", async () => {
     const page = await browser.newPage();
-    page.setDefaultTimeout(kMostMs);
+    page.setDefaultTimeout(kTimeoutMs);
     await page.addInitScript(() => { performance.now = () => 5; });
     await page.goto(live.program.url);
     await page.waitForFunction(() => Number(document.querySelector("#screen").dataset.shown) >= 3);
@@ -519,7 +519,7 @@ describe("a pad that stays in the middle", () => withProgram(() => ["--source", 
       await page.waitForSelector("#play[aria-label=Play]");
       await standsStill(page, live.program);
       const distance = await largestDistance(page);
-      assert.ok(distance.rays > 80, `the ring was met on ${distance.rays} rays`);
+      assert.ok(distance.rays > 80, `the ring was found on ${distance.rays} rays`);
       assert.ok(distance.largest_px <= 2, `${distance.largest_px} px apart`);
       await page.click("#play");
       await page.waitForSelector("#play[aria-label=Pause]");
@@ -730,7 +730,7 @@ it("plays a folder at the rate that is asked for", async () => {
   await program.stop();
 });
 
-it("leaves no program behind where the tests are killed", { timeout: kMostMs }, async () => {
+it("leaves no program behind where the tests are killed", { timeout: kTimeoutMs }, async () => {
   const script = `import { startProgram } from "./program.mjs";
     console.log((await startProgram("--source", "test:approach")).url);
     process.kill(process.pid, "SIGKILL");`;

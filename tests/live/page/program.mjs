@@ -6,7 +6,7 @@ import { setTimeout } from "node:timers/promises";
 import { chromium } from "playwright-core";
 
 /** Timeout. An idle machine answers at once, a busy one late. */
-export const kMostMs = 120_000;
+export const kTimeoutMs = 120_000;
 const kTooOften = 429;
 
 /** Programs started and not yet stopped. */
@@ -70,7 +70,7 @@ export function startBrowser() {
   return chromium.launch({
     executablePath: process.env.CHROMIUM,
     args: ["--no-sandbox", "--disable-dev-shm-usage"],
-    timeout: kMostMs,
+    timeout: kTimeoutMs,
   });
 }
 
@@ -81,7 +81,7 @@ export function startBrowser() {
 export async function openPage(browser, url, size = { width: 1440, height: 900 }, frames = 3) {
   const page = await browser.newPage({ viewport: size });
   await page.addInitScript(() => localStorage.setItem("ellipse-live-guide", "seen"));
-  page.setDefaultTimeout(kMostMs);
+  page.setDefaultTimeout(kTimeoutMs);
   page.troubles = [];
   page.on("pageerror", (error) => page.troubles.push(String(error)));
   page.on("console", (message) => {
@@ -92,7 +92,7 @@ export async function openPage(browser, url, size = { width: 1440, height: 900 }
     if (protocol.startsWith("http") && host !== new URL(url).host) page.troubles.push(request.url());
   });
   await page.goto(url);
-  await page.waitForFunction((least) => Number(document.querySelector("#screen").dataset.shown) >= least, frames);
+  await page.waitForFunction((min) => Number(document.querySelector("#screen").dataset.shown) >= min, frames);
   await page.waitForSelector("[data-setting=max-axis]");
   return page;
 }

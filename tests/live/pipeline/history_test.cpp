@@ -101,9 +101,9 @@ guint targets_in(const Answer& answer) {
 }
 
 // Stores at least this number of frames. @return Their list.
-Answer stored_frames(const Client& client, guint least) {
+Answer stored_frames(const Client& client, guint min_count) {
   EXPECT_EQ(client.put("api/history", R"({"storing":true})").status, 200U);
-  EXPECT_TRUE(wait_until([&] { return count_of(client.get("api/history")) >= least; }));
+  EXPECT_TRUE(wait_until([&] { return count_of(client.get("api/history")) >= min_count; }));
   return client.put("api/history", R"({"storing":false})");
 }
 

@@ -65,28 +65,28 @@ TEST(LiveSettings, SettingsActOnTheRunningPipeline) {
 TEST(LiveSettings, SetsAllPropertiesOrNone) {
   const LiveProgram program({});
   const Client client(program.url());
-  const auto refused = [&](const std::string& body, const std::string& named) {
+  const auto expect_rejected = [&](const std::string& body, const std::string& named) {
     const Answer answer = client.put("api/properties", body);
     EXPECT_EQ(answer.status, 400U) << body;
     EXPECT_NE(answer.body.find(named), std::string::npos) << body << answer.body;
     EXPECT_EQ(value_of(client, "min-axis"), 5.0) << body;
   };
-  refused(R"({"min-axis":20,"max-axis":-3})", "max-axis");
-  refused(R"({"min-axis":800})", "max-axis");
-  refused(R"({"min-axis":20,"interval":1.5})", "interval");
-  refused(R"({"min-axis":20,"detector":"magic"})", "contours");
-  refused(R"({"min-axis":20,"overlay":7})", "overlay");
-  refused(R"({"min-axis":20,"roi":[1,2,3]})", "roi");
-  refused(R"({"min-axis":20,"stats":1})", "stats");
-  refused(R"({"min-axis":1e999})", "min-axis");
-  refused(R"({"min-axis":20,"interval":1e999})", "interval");
-  refused(R"({"min-axis":20,"max-processing-time":1e999})", "max-processing-time");
-  refused(R"({"min-axis":20,"gravity":[1e999,0,0]})", "gravity");
-  refused(R"({"min-axis":20,"roi":[1,2,-1e999,4]})", "roi");
-  refused(R"({"min-axis":20,"nonsense":1})", "nonsense");
-  refused(R"({"min-axis":{"a":[1]}})", "min-axis");
-  refused(R"({"min-axis":20)", "JSON");
-  refused("[1,2]", "object");
+  expect_rejected(R"({"min-axis":20,"max-axis":-3})", "max-axis");
+  expect_rejected(R"({"min-axis":800})", "max-axis");
+  expect_rejected(R"({"min-axis":20,"interval":1.5})", "interval");
+  expect_rejected(R"({"min-axis":20,"detector":"magic"})", "contours");
+  expect_rejected(R"({"min-axis":20,"overlay":7})", "overlay");
+  expect_rejected(R"({"min-axis":20,"roi":[1,2,3]})", "roi");
+  expect_rejected(R"({"min-axis":20,"stats":1})", "stats");
+  expect_rejected(R"({"min-axis":1e999})", "min-axis");
+  expect_rejected(R"({"min-axis":20,"interval":1e999})", "interval");
+  expect_rejected(R"({"min-axis":20,"max-processing-time":1e999})", "max-processing-time");
+  expect_rejected(R"({"min-axis":20,"gravity":[1e999,0,0]})", "gravity");
+  expect_rejected(R"({"min-axis":20,"roi":[1,2,-1e999,4]})", "roi");
+  expect_rejected(R"({"min-axis":20,"nonsense":1})", "nonsense");
+  expect_rejected(R"({"min-axis":{"a":[1]}})", "min-axis");
+  expect_rejected(R"({"min-axis":20)", "JSON");
+  expect_rejected("[1,2]", "object");
 }
 
 void write_calibration(const std::string& file) {

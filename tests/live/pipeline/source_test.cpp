@@ -172,9 +172,9 @@ TEST(LiveSource, TheLaunchLineOfAFolderOfOtherNamesMakesNumbersOfThem) {
                            nullptr))
       << line;
   const live::Ref<gchar> owned(output);
-  std::string wanted;
-  for (const char* name : names) wanted += pictures + "/" + name + "\n";
-  EXPECT_EQ(output, wanted + "000001.jpg\n000002.jpg\n000003.jpg\n") << line;
+  std::string expected;
+  for (const char* name : names) expected += pictures + "/" + name + "\n";
+  EXPECT_EQ(output, expected + "000001.jpg\n000002.jpg\n000003.jpg\n") << line;
 }
 
 TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {

@@ -85,10 +85,10 @@ TEST(ArcDetector, FindsWhatTheFrameCuts) {
 
 TEST(ArcDetector, FindsCrumpledRings) {
   const Ellipse truth{160.0, 120.0, 90.0, 70.0, 0.2};
-  for (const double crumple : {0.01, 0.02, 0.03}) {
+  for (const double deviation : {0.01, 0.02, 0.03}) {
     Scene scene = plain_ring();
-    scene.pad.crumple = crumple;
-    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.93) << crumple;
+    scene.pad.crumple = deviation;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.93) << deviation;
   }
 }
 

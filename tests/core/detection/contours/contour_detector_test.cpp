@@ -59,20 +59,20 @@ class ContourTypes : public testing::TestWithParam<double> {
                         double level) const {
     return support::bar_px(from, to, wide, level, width(), width());
   }
-  [[nodiscard]] Picture seen(const Scene& scene, const Ellipse& e) const {
+  [[nodiscard]] Picture picture_of(const Scene& scene, const Ellipse& e) const {
     return rendered(scene, e, width(), width());
   }
 };
 
 TEST_P(ContourTypes, AWhole) {
-  EXPECT_GT(best_iou(seen(plain_ring(), centred()), centred(), detecting()), kFound);
+  EXPECT_GT(best_iou(picture_of(plain_ring(), centred()), centred(), detecting()), kFound);
 }
 
 TEST_P(ContourTypes, BWithAttachedBranches) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kRingX;
   scene.pad.mark_length = 1.0;  // the X joins the ring
-  EXPECT_GT(best_iou(seen(scene, centred()), centred(), detecting()), kFound);
+  EXPECT_GT(best_iou(picture_of(scene, centred()), centred(), detecting()), kFound);
 }
 
 TEST_P(ContourTypes, BWithABranchOutside) {
@@ -83,14 +83,14 @@ TEST_P(ContourTypes, BWithABranchOutside) {
   const Eigen::Vector2d tip = root + 0.25 * (root - e.center());
   scene.bars = {
       bar(e.center() + 0.9 * (root - e.center()), tip, 0.15 * radius(), scene.pad.paint_level)};
-  EXPECT_GT(best_iou(seen(scene, e), e, tracking()), kFound);
+  EXPECT_GT(best_iou(picture_of(scene, e), e, tracking()), kFound);
 }
 
 TEST_P(ContourTypes, CInSeveralContours) {
   Scene scene = plain_ring();
   scene.pad.gaps_rad = {0.3, 2.5};
   scene.pad.gap_width_rad = 0.15;
-  EXPECT_GT(best_iou(seen(scene, centred()), centred(), tracking()), kFound);
+  EXPECT_GT(best_iou(picture_of(scene, centred()), centred(), tracking()), kFound);
 }
 
 TEST_P(ContourTypes, DOccluded) {
@@ -98,18 +98,18 @@ TEST_P(ContourTypes, DOccluded) {
   scene.pad.pattern = Pattern::kDisc;
   const Ellipse e = centred();
   scene.bars = {bar(e.center(), {2.0 * width(), e.cy + 0.4 * radius()}, 0.5 * radius(), 120.0)};
-  EXPECT_GT(best_iou(seen(scene, e), e, tracking()), kFound);
+  EXPECT_GT(best_iou(picture_of(scene, e), e, tracking()), kFound);
 }
 
 TEST_P(ContourTypes, ECutByTheFrame) {
-  EXPECT_GT(best_iou(seen(plain_ring(), cut()), cut(), detecting()), kFound);
+  EXPECT_GT(best_iou(picture_of(plain_ring(), cut()), cut(), detecting()), kFound);
 }
 
 TEST_P(ContourTypes, FCutWithBranches) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kRingX;
   scene.pad.mark_length = 1.0;
-  EXPECT_GT(best_iou(seen(scene, cut()), cut(), detecting()), kFound);
+  EXPECT_GT(best_iou(picture_of(scene, cut()), cut(), detecting()), kFound);
 }
 
 INSTANTIATE_TEST_SUITE_P(Radii, ContourTypes, testing::Values(12.0, 40.0, 120.0));

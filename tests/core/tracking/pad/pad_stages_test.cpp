@@ -174,14 +174,14 @@ TEST(LearnCirclesFrom, NothingFromAnEllipseBelowAPixel) {
 // -- LineLearner
 
 // Whether a point is on the strokes inside the ring, by the dimensions of Pad.
-bool is_on_mark(Pattern pattern, const Vector2d& place) {
+bool is_on_mark(Pattern pattern, const Vector2d& point) {
   const Pad pad;
   const double half_width = 0.5 * pad.mark_width;
   const auto is_in = [&](double along, double across, double half_length) {
     return std::abs(along) <= half_length && std::abs(across) <= half_width;
   };
-  const double x = place.x();
-  const double y = place.y();
+  const double x = point.x();
+  const double y = point.y();
   if (pattern == Pattern::kRingX) {
     const double falling = std::numbers::sqrt2 / 2.0 * (x + y);
     const double rising = std::numbers::sqrt2 / 2.0 * (x - y);
@@ -234,11 +234,11 @@ TEST_P(LearnLines, FindsTheStrokesAndNothingElse) {
       EXPECT_LT(std::abs(off) * (line.to - line.from).norm(), 0.004) << line.from.transpose();
       EXPECT_NEAR(line.contrast, is_bright ? 94.0 : 109.0, 30.0);
       for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-        const Vector2d place = line.from + at * (line.to - line.from);
-        const bool is_painted = is_on_mark(GetParam(), place + kBeside * line.to_bright);
-        EXPECT_EQ(is_painted, is_bright) << place.transpose();
-        EXPECT_NE(is_on_mark(GetParam(), place - kBeside * line.to_bright), is_painted)
-            << place.transpose();
+        const Vector2d point = line.from + at * (line.to - line.from);
+        const bool is_painted = is_on_mark(GetParam(), point + kBeside * line.to_bright);
+        EXPECT_EQ(is_painted, is_bright) << point.transpose();
+        EXPECT_NE(is_on_mark(GetParam(), point - kBeside * line.to_bright), is_painted)
+            << point.transpose();
       }
     }
     // Most of the mark's outline: about 5 radii for both marks.
@@ -343,8 +343,8 @@ TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
   int on_lines = 0;
   const Matrix3d pad_from_image = image_from_pad(kPad).inverse();
   for (const EdgeSample& sample : search.samples()) {
-    const Vector2d place = (pad_from_image * sample.view.point.homogeneous()).hnormalized();
-    if (sample.feature == 0) outer_angles.push_back(std::atan2(place.y(), place.x()));
+    const Vector2d pad_point = (pad_from_image * sample.view.point.homogeneous()).hnormalized();
+    if (sample.feature == 0) outer_angles.push_back(std::atan2(pad_point.y(), pad_point.x()));
     inner += sample.feature == 1 ? 1 : 0;
     on_lines += sample.feature >= 2 ? 1 : 0;
   }
@@ -394,18 +394,18 @@ TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
   const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
   PadModel model = disc_model();
   EdgeSearch search;
-  const auto met = [&] {
+  const auto matched_samples = [&] {
     search.sample(model, image_from_pad(kPad), picture.view(), 64);
     search.search(picture.view(), 1.0, 6.0);
     return std::count_if(search.samples().begin(),
                          search.samples().end(),
                          [](const EdgeSample& sample) { return sample.count > 0; });
   };
-  const auto all = met();
+  const auto all = matched_samples();
   EXPECT_GT(all, 50);
   EXPECT_EQ(all, static_cast<std::ptrdiff_t>(search.samples().size()));
   model.circles[0].is_bright_outside = false;
-  EXPECT_EQ(met(), 0);
+  EXPECT_EQ(matched_samples(), 0);
 }
 
 TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
@@ -425,22 +425,22 @@ TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
   const Ellipse expected = translated(kPad, 7.0, 0.0);
   EdgeSearch search;
   search.sample(disc_model(), image_from_pad(expected), picture.view(), 64);
-  const auto met_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
+  const auto matched_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
     search.search(picture.view(), 1.0, 3.0, &covariance, max_px);
-    int met = 0;
+    int matched = 0;
     for (const EdgeSample& sample : search.samples()) {
-      met += std::abs(sample.view.normal.x()) > 0.8 && sample.count > 0 ? 1 : 0;
+      matched += std::abs(sample.view.normal.x()) > 0.8 && sample.count > 0 ? 1 : 0;
     }
-    return met;
+    return matched;
   };
   HomographyCovariance covariance = HomographyCovariance::Zero();
-  EXPECT_EQ(met_at_sides(covariance, 12.0), 0);
+  EXPECT_EQ(matched_at_sides(covariance, 12.0), 0);
   covariance(0, 0) = covariance(1, 1) = std::pow(0.05, 2);  // 3 px
-  EXPECT_GT(met_at_sides(covariance, 12.0), 10);
-  EXPECT_EQ(met_at_sides(covariance, 4.0), 0);
+  EXPECT_GT(matched_at_sides(covariance, 12.0), 10);
+  EXPECT_EQ(matched_at_sides(covariance, 4.0), 0);
   // Only rounding can produce such a covariance.
   covariance = -HomographyCovariance::Identity();
-  EXPECT_EQ(met_at_sides(covariance, 12.0), 0);
+  EXPECT_EQ(matched_at_sides(covariance, 12.0), 0);
 }
 
 TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
@@ -478,7 +478,7 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
   PadModel model = disc_model();
   model.circles.clear();
   model.lines.push_back({{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, 100.0});
-  int met = 0;
+  int matched = 0;
   for (int i = 0; i < 200; ++i) {
     const double y = 11'970.0 + 0.1 * i;
     EdgeSearch search;
@@ -486,11 +486,11 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
     search.search(picture.view(), 1.0, 20.0 + 0.2 * i);
     for (const EdgeSample& sample : search.samples()) {
       if (sample.count == 0) continue;
-      ++met;
+      ++matched;
       EXPECT_NEAR(sample.candidates[0].distance_px, sample.view.point.y() - 11'959.5, 3.0);
     }
   }
-  EXPECT_GT(met, 100);
+  EXPECT_GT(matched, 100);
 }
 
 TEST(EdgeSearch, FindsNoPlaceInEmptyAndTinyPictures) {
@@ -513,8 +513,8 @@ HomographyPrior weak_prior() {
 }
 
 // A ring, searched at a position displaced by a change.
-struct Looked {
-  explicit Looked(const HomographyChange& off, double reach_px = 10.0)
+struct SearchedRing {
+  explicit SearchedRing(const HomographyChange& off, double reach_px = 10.0)
       : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
     search.sample(ring_model(), start, picture.view(), 96);
     search.search(picture.view(), 1.0, reach_px);
@@ -530,23 +530,23 @@ struct Looked {
 TEST(SolvePose, FindsShiftGrowthAndStretch) {
   for (const int i : {0, 1, 2, 3, 4}) {
     for (const double size : {-0.06, 0.06}) {
-      const Looked looked(size * HomographyChange::Unit(i));
+      const SearchedRing searched(size * HomographyChange::Unit(i));
       const auto estimate = solve_homography(
-          looked.search.samples(), weak_prior(), HomographyChange::Zero(), 12.0, 0.6, 5);
+          searched.search.samples(), weak_prior(), HomographyChange::Zero(), 12.0, 0.6, 5);
       ASSERT_TRUE(estimate);
-      EXPECT_GT(looked.error_px(HomographyChange::Zero()), 1.0) << i;
+      EXPECT_GT(searched.error_px(HomographyChange::Zero()), 1.0) << i;
       // The rows are linearised: a few hundredths of the change remain.
-      EXPECT_LT(looked.error_px(estimate->change), 0.35) << i;
+      EXPECT_LT(searched.error_px(estimate->change), 0.35) << i;
       EXPECT_NEAR(estimate->change(i), -size, 0.1 * std::abs(size)) << i;
     }
   }
 }
 
 TEST(SolvePose, TellsHowWellItKnows) {
-  const Looked looked(HomographyChange::Zero());
+  const SearchedRing searched(HomographyChange::Zero());
   const auto at = [&](double sigma_px) {
     return solve_homography(
-               looked.search.samples(), weak_prior(), HomographyChange::Zero(), 6.0, sigma_px, 2)
+               searched.search.samples(), weak_prior(), HomographyChange::Zero(), 6.0, sigma_px, 2)
         ->information;
   };
   const HomographyCovariance fine = at(0.5) - weak_prior().information;
@@ -557,32 +557,32 @@ TEST(SolvePose, TellsHowWellItKnows) {
 }
 
 TEST(SolvePose, RespectsAStrongPrior) {
-  const Looked looked(0.05 * HomographyChange::Unit(0) - 0.04 * HomographyChange::Unit(1));
+  const SearchedRing searched(0.05 * HomographyChange::Unit(0) - 0.04 * HomographyChange::Unit(1));
   HomographyPrior prior = weak_prior();
   prior.information(0, 0) = 1e12;
   prior.mean(0) = 0.01;
   const auto estimate =
-      solve_homography(looked.search.samples(), prior, HomographyChange::Zero(), 12.0, 0.6, 4);
+      solve_homography(searched.search.samples(), prior, HomographyChange::Zero(), 12.0, 0.6, 4);
   ASSERT_TRUE(estimate);
   EXPECT_NEAR(estimate->change(0), 0.01, 1e-4);
   EXPECT_NEAR(estimate->change(1), 0.04, 0.005);
 }
 
 TEST(SolvePose, LeavesOutWhatIsOutOfReach) {
-  const Looked looked(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
+  const SearchedRing searched(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
   const auto estimate = solve_homography(
-      looked.search.samples(), weak_prior(), HomographyChange::Zero(), 2.0, 0.6, 3);
+      searched.search.samples(), weak_prior(), HomographyChange::Zero(), 2.0, 0.6, 3);
   ASSERT_TRUE(estimate);
   EXPECT_LT(estimate->change.norm(), 1e-6);
 }
 
 TEST(SolvePose, FailsWhereNothingIsKnown) {
   EXPECT_FALSE(solve_homography({}, {}, HomographyChange::Zero(), 5.0, 0.6, 2));
-  const Looked looked(HomographyChange::Zero());
+  const SearchedRing searched(HomographyChange::Zero());
   HomographyPrior broken = weak_prior();
   broken.mean(3) = std::nan("");
   EXPECT_FALSE(
-      solve_homography(looked.search.samples(), broken, HomographyChange::Zero(), 5.0, 0.6, 2));
+      solve_homography(searched.search.samples(), broken, HomographyChange::Zero(), 5.0, 0.6, 2));
 }
 
 TEST(NearestCandidate, IsNextToThePrediction) {
@@ -597,8 +597,8 @@ TEST(NearestCandidate, IsNextToThePrediction) {
 }
 
 TEST(Support, FallsWithTheErrorOfTheView) {
-  const Looked looked(HomographyChange::Zero());
-  const auto samples = looked.search.samples();
+  const SearchedRing searched(HomographyChange::Zero());
+  const auto samples = searched.search.samples();
   double coverage = 2.0;
   double weight = static_cast<double>(samples.size()) + 1.0;
   for (const double off : {0.0, 0.03, 0.06, 0.2}) {

@@ -314,8 +314,8 @@ TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
   SceneRenderer renderer(scene_by_name("touchdown", 201));
   Picture picture(kWidth, kHeight);
   PadTracker tracker;
-  int little = 0;
-  int seen = 0;
+  int nearly_hidden = 0;
+  int tracked = 0;
   for (int i = 0; i < 75; ++i) {
     const double time_s = 3.0 + i / 30.0;
     const Truth truth = renderer.render(time_s, static_cast<std::uint64_t>(i), picture.writable());
@@ -329,18 +329,18 @@ TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
       EXPECT_TRUE(track && track->is_visible) << i;
       continue;
     }
-    ++little;
+    ++nearly_hidden;
     if (!track || !track->is_visible) continue;
-    ++seen;
+    ++tracked;
     const double off_px = (track->ellipse.center() - truth.outer_edge->center()).norm();
     // With the ring out of view, the camera may aim off the centre.
-    const double most = truth.visible_fraction > 0.0 ? 0.05 : 0.1;
-    EXPECT_LT(off_px / truth.outer_edge->semi_major, most) << i;
+    const double max_error = truth.visible_fraction > 0.0 ? 0.05 : 0.1;
+    EXPECT_LT(off_px / truth.outer_edge->semi_major, max_error) << i;
   }
-  RecordProperty("little", little);
-  RecordProperty("seen", seen);
-  EXPECT_GT(little, 20);
-  EXPECT_EQ(seen, little);
+  RecordProperty("nearly_hidden", nearly_hidden);
+  RecordProperty("tracked", tracked);
+  EXPECT_GT(nearly_hidden, 20);
+  EXPECT_EQ(tracked, nearly_hidden);
 }
 
 TEST(PadTracker, TellsTheSameOfTheSameFrames) {
