@@ -31,7 +31,7 @@ try:
 except ImportError as error:
     sys.exit(f"{error}: install python3-matplotlib")
 
-MOST_FRAMES = 1800  # one minute at 30 Hz; older frames are dropped
+MAX_FRAMES = 1800  # one minute at 30 Hz; older frames are dropped
 REDRAW_S = 0.05
 TRUTH, TARGET = GstEllipse.EllipseRole.TRUTH, GstEllipse.EllipseRole.TARGET
 STYLES = {
@@ -44,7 +44,7 @@ class Trail:
     """Time [s] and centres [px] by role of recent frames. Filled by the streaming thread."""
 
     def __init__(self):
-        self.frames = deque(maxlen=MOST_FRAMES)
+        self.frames = deque(maxlen=MAX_FRAMES)
         self.frame_size = 0, 0
 
     def on_buffer(self, _pad, info):

@@ -41,7 +41,7 @@ def covariance_of(target):
 
 def document(line, target, frame_id):
     position = target["position"]
-    turn = quaternion_to(target["normal"])
+    quat = quaternion_to(target["normal"])
     seconds, nanoseconds = divmod(line["pts_ns"], 1_000_000_000)
     covariance = ", ".join(f"{value:.6e}" for value in covariance_of(target))
     return (
@@ -51,7 +51,7 @@ def document(line, target, frame_id):
         "pose:\n"
         "  pose:\n"
         f"    position: {{x: {position['x']}, y: {position['y']}, z: {position['z']}}}\n"
-        f"    orientation: {{x: {turn[0]:.9f}, y: {turn[1]:.9f}, z: {turn[2]:.9f}, w: {turn[3]:.9f}}}\n"
+        f"    orientation: {{x: {quat[0]:.9f}, y: {quat[1]:.9f}, z: {quat[2]:.9f}, w: {quat[3]:.9f}}}\n"
         f"  covariance: [{covariance}]\n"
         "---\n"
     )
@@ -62,8 +62,8 @@ def main():
     for text in sys.stdin:
         line = json.loads(text)
         for target in line["targets"]:
-            is_seen = target["role"] == "target" and target["state"] != "predicted"
-            if is_seen and "position" in target and line["pts_ns"] is not None:
+            is_visible = target["role"] == "target" and target["state"] != "predicted"
+            if is_visible and "position" in target and line["pts_ns"] is not None:
                 sys.stdout.write(document(line, target, frame_id))
                 sys.stdout.flush()
 

@@ -103,11 +103,11 @@ std::string source_for(const Options& options) {
   return source;
 }
 
-// About a dozen evenly spaced frames of a stream of unknown length.
+// Keeps 12 to 23 evenly spaced frames of a stream of unknown length; write() selects 12 of them.
 class ContactSheet {
  public:
   void add(const cv::Mat& frame) {
-    if (seen_++ % step_ != 0) return;
+    if (frame_count_++ % step_ != 0) return;
     cv::Mat thumbnail;
     const double scale = static_cast<double>(kThumbnailWidth) / frame.cols;
     cv::resize(frame, thumbnail, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
@@ -136,11 +136,11 @@ class ContactSheet {
     }
   }
 
-  [[nodiscard]] std::size_t seen() const { return seen_; }
+  [[nodiscard]] std::size_t frame_count() const { return frame_count_; }
 
  private:
   std::vector<cv::Mat> thumbnails_;
-  std::size_t seen_ = 0;
+  std::size_t frame_count_ = 0;
   std::size_t step_ = 1;
 };
 
@@ -188,15 +188,15 @@ class Demo {
     while (GstSample* sample = next_sample(GST_APP_SINK(sink))) {
       keep(sample);
       gst_sample_unref(sample);
-      if (is_terminal && sheet_.seen() % 10 == 0) {
-        std::fprintf(stderr, "\r%zu frames", sheet_.seen());
+      if (is_terminal && sheet_.frame_count() % 10 == 0) {
+        std::fprintf(stderr, "\r%zu frames", sheet_.frame_count());
       }
     }
     if (is_terminal) std::fprintf(stderr, "\r\033[K");
     gst_object_unref(sink);
     await_end();
     sheet_.write(fs::path(options_.output) / "contact_sheet.png");
-    if (sheet_.seen() == 0) throw std::runtime_error("contains no picture");
+    if (sheet_.frame_count() == 0) throw std::runtime_error("contains no picture");
   }
 
   void print_summary() const {
@@ -245,7 +245,7 @@ class Demo {
     return GST_PAD_PROBE_DROP;
   }
 
-  // Blocks for a frame until the pipeline ends. Returns NULL at its end.
+  // Blocks until the next frame. Returns NULL at the end of the stream.
   GstSample* next_sample(GstAppSink* sink) {
     constexpr GstClockTime kBusPoll = 100 * GST_MSECOND;
     GstSample* sample = nullptr;
@@ -309,14 +309,14 @@ class Demo {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   Options options;
-  CLI::App app{"Runs the ellipse tracker and shows what it found."};
+  CLI::App app{"Runs the ellipse tracker on a video and writes the annotated result."};
   app.name("ellipse-demo");
   app.add_option(
       "INPUT", options.input, "A file, frame%04d.jpg, /dev/video0 or a URI; default: a test scene");
   app.add_option("--out", options.output, "Folder for the results")->capture_default_str();
   app.add_option("--frames",
                  options.frames,
-                 "Stop after this number of frames; 0 = at the end of the input")
+                 "Stop after this number of frames; 0 = process the whole input")
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {

@@ -19,7 +19,7 @@ struct AllResult {
 /// Matches found and true ellipses one to one at an intersection over union of at least kMinIou,
 /// with as many matches as possible. A true ellipse with less than kMinVisible of its perimeter in
 /// the frame may be missed; an ellipse that matches it counts neither as right nor as mistaken.
-/// Frames that are not judged count nothing.
+/// Frames that are not judged are not counted.
 [[nodiscard]] AllResult compare_all(std::span<const ellipse::Ellipse> found,
                                     const Truth& truth,
                                     const FrameSize& frame);

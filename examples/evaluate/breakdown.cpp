@@ -24,7 +24,7 @@ std::vector<std::string> names_of(const std::vector<double>& limits, double unit
   return names;
 }
 
-// The range of a value; nullopt below the first limit.
+// Index of the range that contains a value; nullopt below the first limit.
 std::optional<std::size_t> range_of(double value, const std::vector<double>& limits) {
   const auto above = std::upper_bound(limits.begin(), limits.end(), value);
   if (above == limits.begin()) return std::nullopt;

@@ -22,7 +22,7 @@ class Chooser {
  public:
   virtual ~Chooser() = default;
 
-  /// @param sources  Names of data sets, at least one. The choice must depend on no others.
+  /// @param sources  Names of data sets, at least one. The choice depends on these only.
   [[nodiscard]] virtual Choice choose(const std::vector<std::string>& sources) = 0;
 };
 

@@ -78,7 +78,7 @@ void check_status(const std::string& command, GSubprocess* program) {
   if (status != 0) fail(command, "exited with status " + std::to_string(status));
 }
 
-// Kills the program when its answer is no longer wanted.
+// Kills the program when is_wanted() returns false.
 class Watch {
  public:
   Watch(GSubprocess* program, const std::function<bool()>& is_wanted)
@@ -207,7 +207,7 @@ std::map<std::string, PeerAnswer> run_command_peer(const std::string& command,
   std::string input;
   for (const std::filesystem::path& image : images) {
     if (image.string().find('\n') != std::string::npos) {
-      fail(command, "cannot be given \"" + image.string() + "\": the path contains a line break");
+      fail(command, "cannot be passed \"" + image.string() + "\": the path contains a line break");
     }
     if (asked.insert(image.string()).second) input += image.string() + '\n';
   }

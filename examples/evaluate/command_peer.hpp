@@ -31,7 +31,7 @@ struct PeerAnswer {
 ///
 /// @param is_wanted  Called from another thread ten times a second. If it returns false, the
 /// program is killed and the call throws.
-/// @return The answers by path. Images without an answer are missing.
+/// @return The answers by path. An image without an answer has no entry.
 ///
 /// Throws std::runtime_error that names the command if it cannot be started, exits with a status
 /// other than 0 or by a signal, or writes an invalid line, an image that was not requested, or an

@@ -99,7 +99,7 @@ class Reader {
       frame.pts_ns = static_cast<std::int64_t>(row.optional_number("pts_ns").value_or(kNoTime));
       add(row, std::move(frame), row.has("dataset") ? row.text("dataset") : own_name());
     };
-    for_each_row(file, ',', use, [&](const std::string& problem) { lose(problem); });
+    for_each_row(file, ',', use, [&](const std::string& problem) { skip_row(problem); });
   }
 
   void read_published(const fs::path& file) {
@@ -113,10 +113,10 @@ class Reader {
       frame.pts_ns = kNoTime;
       add(row, std::move(frame), own_name());
     };
-    for_each_row(file, '\t', use, [&](const std::string& problem) { lose(problem); });
+    for_each_row(file, '\t', use, [&](const std::string& problem) { skip_row(problem); });
   }
 
-  void lose(const std::string& problem) {
+  void skip_row(const std::string& problem) {
     dataset_.problems.push_back(problem);
     ++dataset_.missing_frames;
   }
@@ -129,7 +129,7 @@ class Reader {
                                    : &frames_[found->second.sequence][found->second.index];
   }
 
-  // Adds another ellipse from a further row of the same image.
+  // Adds an ellipse from a further row of the same image.
   static void add_ellipse(const Row& row, Frame& frame, const Truth& truth) {
     if (!truth.target || !frame.truth.target) {
       row.fail("image " + frame.name + " has several lines, one of them without an ellipse");
@@ -173,7 +173,7 @@ class Reader {
     return inside.starts_with("images/") ? inside.substr(7) : inside;
   }
 
-  // Reads the images that stay in their sequence but are not judged. They need no row in the table.
+  // Reads the list of images that are processed but not judged. They need no row in the table.
   void read_ignored(const fs::path& file) {
     if (!fs::exists(file)) return;
     std::ifstream in(file);

@@ -76,7 +76,7 @@ struct Dataset {
   std::vector<Sequence> sequences;
   /// Errors in the data set, with file and line.
   std::vector<std::string> problems;
-  /// Rows of the truth skipped because of them.
+  /// Number of rows skipped because of such errors.
   std::size_t missing_frames = 0;
 };
 
@@ -89,7 +89,7 @@ struct Dataset {
 /// inner_semi_major adds the inner edge of a ring, concentric and of the same shape. If the folder
 /// has a video `eye.mp4` (any container), `images/eye/frame_0012.png` denotes its frame 12, counted
 /// from 0 in decoding order, with the video's timestamp. Images may differ in size. An optional
-/// `ignore.txt` lists images, one per line, that trackers see but that are not judged.
+/// `ignore.txt` lists images, one per line, that trackers process but that are not judged.
 ///
 /// Images without a timestamp are 1 / frames_per_second apart. An invalid row, a row without its
 /// image, and an image without a row are reported as problems; the other frames are read. Throws

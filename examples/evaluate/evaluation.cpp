@@ -62,7 +62,7 @@ class Run {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
   }
 
-  void see(const Sequence& sequence, const Frame& frame) {
+  void process(const Sequence& sequence, const Frame& frame) {
     cv::Mat picture;
     try {
       picture = sequence.pictures->picture(frame);
@@ -73,7 +73,7 @@ class Run {
     }
     const SeenFrame seen{
         &sequence, &frame, {picture.cols, picture.rows, sequence.distortion.get()}};
-    // The order changes per frame because each method leaves its data in the caches.
+    // The order is random because each method leaves its data in the caches for the next one.
     shuffle();
     double reference_ms = 0.0;
     for (const std::size_t i : order_) {
@@ -140,7 +140,7 @@ Evaluation evaluate(const std::vector<Sequence>& sequences,
   for (const Sequence& sequence : sequences) {
     for (const auto& method : methods) method->start(sequence.distortion.get());
     for (const Frame& frame : sequence.frames) {
-      run.see(sequence, frame);
+      run.process(sequence, frame);
       evaluation.is_interrupted = !advance(frame);
       if (evaluation.is_interrupted) return std::move(evaluation);
     }

@@ -38,7 +38,7 @@ struct Evaluation {
 };
 
 /// Runs all methods and cv::Canny + cv::findContours on each frame, in random order, so that
-/// changes of the machine's speed affect all alike.
+/// changes of the machine's speed affect all of them equally.
 ///
 /// @param sequences  Borrowed by the result.
 /// @param advance    Called after each frame; returning false stops early.

@@ -48,7 +48,7 @@ struct Sample {
   double weight;
 };
 
-// Gives all sources equal weight, and within a source right and wrong candidates.
+// Weights all sources equally and, within a source, right and wrong candidates equally.
 void weigh(std::vector<Sample>& samples) {
   std::map<std::pair<std::size_t, bool>, double> counts;
   for (const Sample& s : samples) ++counts[{s.candidate->source, s.candidate->is_right}];
@@ -122,7 +122,7 @@ EvidenceTable regress(const std::vector<Sample>& samples) {
   return table;
 }
 
-// All right candidates, and each frame's wrong ones with the largest probabilities.
+// Returns all right candidates and the most probable wrong ones of each frame.
 std::vector<Sample> hardest(const std::vector<Sample>& all, const EvidenceTable& table) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < all.size(); ++i) {

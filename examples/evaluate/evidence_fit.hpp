@@ -41,9 +41,9 @@ struct Calibration {
 ///
 /// A candidate is right if its intersection over union with a true ellipse is at least .85, and
 /// wrong below .6. Candidates in between, or concentric with a true ellipse, are not used. All
-/// sources have equal weight, and within a source right and wrong candidates. Most wrong candidates
-/// are easy to reject, so after the first fit the table is fitted twice more to the most probable
-/// wrong candidates of each frame.
+/// sources have equal weight; so have the right and the wrong candidates of a source. Most wrong
+/// candidates are easy to reject. After the first fit, the table is therefore fitted twice more, to
+/// all right candidates and the most probable wrong ones of each frame.
 class EvidenceFitter : public Chooser {
  public:
   /// Runs the detector on all labelled frames.

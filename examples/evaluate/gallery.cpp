@@ -35,7 +35,7 @@ void draw(cv::Mat& picture, const ellipse::Ellipse& e, const cv::Scalar& color) 
               kSubPixelBits);
 }
 
-// Draws an ellipse of the ideal plane as the lens distorts it.
+// Draws an ellipse of the ideal plane, distorted by the lens.
 void draw_distorted(cv::Mat& picture,
                     const ellipse::Ellipse& e,
                     const ellipse::Lens& lens,
@@ -58,18 +58,18 @@ bool is_bad(Outcome outcome) {
          outcome == Outcome::kFalseNegative;
 }
 
-// Larger is worse. Repeated bad frames of a sequence count less than the first ones of others.
+// Larger is worse. Further bad frames of a sequence rank below the first ones of other sequences.
 std::vector<double> badness(const Evaluation& evaluation,
                             std::size_t method,
                             const std::string& dataset) {
   std::vector<double> result;
-  std::map<std::string, int> seen_in;
+  std::map<std::string, int> bad_frames;
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
     const Result& one = evaluation.methods[method].results[i];
     if (evaluation.frames[i].sequence->dataset != dataset) {
       result.push_back(0.0);
     } else if (is_bad(one.outcome)) {
-      const int before = seen_in[evaluation.frames[i].sequence->name]++;
+      const int before = bad_frames[evaluation.frames[i].sequence->name]++;
       result.push_back(1e6 / (1.0 + before));
     } else {
       result.push_back(one.outcome == Outcome::kTruePositive ? one.centre_error_px : 0.0);
@@ -103,13 +103,13 @@ Exhibit exhibit_of(const SeenFrame& seen, const Result& result) {
 std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
                                   std::size_t method,
                                   const std::string& dataset,
-                                  std::size_t most) {
+                                  std::size_t max_count) {
   const std::vector<double> bad = badness(evaluation, method, dataset);
   std::vector<std::size_t> order(bad.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(
       order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bad[a] > bad[b]; });
-  if (order.size() > most) order.resize(most);
+  if (order.size() > max_count) order.resize(max_count);
   std::vector<Exhibit> exhibits;
   for (const std::size_t i : order) {
     if (!(bad[i] > 0.0)) break;

@@ -20,6 +20,6 @@ struct Exhibit {
 [[nodiscard]] std::vector<Exhibit> worst_frames(const Evaluation& evaluation,
                                                 std::size_t method,
                                                 const std::string& dataset,
-                                                std::size_t most);
+                                                std::size_t max_count);
 
 }  // namespace evaluate

@@ -35,7 +35,7 @@ std::vector<std::string> outside_of(const std::string& group,
   return others;
 }
 
-// nullopt if it was stopped early.
+// nullopt if it was stopped early or no frame could be read.
 std::optional<LeftOut> judge_on(const std::vector<Sequence>& sequences,
                                 const ellipse::TrackerSettings& unchosen,
                                 const Choice& left_out,

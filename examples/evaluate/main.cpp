@@ -25,7 +25,7 @@ CLI::Option* add_leave_one_out(CLI::App& app, Options& options, CLI::Option* dat
   CLI::Option* choose = app.add_option("--choose",
                                        options.choices,
                                        "PROPERTY=VALUE:VALUE... or PROPERTY=FROM:TO:STEP; several "
-                                       "form a grid")
+                                       "options form a grid")
                             ->allow_extra_args(false);
   CLI::Option* leave = app.add_flag("--leave-one-out",
                                     options.leave_one_out,

@@ -15,7 +15,7 @@ class Matching {
   Matching(std::size_t lefts, std::size_t rights, const std::vector<Edge>& edges)
       : edges_(edges), edge_of_left_(lefts), edge_of_right_(rights) {}
 
-  /// False where no further pair can be matched.
+  /// Returns false if no further pair can be matched.
   bool grow() {
     reach();
     const auto right = best_free_right();

@@ -101,10 +101,10 @@ Outcome judge(const std::optional<ellipse::Ellipse>& answer,
   const auto is_visible = [&](const TrueEllipse& one) {
     return visible_part(one, frame) >= kMinVisible;
   };
-  const bool may_go_unseen = std::ranges::none_of(ellipses_of(truth), is_visible);
-  if (!answer) return may_go_unseen ? Outcome::kTrueNegative : Outcome::kFalseNegative;
+  const bool may_be_missed = std::ranges::none_of(ellipses_of(truth), is_visible);
+  if (!answer) return may_be_missed ? Outcome::kTrueNegative : Outcome::kFalseNegative;
   if (matched_ellipse(*answer, truth, frame, rule)) return Outcome::kTruePositive;
-  return may_go_unseen ? Outcome::kNotJudged : Outcome::kWrong;
+  return may_be_missed ? Outcome::kNotJudged : Outcome::kWrong;
 }
 
 void Measures::add(const Result& result) {
@@ -144,7 +144,7 @@ double Measures::recall() const {
   return ratio(right, right + count(Outcome::kFalseNegative) + count(Outcome::kWrong));
 }
 
-// The harmonic mean of precision and recall, without their divisions by zero.
+// The harmonic mean of precision and recall, in a form that is defined without right answers.
 double Measures::f1() const {
   const int right = count(Outcome::kTruePositive);
   return ratio(2 * right,

@@ -85,7 +85,7 @@ struct FrameSize {
 struct Result {
   Outcome outcome = Outcome::kNotJudged;
   double processing_ms = 0.0;
-  double reference_ms = 0.0;     ///< Duration of edges and contours alone, on the same frame.
+  double reference_ms = 0.0;     ///< Duration of cv::Canny and cv::findContours on the same frame.
   double centre_error_px = 0.0;  ///< Defined for kTruePositive.
   int scale = 1;                 ///< Frame scale of the answer.
   std::optional<ellipse::Ellipse> answer;
@@ -120,7 +120,7 @@ class Measures {
 
  private:
   std::array<int, kOutcomes> counts_{};
-  std::array<std::vector<double>, kOutcomes> times_ms_;  // of the frames with an answer
+  std::array<std::vector<double>, kOutcomes> times_ms_;  // of the frames with a measured time
   std::array<std::vector<double>, kScales> centre_errors_px_;
   std::vector<double> reference_ms_;
 };

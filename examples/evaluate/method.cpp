@@ -66,7 +66,7 @@ class TrackerMethod : public Method {
     return answer;
   }
 
-  // Detects again in the whole frame, because a search for one target may stop early.
+  // Detects again in the whole frame, because the search for a single target may stop early.
   [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() override {
     if (settings_.tracking != ellipse::TrackingMode::kNone) return std::nullopt;
     if (!all_finder_) return outlines_of(tracker_.candidates());
@@ -261,7 +261,7 @@ std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
   if (answers.size() < images.size()) {
     problems.push_back("peer " + peer.name + ": no answer for " +
                        std::to_string(images.size() - answers.size()) + " of " +
-                       std::to_string(images.size()) + " images; counted as finding nothing");
+                       std::to_string(images.size()) + " images; they count as frames without a detection");
   }
   return std::make_unique<CommandMethod>(peer.name, std::move(answers));
 }

@@ -57,7 +57,7 @@ class Method {
 /// packaged detectors.
 [[nodiscard]] std::vector<std::string> unaided_method_names();
 
-/// Of those, the default pair of detector and tracking mode, and its detector on single frames.
+/// The default pair of detector and tracking mode, and its detector on single frames.
 [[nodiscard]] std::vector<std::string> default_method_names();
 
 /// The names of all methods: those that find their target themselves, then the packaged trackers,
@@ -92,7 +92,7 @@ struct PeerCommand {
 [[nodiscard]] PeerCommand parse_peer(const std::string& text);
 
 /// Creates a method that runs a program once for all frames.
-/// @param problems   Receives a message per missing answer.
+/// @param problems   Receives one message with the number of missing answers, if any.
 /// @param is_wanted  Called from another thread from time to time; returning false kills the
 /// program.
 /// Throws std::runtime_error that names the command.

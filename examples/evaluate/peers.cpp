@@ -65,8 +65,7 @@ class Peer : public ellipse::Detector {
 // a, b, degrees). Default parameters except Sigma: 1.5 px instead of 1 finds 599 of the 603 AirLab
 // targets instead of 593, in less time. Other parameters find as many or fewer: PFmode, gradient
 // threshold 10 or 36, Sobel, LineFitErrorThreshold 0.5, MaxErrorThreshold 2. NFAValidation rejects
-// perimeters above about 1000 px; without it false ellipses win (540 of 603).
-// of 603.
+// perimeters above about 1000 px; without it, false ellipses are selected (540 of 603).
 class EdgeDrawingPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     if (picture.size() != size_) start_over(picture.size());
@@ -123,7 +122,6 @@ class EdgeDrawingPeer final : public Peer {
 // finds fewer targets. On AirLab, 20 px finds 25 of 603 targets, of which 74 have an axis ratio
 // below 1.25. Edge thresholds of 150 and 500 find 28 and 27, and on rendered approaches 96 and 97
 // of 150 instead of 98. 40 px or a perfectness of 0.8 find no more.
-// more.
 class HoughCirclesPeer final : public Peer {
   void search(const cv::Mat& picture, const ellipse::Thresholds& limits) override {
     cv::GaussianBlur(picture, smooth_, {7, 7}, 1.5);

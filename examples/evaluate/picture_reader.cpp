@@ -108,7 +108,7 @@ cv::Mat PictureReader::read(const std::filesystem::path& file) {
     if (!jpeg_) jpeg_ = std::make_unique<JpegPipeline>();
     picture = jpeg_->decode(bytes);
     g_bytes_unref(bytes);
-    if (picture.empty()) jpeg_.reset();  // the decoder can be stuck in this picture
+    if (picture.empty()) jpeg_.reset();  // the decoder may still wait for data of this picture
   }
   if (picture.empty()) fail(file);
   return picture;

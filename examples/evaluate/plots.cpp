@@ -31,8 +31,8 @@ std::string quoted(const std::string& text) {
 
 void write_data(std::ostream& script, const Panel& panel, std::size_t number) {
   script << "$data" << number << " << EOD\n";
-  const std::size_t places = panel.ranges.empty() ? panel.x.size() : panel.ranges.size();
-  for (std::size_t i = 0; i < places; ++i) {
+  const std::size_t points = panel.ranges.empty() ? panel.x.size() : panel.ranges.size();
+  for (std::size_t i = 0; i < points; ++i) {
     if (panel.ranges.empty()) {
       script << panel.x[i];
     } else {
@@ -121,17 +121,17 @@ std::string run_gnuplot(const std::string& script) {
   if (!gnuplot) fail(error);
   GBytes* input = g_bytes_new_static(script.data(), script.size());
   GBytes* output = nullptr;
-  GBytes* complaint = nullptr;
+  GBytes* errors = nullptr;
   const bool has_run =
-      g_subprocess_communicate(gnuplot.get(), input, nullptr, &output, &complaint, &error) != FALSE;
+      g_subprocess_communicate(gnuplot.get(), input, nullptr, &output, &errors, &error) != FALSE;
   g_bytes_unref(input);
   if (!has_run) fail(error);
-  const std::string said = text_of(complaint);
-  std::string drawn = text_of(output);
-  if (!g_subprocess_get_successful(gnuplot.get()) || drawn.empty()) {
-    throw std::runtime_error("gnuplot: " + said);
+  const std::string error_text = text_of(errors);
+  std::string image = text_of(output);
+  if (!g_subprocess_get_successful(gnuplot.get()) || image.empty()) {
+    throw std::runtime_error("gnuplot: " + error_text);
   }
-  return drawn;
+  return image;
 }
 
 std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
@@ -141,9 +141,9 @@ std::string plot(const std::vector<Panel>& panels, PlotFormat format) {
 void plot_to(const std::filesystem::path& file,
              const std::vector<Panel>& panels,
              PlotFormat format) {
-  const std::string drawn = plot(panels, format);
+  const std::string image = plot(panels, format);
   std::ofstream out(file, std::ios::binary);
-  out << drawn;
+  out << image;
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 

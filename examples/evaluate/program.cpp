@@ -112,8 +112,8 @@ class Program {
       if (!options_.ground_file.empty()) ground = PictureReader().read(options_.ground_file);
       sequences_ = make_twin(ground);
     }
-    for (const std::string& given : options_.datasets) {
-      for (const fs::path& name : dataset_folders(given)) gather(name.string());
+    for (const std::string& argument : options_.datasets) {
+      for (const fs::path& name : dataset_folders(argument)) gather(name.string());
     }
   }
 
@@ -139,7 +139,7 @@ class Program {
     return read_dataset(name, options_.pace.frames_per_second);
   }
 
-  // Results are reported by data set name, so data sets of the same name need distinct ones.
+  // Results are reported by data set name, so equal names get a prefix.
   void make_names_unique(Dataset& dataset, const std::string& name) const {
     for (Sequence& sequence : dataset.sequences) {
       const bool is_taken =
@@ -162,7 +162,7 @@ class Program {
     return evaluation;
   }
 
-  // Problems are counted once: every run over the frames reports the same ones.
+  // Counts each problem once, because every run over the frames reports it again.
   void note_missing(const std::vector<std::string>& problems) {
     for (const std::string& problem : problems) {
       if (std::ranges::find(problems_, problem) != problems_.end()) continue;

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxVoters = 1500;
 // Maximum deviation of an edge normal from the axis that ends there: sine of 6 degrees.
 constexpr float kMaxSine = 0.1F;
 
-// Minimum fraction of the perimeter's pixels that must have voted.
+// Minimum number of votes, as a fraction of the perimeter in pixels.
 constexpr double kMinShare = 0.55;
 
 // Ellipses closer than this are duplicates.
@@ -76,7 +76,7 @@ std::span<const ellipse::Detection> RandomizedHough::find(std::span<const EdgePi
   return found_;
 }
 
-// The front of a shuffle is an unbiased sample.
+// The first elements of a shuffle are an unbiased sample.
 void RandomizedHough::choose_voters(std::span<const EdgePixel> edges, Random& random) {
   shuffled_.assign(edges.begin(), edges.end());
   const std::size_t voters = std::min(kMaxVoters, edges.size());
@@ -131,7 +131,7 @@ std::optional<ellipse::Detection> RandomizedHough::vote(const EdgePixel& p, cons
     const float b_sq = a_sq * v * v / std::max(a_sq - u * u, 1e-3F);
     semi_minor_[i] = std::sqrt(std::min(b_sq, 4.0F * a_sq));
   }
-  // A circle's pixels lie inside and outside equally often, so votes can exceed the major axis by
+  // The pixels of a circle scatter to both sides of it, so votes can exceed the semi-major axis by
   // up to a pixel.
   const auto bins = static_cast<std::size_t>(a) + 2;
   votes_.assign(bins + 1, 0);

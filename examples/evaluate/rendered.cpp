@@ -43,7 +43,7 @@ class RenderedPictures : public PictureSource {
  private:
   ellipse::Scene scene_;
   FrameTimes times_;
-  // Exists from the first frame to the last, because its ground is expensive in time and memory.
+  // Created for the first frame and released after the last: its ground takes much time and memory.
   std::optional<ellipse::SceneRenderer> renderer_;
 };
 

@@ -64,7 +64,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// Green for good values, so that others stand out.
+// Green for good values, red for bad ones.
 std::string tint(const std::string& cell) {
   char* end = nullptr;
   const double grade = std::strtod(cell.c_str(), &end);
@@ -102,7 +102,7 @@ void write_tiles(std::ostream& out, const Evaluation& evaluation, const std::str
   tile(number(m.recall(), 4), "recall");
   tile(number(quantile(m.all_centre_errors_px(), 0.5), 3) + " px", "median centre error");
   tile(number(quantile(m.all_times_ms(), 0.5), 2) + " ms", "median time per frame");
-  tile(number(ratio, 2) + " &times;", "of Canny + findContours");
+  tile(number(ratio, 2) + " &times;", "relative to Canny + findContours");
   out << "</div>\n";
 }
 
@@ -115,12 +115,12 @@ std::string inline_svg(const std::string& svg) {
 void write_gallery(std::ostream& out,
                    const Evaluation& evaluation,
                    const std::string& dataset,
-                   std::size_t most) {
+                   std::size_t max_exhibits) {
   out << "<h3>The worst frames of " << escaped(evaluation.methods[0].name)
       << "</h3>\n<p class=\"note\"><span class=\"truth\">Truth</span> and <span class=\"answer\">"
          "answer</span>. WD: wrong target, FP: no target present, FN: missed, TP: right, but "
          "inaccurate.</p>\n<div class=\"gallery\">\n";
-  for (const Exhibit& exhibit : worst_frames(evaluation, 0, dataset, most)) {
+  for (const Exhibit& exhibit : worst_frames(evaluation, 0, dataset, max_exhibits)) {
     cv::Mat small = exhibit.picture;
     if (small.cols > 640) {
       cv::resize(small, small, {640, 640 * small.rows / small.cols}, 0.0, 0.0, cv::INTER_AREA);

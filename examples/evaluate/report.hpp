@@ -12,7 +12,7 @@ namespace evaluate {
 /// of the first method.
 ///
 /// @param command   The command line that produced the results.
-/// @param problems  Shown at the top: what the results do not cover.
+/// @param problems  Messages about skipped frames, shown at the top.
 ///
 /// Throws std::runtime_error if it cannot be written or gnuplot is missing.
 void write_report(const Evaluation& evaluation,

@@ -38,13 +38,13 @@ class Sums {
   std::vector<FrameCounts> before_;
 };
 
-// A range of frames, counted from the source's first.
+// A range of frames, as indices in the source.
 struct FrameRange {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
-// The ranges of one resample.
+// Draws the frame ranges of resamples.
 class Draw {
  public:
   Draw(const SourceFrames& source, const Scheme& scheme) : scheme_(scheme) {
@@ -167,10 +167,10 @@ double grade_of(const FrameCounts& sum) {
 Scheme scheme_for(const SourceFrames& source, std::span<const FrameCounts> counts) {
   if (source.sequence_lengths.size() >= kMinSequences) return {true, 1};
   const std::size_t longest = *std::ranges::max_element(source.sequence_lengths);
-  const std::size_t most = std::max<std::size_t>(1, longest / kMinBlocks);
+  const std::size_t max_frames = std::max<std::size_t>(1, longest / kMinBlocks);
   const double frames = std::max(kBlockSeconds * source.frames_per_second,
-                                 autocorrelation_time(source, counts, most));
-  return {false, std::min(most, static_cast<std::size_t>(std::ceil(frames)))};
+                                 autocorrelation_time(source, counts, max_frames));
+  return {false, std::min(max_frames, static_cast<std::size_t>(std::ceil(frames)))};
 }
 
 Scheme longer(const Scheme& a, const Scheme& b) {

@@ -43,7 +43,7 @@ FrameTimes times_of(const ScenePace& pace) {
   return {0.0, static_cast<int>(frames), 1, pace.frames_per_second};
 }
 
-// Shared by all scenes with the same camera.
+// Shares a DistortedFrame among all scenes with the same camera.
 class SharedFrames {
  public:
   std::shared_ptr<const DistortedFrame> of(const ellipse::Scene& scene) {
@@ -62,7 +62,7 @@ class SharedFrames {
 
 std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
                                                       const std::string& kind,
-                                                      std::size_t most) {
+                                                      std::size_t limit) {
   if (!text.starts_with(kind + ":")) return std::nullopt;
   std::string_view rest = std::string_view(text).substr(kind.size() + 1);
   std::vector<std::uint64_t> seeds;
@@ -70,7 +70,7 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
     const std::uint64_t from = take_seed(rest, text);
     const std::uint64_t to = take(rest, '-') ? take_seed(rest, text) : from;
     if (to < from) fail(text, "expected FROM <= TO");
-    if (to - from >= most - seeds.size()) fail(text, format("more than %zu seeds", most));
+    if (to - from >= limit - seeds.size()) fail(text, format("more than %zu seeds", limit));
     for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
   } while (take(rest, ','));
   if (!rest.empty()) fail(text, format("\"%s\" is not a seed", std::string(rest).c_str()));

@@ -17,9 +17,9 @@ struct ScenePace {
 
 /// Parses the seeds of "KIND:SEED", where commas separate several and FROM-TO is a range; nullopt
 /// if the text does not start with the kind. Throws std::invalid_argument that quotes the text if
-/// the seeds are invalid or more than `most`.
+/// the seeds are invalid or more than `limit`.
 [[nodiscard]] std::optional<std::vector<std::uint64_t>> scene_seeds(
-    const std::string& text, const std::string& kind = "scenes", std::size_t most = 1000);
+    const std::string& text, const std::string& kind = "scenes", std::size_t limit = 1000);
 
 /// Every scene of the catalog with each seed, as sequences "approach-901" and so on of the data set
 /// "scenes". Each starts at its beginning and is continuous. Pictures are rendered on demand.

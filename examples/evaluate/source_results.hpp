@@ -23,7 +23,7 @@ struct SourceGrade {
   double grade = 0.0;  ///< See grade_of().
   FrameCounts counts;
   Interval interval;
-  /// From the first method; nullopt for the first method itself.
+  /// Interval of the difference from the first method; nullopt for the first method itself.
   std::optional<Interval> difference;
 };
 

@@ -164,8 +164,8 @@ Table interval_table(const Evaluation& evaluation, std::span<const SourceResults
     table.rows.push_back(std::move(row));
   }
   table.note = "Bootstrap over whole sequences: " + names_of(results, true) +
-               "; over blocks of at least one second and the duration of errors, for sources with "
-               "fewer than " +
+               "; over blocks of one second, or of the autocorrelation time of errors if that is "
+               "longer, for sources with fewer than " +
                std::to_string(kMinSequences) + " sequences: " + names_of(results, false) +
                ". -: no error to resample.";
   return table;

@@ -41,14 +41,14 @@ class Follower {
  public:
   explicit Follower(TrackingMeasures& measures) : measures_(measures) {}
 
-  void see(const SeenFrame& seen, const Result& result) {
+  void add(const SeenFrame& seen, const Result& result) {
     if (!seen.frame->truth.is_labelled) return;
     if (result.is_given) ++measures_.given;
     const bool is_in_view = evaluate::is_in_view(seen.frame->truth, seen.size);
     if (is_in_view) {
-      see_target(visible_part(seen.frame->truth, seen.size), verdict_on(result, seen), result);
+      add_target(visible_part(seen.frame->truth, seen.size), verdict_on(result, seen), result);
     } else {
-      see_nothing(result);
+      add_empty(result);
     }
   }
 
@@ -58,7 +58,7 @@ class Follower {
   }
 
  private:
-  void see_nothing(const Result& result) {
+  void add_empty(const Result& result) {
     ++measures_.empty_frames;
     measures_.locks_on_nothing += result.answer ? 1 : 0;
     end();
@@ -67,7 +67,7 @@ class Follower {
     was_visible_ = false;
   }
 
-  void see_target(double visible, const Verdict& verdict, const Result& result) {
+  void add_target(double visible, const Verdict& verdict, const Result& result) {
     const bool is_visible = visible >= kMinToStart;
     has_begun_ = has_begun_ || is_visible;
     if (!has_begun_) {
@@ -77,7 +77,7 @@ class Follower {
     if (is_visible) {
       if (!was_visible_ && was_lost_ && has_begun_before_) waited_ = 1;
       has_begun_before_ = true;
-      see_return(verdict, result);
+      add_return(verdict, result);
       was_lost_ = false;
     } else {
       end();
@@ -87,7 +87,7 @@ class Follower {
     if (!result.is_given) count(range_of(visible), verdict, result);
   }
 
-  void see_return(const Verdict& verdict, const Result& result) {
+  void add_return(const Verdict& verdict, const Result& result) {
     if (waited_ == 0) return;
     if (verdict.is_right && !result.is_given) measures_.returns.push_back(waited_);
     waited_ = verdict.is_right ? 0 : waited_ + 1;
@@ -137,7 +137,7 @@ TrackingMeasures tracking_measures_of(const Evaluation& evaluation,
       follower.emplace(measures);
       sequence = seen.sequence;
     }
-    follower->see(seen, result);
+    follower->add(seen, result);
     if (std::isfinite(result.processing_ms)) measures.times_ms.push_back(result.processing_ms);
   }
   if (follower) follower->end();

@@ -117,7 +117,7 @@ Table following_table(const Evaluation& evaluation, const std::string& dataset) 
                           number(quantile(m.centre_errors_px, 0.5), 3)});
   }
   table.note =
-      "Locks: fraction of the empty frames, which show no part of the target, with an answer. "
+      "Locks: fraction of frames with an answer among the empty ones, which show no target. "
       "Wrong: number of frames. Given: initializations with the truth. Returns: times when half of "
       "the perimeter came back into view after the target was lost or out of view, and frames "
       "until the answer was right, 1 = immediately. Centre: median for frames with at least 60 % "

@@ -66,7 +66,7 @@ void thin_dusk(Scene& scene) {
   scene.sensor.gain = 0.25;
 }
 
-// These seeds are used nowhere else.
+// The seeds are reserved for this data set.
 constexpr Clip kClips[] = {
     {"twin", "approach", "approach", 101, 0.0, 140, 2, keep},
     {"twin", "approach-grass", "approach", 102, 3.0, 80, 2, on<GroundKind::kGrass>},

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr GstClockTime kTimeout = 20 * GST_SECOND;
 constexpr GstClockTime kErrorInterval =
-    GST_SECOND / 10;  // an error does not end the wait for a frame
+    GST_SECOND / 10;  // between checks for errors, which do not end the wait
 
 constexpr std::array kExtensions = {
     ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", ".ogv", ".mpg", ".mpeg", ".ts"};

@@ -53,7 +53,7 @@ class WildPictures : public PictureSource {
 
   std::uint64_t seed_;
   std::size_t frames_;
-  std::unique_ptr<Made> made_;  // expensive; exists from the first frame to the last
+  std::unique_ptr<Made> made_;  // expensive; released after the last frame
 };
 
 Sequence make_sequence(std::uint64_t seed, double seconds) {
