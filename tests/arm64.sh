@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 # Cross-builds the project for arm64 on x86-64 Debian and runs it under qemu-user. tests/machines.sh
 # runs this script in a chroot, because the arm64 libraries replace some of the host's packages.
-#   tests/arm64.sh build          installs what it takes, and builds into build-arm64
-#   tests/arm64.sh test SUITE...  runs suites of meson
+#   tests/arm64.sh build          installs the dependencies and builds into build-arm64
+#   tests/arm64.sh test SUITE...  runs meson test suites
 #   tests/arm64.sh neon           fails if a hot loop has no NEON instruction
-#   tests/arm64.sh cost           prints the instructions of a frame
+#   tests/arm64.sh cost           prints the instruction count per frame
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 folder=$project/build-arm64

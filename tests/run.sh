@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Sets up, builds and runs tests:
-#   ./tests/run.sh                     all of them, as it is shipped
+#   ./tests/run.sh                     all tests of the shipped configuration
 #   ./tests/run.sh --sanitize          all under AddressSanitizer and UBSan
 #   ./tests/run.sh --sanitize=thread   pipelines under ThreadSanitizer
-#   ./tests/run.sh --coverage          all, and the lines of core/ and gst/ that they reach: 90 %
+#   ./tests/run.sh --coverage          all; at least 90 % line coverage of core/ and gst/
 #   ./tests/run.sh --long              300,000 frames; with gcc, with clang, without the plugin; lint; spelling
 # Each accepts --werror in front, which turns compiler warnings into errors, as .ci/run does.
 # Ends with the failures and a line "N passed, N failed, N skipped".

@@ -32,7 +32,7 @@ struct Shot {
 
 class DistortedPicture : public testing::TestWithParam<const char*> {
  protected:
-  // At the flight's lowest point, where the pad is large.
+  // The flight hovers at `lowest`, where the pad is large.
   Shot shot(double time_s) {
     Shot shot;
     shot.truth = SceneRenderer(scene_).render(time_s, 7, shot.picture.writable());
