@@ -261,7 +261,7 @@ std::unique_ptr<Method> make_command_method(const PeerCommand& peer,
   if (answers.size() < images.size()) {
     problems.push_back("peer " + peer.name + ": no answer for " +
                        std::to_string(images.size() - answers.size()) + " of " +
-                       std::to_string(images.size()) + " images; they count as frames without a detection");
+                       std::to_string(images.size()) + " images; counted as no detection");
   }
   return std::make_unique<CommandMethod>(peer.name, std::move(answers));
 }

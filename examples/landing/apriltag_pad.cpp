@@ -79,14 +79,14 @@ class Cells {
   std::vector<bool> is_white_;  // row-major
 };
 
-// Calls use(line, first, end) for each run of at least `shortest` white cells in a line.
+// Calls use(line, first, end) for each run of at least `min_length` white cells in a line.
 template <class IsWhite, class Use>
-void for_each_run(int width, int shortest, const IsWhite& is_white, const Use& use) {
+void for_each_run(int width, int min_length, const IsWhite& is_white, const Use& use) {
   for (int line = 0; line < width; ++line) {
     for (int first = 0; first < width; ++first) {
       int end = first;
       while (end < width && is_white(line, end)) ++end;
-      if (end - first >= shortest) use(line, first, end);
+      if (end - first >= min_length) use(line, first, end);
       first = end;
     }
   }
@@ -118,23 +118,23 @@ class AprilTag : public Peer {
   }
 
  private:
-  // The library's pose estimate allocates matrices that Debian's build provides no function to
-  // free.
+  // Does not use the library's pose estimate: it allocates matrices, and Debian's build exports no
+  // function to free them.
   [[nodiscard]] Sighting sighting_of(const apriltag_detection_t& detection) const {
     const double half = 0.5 * tag_size_;
     const std::array<cv::Point3d, 4> corners = {
         {{-half, half, 0.0}, {half, half, 0.0}, {half, -half, 0.0}, {-half, -half, 0.0}}};
-    std::array<cv::Point2d, 4> seen;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const double* corner = detection.p[seen.size() - 1 - i];  // its first one is bottom left
-      seen[i] = {corner[0] - kPixelOrigin, corner[1] - kPixelOrigin};
+    std::array<cv::Point2d, 4> pixels;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const double* corner = detection.p[pixels.size() - 1 - i];  // its first one is bottom left
+      pixels[i] = {corner[0] - kPixelOrigin, corner[1] - kPixelOrigin};
     }
     const cv::Matx33d matrix(
         camera_.fx, 0.0, camera_.cx, 0.0, camera_.fy, camera_.cy, 0.0, 0.0, 1.0);
-    cv::Vec3d turn;
+    cv::Vec3d rvec;
     cv::Vec3d translation;
     cv::solvePnP(
-        corners, seen, matrix, cv::noArray(), turn, translation, false, cv::SOLVEPNP_IPPE_SQUARE);
+        corners, pixels, matrix, cv::noArray(), rvec, translation, false, cv::SOLVEPNP_IPPE_SQUARE);
     return {Vector3d(translation[0], translation[1], translation[2]),
             half * camera_.fx / translation[2]};
   }
@@ -151,8 +151,9 @@ bool has_apriltag() {
   return true;
 }
 
-// A black square with the white cells merged into runs. Between separate neighbours, the blurred
-// edges would show the black. Rows merge cells horizontally, columns vertically.
+// A black square with white cells. Adjacent white cells are merged into runs, because the black
+// would show between the blurred edges of separate cells. Rows merge cells horizontally, columns
+// vertically.
 ellipse::Sheet tag_sheet(const ellipse::Pad& pad) {
   const Family family(tag36h11_create());
   const Cells cells(*family, cell_size(*family, pad));

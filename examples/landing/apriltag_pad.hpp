@@ -18,8 +18,8 @@ namespace landing {
 /// @throws std::invalid_argument if the pad has no ring.
 [[nodiscard]] ellipse::Sheet tag_sheet(const ellipse::Pad& pad);
 
-/// Locates that tag with the library's detector at full resolution. The position follows from a
-/// square with these corners.
+/// Locates that tag with the library's detector at full resolution, and computes the position from
+/// the four corners.
 /// @param radius  Of the pad [m].
 [[nodiscard]] std::unique_ptr<Peer> make_apriltag(const ellipse::Camera& camera,
                                                   const ellipse::Pad& pad,

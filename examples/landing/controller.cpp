@@ -13,15 +13,15 @@ using Eigen::Vector3d;
 
 constexpr int kMinConsecutive = 4;           // consecutive detections before the target is trusted
 constexpr double kMinVisibleToStart = 0.6;   // visible fraction of the outline
-constexpr double kLost_s = 1.0;              // without detection, in phases that can wait
-constexpr double kRecent_s = 2.0;            // since a detection: more accurate than radio
+constexpr double kLost_s = 1.0;              // maximum time without detection, except in the descent
+constexpr double kRecent_s = 2.0;            // after a detection, without correction by radio
 constexpr double kSpiralGrowth = 0.5;        // growth of the search spiral [m/s]
 constexpr double kSpiralSpeed = 1.5;         // speed along the spiral [m/s]
 constexpr double kSweepRate = 0.5;           // of the search height [rad/s]
 constexpr double kMaxSpiralRadius = 3.0;     // [m]
 constexpr double kTouchDownSpeed = 0.8;      // [m/s]
 constexpr double kMaxDrift = 1.2;            // safe relative speed near the ground [m/s]
-constexpr double kMinSpeedForHeading = 0.5;  // slower platforms have none [m/s]
+constexpr double kMinSpeedForHeading = 0.5;  // below it the direction of motion is not used [m/s]
 
 }  // namespace
 
@@ -59,8 +59,8 @@ void Controller::observe(const Observation& seen) {
                  seen.time_s - last_seen_s_ < kRecent_s);
 }
 
-// During the search, ignores a target cut by the picture's border: its position is too inaccurate
-// to start with.
+// During the search, ignores a target with too little of its outline in the picture, because its
+// position is inaccurate.
 void Controller::look(const Observation& seen) {
   const bool is_partial = phase_ == Phase::kSearch && seen.visible_fraction < kMinVisibleToStart;
   if (!seen.pad || is_partial) {
@@ -164,8 +164,8 @@ Command Controller::command(const Situation& now) const {
     const double turn = kSpiralSpeed / std::max(radius, 1.0) * since_s;
     goal += radius * Vector2d(std::cos(turn), std::sin(turn));
   }
-  // The platform's velocity when the command takes effect, plus a correction that can still be
-  // braked.
+  // Commands the platform's velocity at the time when the command takes effect, plus a correction
+  // limited by the braking distance.
   const double distance = goal.norm();
   Vector2d correction{0.0, 0.0};
   if (distance > 0.0) {

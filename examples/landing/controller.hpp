@@ -14,10 +14,10 @@ enum class Phase {
   kSearch,     ///< Circles at varying height around the platform's expected position.
   kApproach,   ///< Flies to a position above the platform.
   kAlign,      ///< Matches its velocity and heading.
-  kFollow,     ///< Stays above it until that is steady.
+  kFollow,     ///< Stays above it until distance and velocity are steady.
   kDescend,    ///< Descends, more slowly when off centre.
   kTouchDown,  ///< The last half metre; the pad need not be visible.
-  kClimb,      ///< Aborted as unsafe: climbs and tries again.
+  kClimb,      ///< Climbs after an unsafe descent, then tries again.
 };
 inline constexpr std::array kPhaseNames = {
     "search", "approach", "align", "follow", "descend", "touch down", "climb"};

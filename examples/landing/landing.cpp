@@ -143,8 +143,8 @@ class Run {
     outcome_.moments.push_back(std::move(moment));
   }
 
-  // Once a second. Both receivers know their satellite position; the vehicle's dead reckoning
-  // drifts.
+  // Reports once a second. The relative position comes from both satellite receivers, because the
+  // vehicle's dead reckoning drifts.
   std::optional<Radio> radio_at(std::uint64_t frame) {
     if (frame % static_cast<std::uint64_t>(flight_.rate) != 0) return std::nullopt;
     const Vector2d away = platform_.position() - vehicle_.truth().position.head<2>();

@@ -56,9 +56,9 @@ struct Outcome {
   double sink = 0.0;              ///< Downward speed [m/s].
   double time_s = 0.0;
   int climbs = 0;
-  std::array<int, kPhaseNames.size()> frames{};  ///< Pictures by phase,
-  std::array<int, kPhaseNames.size()> unseen{};  ///< those of them without a target,
-  std::array<int, kPhaseNames.size()> missed{};  ///< and those with 30 % of the outline visible.
+  std::array<int, kPhaseNames.size()> frames{};  ///< Pictures by phase.
+  std::array<int, kPhaseNames.size()> unseen{};  ///< Of those, pictures without a target.
+  std::array<int, kPhaseNames.size()> missed{};  ///< Of those, 30 % of the outline visible.
   std::vector<Moment> moments;                   ///< One per picture.
 
   /// @param max_off  [m]

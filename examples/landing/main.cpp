@@ -41,7 +41,7 @@ struct Options {
   std::string report;
 };
 
-// The seed also selects the course and the light.
+// The seed also selects the course and the lighting condition.
 std::vector<Landing> planned(const Options& options) {
   const auto conditions = landing::condition_names();
   std::vector<Landing> landings;
@@ -97,7 +97,8 @@ void fly_all(std::vector<Landing>& landings, int jobs) {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Checks the outputs before hours of simulation. Devices and pipes are not opened.
+// Checks before hours of simulation that the outputs can be written. Devices and pipes are not
+// opened.
 void check_can_be_written(const std::string& option, const fs::path& path, const fs::path& file) {
   std::error_code ignored;
   const bool is_new = !fs::exists(file, ignored);

@@ -21,7 +21,7 @@ constexpr int kPlanWidth = 400;  // the height scale is to its right [px]
 constexpr double kPxPerM = 20.0;
 constexpr double kGrid = 2.5;        // [m]
 constexpr double kMaxHeight = 12.0;  // top of the height scale [m]
-constexpr double kFarthest = 60.0;
+constexpr double kFarthest = 60.0;   // largest drawn distance of a footprint corner [m]
 
 const cv::Scalar kPaper(247, 245, 240);
 const cv::Scalar kLine(226, 222, 213);
@@ -116,7 +116,7 @@ void Map::draw_platform(const Moment& moment) {
   cv::circle(canvas_, at(moment.platform), size, kPlatform, 9, cv::LINE_AA);
 }
 
-// Four rotors, the front ones filled.
+// Draws four rotors; the front ones are filled.
 void Map::draw_vehicle(const Moment& moment) {
   const Eigen::Matrix3d world_from_body = moment.vehicle.world_from_body.toRotationMatrix();
   const cv::Scalar& colour = moment.is_visible ? kVehicle : kBlind;

@@ -44,8 +44,8 @@ ellipse::Shape painted(const ellipse::Shadow& shadow) {
   return shape;
 }
 
-// The renderer shades ground and pad, but not sheets. Shadows are therefore added as shapes on top
-// of the sheets.
+// The renderer does not shade sheets. Shadows are therefore added as translucent shapes on the
+// marker.
 void lay_marker(ellipse::Sheet marker, ellipse::Scene& scene) {
   scene.pad.pattern = ellipse::Pattern::kRing;
   for (const ellipse::Shadow& shadow : scene.light.shadows) {

@@ -6,8 +6,8 @@
 
 namespace landing {
 
-/// Approximately normal with standard deviation 1. Uses no logarithm, whose result depends on the
-/// machine.
+/// Approximately normal with standard deviation 1. Sums uniform numbers, because the result of a
+/// logarithm depends on the machine.
 [[nodiscard]] inline double normal(ellipse::Random& random) {
   double sum = -6.0;
   for (int i = 0; i < 12; ++i) sum += random.unit();

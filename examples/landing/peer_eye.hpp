@@ -13,13 +13,13 @@ namespace landing {
 /// Standard deviation of an edge rounded to whole pixels [px]: a uniform error.
 inline const double kPixelError_px = 1.0 / std::sqrt(12.0);
 
-/// A peer's position of the pad.
+/// The pad's position as located by a peer.
 struct Sighting {
   Eigen::Vector3d position;  ///< Pad centre in the camera frame [m].
   double half_size_px;       ///< Half the marker's size in the picture.
 
   /// Standard deviation of the position [m]. Distance is inversely proportional to the marker's
-  /// size, whose relative error is that of one edge.
+  /// size, so both have the same relative error: that of one edge.
   [[nodiscard]] double error() const { return position.norm() * kPixelError_px / half_size_px; }
 };
 

@@ -25,7 +25,7 @@ PipelineEye::PipelineEye(const PictureFormat& format, const std::string& propert
   pipeline_.play();
 }
 
-void PipelineEye::tell_gravity(const Eigen::Vector3d& gravity) {
+void PipelineEye::set_gravity(const Eigen::Vector3d& gravity) {
   GValue down = G_VALUE_INIT;
   gst_value_array_init(&down, 3);
   for (const double coordinate : gravity) {
@@ -43,7 +43,7 @@ void PipelineEye::forget() {
 }
 
 Look PipelineEye::look(const Eigen::Vector3d& gravity, const Draw& draw) {
-  tell_gravity(gravity);
+  set_gravity(gravity);
   Look look;
   pipeline_.push(source_, format_.draw(frame_++, draw));
   look.sample = pipeline_.pull(sink_);

@@ -17,7 +17,7 @@ class PipelineEye : public Eye {
   void forget() override;
 
  private:
-  void tell_gravity(const Eigen::Vector3d& gravity);
+  void set_gravity(const Eigen::Vector3d& gravity);
 
   PictureFormat format_;
   std::uint64_t frame_ = 0;

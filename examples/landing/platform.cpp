@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kCircleRadius = 15.0;  // [m]
-constexpr double kEightReach = 40.0;    // from the centre to either end; its bends have 11 m [m]
+constexpr double kEightReach = 40.0;    // from the centre to either end; min radius 8.35 m [m]
 
 }  // namespace
 
@@ -25,7 +25,8 @@ Platform::Platform(Course course, double speed, double phase)
   step(0.0);
 }
 
-// Derivative of the position by the course's parameter. The figure of eight is Gerono's lemniscate.
+// Derivative of the position with respect to the course's parameter. The figure of eight is the
+// lemniscate of Gerono.
 Vector2d Platform::slope(double parameter) const {
   switch (course_) {
     case Course::kCircle:

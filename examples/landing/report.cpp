@@ -152,7 +152,8 @@ Table outcome_table(const std::vector<Landing>& landings) {
 
 Table unseen_table(const std::vector<Landing>& landings) {
   Table table;
-  table.title = "Pictures without a target, and those of them with a third of the pad in view [%]";
+  table.title =
+      "Pictures [%] without a target, and without one although 30 % of the outline is in view";
   table.header = {"method, platform"};
   for (const char* phase : kPhaseNames) table.header.emplace_back(phase);
   for (const Group& group : groups_of(landings)) {

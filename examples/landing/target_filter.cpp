@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kFade_s = 4.0;        // time constant of an acceleration
 constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
-constexpr double kUprightJerk = 1e-5;  // the platform drives on level ground
+constexpr double kUprightJerk = 1e-5;  // small: the platform drives on level ground
 constexpr double kGate = 25.0;         // squared innovation / variance
 constexpr double kHeightError = 0.5;   // platform height, standard deviation [m]
 constexpr double kHeightDrift = 0.1;   // vertical dead reckoning, standard deviation [m/s]

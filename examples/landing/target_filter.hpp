@@ -22,8 +22,8 @@ class TargetFilter {
   /// @return false if it is rejected as an outlier and ignored.
   bool see(double time_s, const Eigen::Vector3d& position, double error);
 
-  /// Updates with a radio report of position and velocity. If the report contradicts the state, the
-  /// state is reset, because the detections were of something else.
+  /// Updates with a radio report of position and velocity. A report that contradicts the state
+  /// resets it, because the detections must have been of something else.
   /// @param is_recently_seen  The target was detected recently. The estimate is then more accurate
   /// than radio and is not corrected.
   /// @param position_error, velocity_error  Standard deviations of the horizontal coordinates [m,

@@ -15,13 +15,13 @@ using Eigen::Vector3d;
 
 const Vector3d kUp = Vector3d::UnitZ();
 constexpr double kGravity = 9.81;
-constexpr double kFeelingLag_s = 0.5;   // delay until the autopilot detects a gust
+constexpr double kGustDelay_s = 0.5;    // time constant of the autopilot's gust estimate
 constexpr double kMinLift = 4.0;        // minimum upward thrust [m/s^2]; prevents a flip
 constexpr double kVerticalShare = 0.3;  // vertical fraction of the gusts
 
-Vector3d limited(const Vector3d& value, double most) {
+Vector3d limited(const Vector3d& value, double max_norm) {
   const double size = value.norm();
-  return size > most ? Vector3d(value * (most / size)) : value;
+  return size > max_norm ? Vector3d(value * (max_norm / size)) : value;
 }
 
 }  // namespace
@@ -36,25 +36,25 @@ Vehicle::Vehicle(const VehicleModel& model,
   velocity_error_ = model.velocity_error * normal_vector(random_);
   const Vector3d turn = model.attitude_error_rad * normal_vector(random_);
   const double angle = turn.norm();
-  body_from_believed_ =
+  body_from_estimate_ =
       angle > 0.0 ? Quaterniond(AngleAxisd(angle, turn / angle)) : Quaterniond::Identity();
   estimate_.position = position;
-  believe(0.0);
+  update_estimate(0.0);
 }
 
 void Vehicle::step(const Command& command, double step_s) {
   blow(step_s);
   const Vector3d off = command.velocity - estimate_.velocity;
   const Vector3d wanted = limited(off / model_.velocity_lag_s, model_.max_acceleration);
-  felt_ += (model_.drag * wind_ - felt_) * std::min(1.0, step_s / kFeelingLag_s);
-  tilt(wanted - felt_ + model_.drag * estimate_.velocity + kGravity * kUp, step_s);
+  gust_estimate_ += (model_.drag * wind_ - gust_estimate_) * std::min(1.0, step_s / kGustDelay_s);
+  tilt(wanted - gust_estimate_ + model_.drag * estimate_.velocity + kGravity * kUp, step_s);
   yaw_rate_ += (command.yaw_rate - yaw_rate_) * std::min(1.0, step_s / model_.yaw_lag_s);
   yaw_rad_ += yaw_rate_ * step_s;
 
   const Vector3d acceleration = thrust_ - kGravity * kUp + model_.drag * (wind_ - truth_.velocity);
   truth_.position += step_s * (truth_.velocity + 0.5 * step_s * acceleration);
   truth_.velocity += step_s * acceleration;
-  believe(step_s);
+  update_estimate(step_s);
 }
 
 // Ornstein-Uhlenbeck process; its variance does not depend on the step.
@@ -74,10 +74,10 @@ void Vehicle::tilt(const Vector3d& wanted_thrust, double step_s) {
                            Quaterniond(AngleAxisd(yaw_rad_, kUp));
 }
 
-void Vehicle::believe(double step_s) {
+void Vehicle::update_estimate(double step_s) {
   estimate_.velocity = truth_.velocity + velocity_error_;
   estimate_.position += step_s * estimate_.velocity;
-  estimate_.world_from_body = truth_.world_from_body * body_from_believed_;
+  estimate_.world_from_body = truth_.world_from_body * body_from_estimate_;
 }
 
 }  // namespace landing

@@ -56,17 +56,17 @@ class Vehicle {
  private:
   void blow(double step_s);
   void tilt(const Eigen::Vector3d& wanted_thrust, double step_s);
-  void believe(double step_s);
+  void update_estimate(double step_s);
 
   VehicleModel model_;
   ellipse::Random random_;
   Motion truth_;
   Motion estimate_;
   Eigen::Vector3d wind_{0.0, 0.0, 0.0};
-  Eigen::Vector3d thrust_;                 // acceleration by the rotors [m/s^2]
-  Eigen::Vector3d felt_{0.0, 0.0, 0.0};    // acceleration by gusts as estimated by the autopilot
-  Eigen::Vector3d velocity_error_;         // [m/s]
-  Eigen::Quaterniond body_from_believed_;  // attitude error
+  Eigen::Vector3d thrust_;                        // acceleration by the rotors [m/s^2]
+  Eigen::Vector3d gust_estimate_{0.0, 0.0, 0.0};  // the autopilot's, as an acceleration [m/s^2]
+  Eigen::Vector3d velocity_error_;                // [m/s]
+  Eigen::Quaterniond body_from_estimate_;         // attitude error
   double yaw_rad_;
   double yaw_rate_ = 0.0;
 };

@@ -49,13 +49,13 @@ class Film {
   }
 
   void add(GstSample* view, const cv::Mat& map) {
-    GstBuffer* seen = gst_sample_get_buffer(view);
+    GstBuffer* camera_buffer = gst_sample_get_buffer(view);
     const gsize size = map.total() * map.elemSize();
-    GstBuffer* drawn = gst_buffer_new_memdup(map.data, size);
-    GST_BUFFER_PTS(drawn) = GST_BUFFER_PTS(seen);
-    GST_BUFFER_DURATION(drawn) = GST_BUFFER_DURATION(seen);
-    pipeline_.push(map_, drawn);
-    pipeline_.push(view_, gst_buffer_ref(seen));
+    GstBuffer* map_buffer = gst_buffer_new_memdup(map.data, size);
+    GST_BUFFER_PTS(map_buffer) = GST_BUFFER_PTS(camera_buffer);
+    GST_BUFFER_DURATION(map_buffer) = GST_BUFFER_DURATION(camera_buffer);
+    pipeline_.push(map_, map_buffer);
+    pipeline_.push(view_, gst_buffer_ref(camera_buffer));
   }
 
   void finish() {

@@ -6,8 +6,8 @@
 
 namespace landing {
 
-/// Repeats a flight and writes a Matroska video: the camera's picture with the detected target, and
-/// a map next to it.
+/// Simulates a flight again and writes a Matroska video: the camera's picture with the detected
+/// target, and a map next to it.
 /// Throws std::runtime_error if the file cannot be written.
 void film(const Flight& flight, const std::string& file);
 

@@ -16,7 +16,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using ellipse::Ellipse;
 
-// Edge error of a segment: half a pixel of sampling and the same of blur.
+// Edge error of a segment: half a pixel each from sampling and blur.
 constexpr double kEdge_px = 1.0;
 // Number of thresholds to try; they are 16 levels apart, which is the minimum contrast.
 constexpr unsigned kThresholds = 16;
@@ -80,14 +80,14 @@ bool is_filled(const Blob& blob, const Ellipse& e) {
   return std::abs(blob.area() - area_of(e)) <= kEdge_px * perimeter_px(e);
 }
 
-// Ratio of the radii of the pad's next inner edge and its painted circle.
+// Inner radius of the pad's ring, relative to the painted circle.
 double proportion(const ellipse::Pad& pad) {
   const auto inner = ellipse::inner_radius(pad);
   if (!inner) throw std::invalid_argument("whycon: the pad has no ring");
   return *inner;
 }
 
-// Half the width of 8 cells, where a square of 10 cells is inscribed in the ring's inner circle.
+// Half the width of tag36h11: 8 of the 10 cells of a square inscribed in the ring's inner circle.
 double roundel_radius(const ellipse::Pad& pad) {
   return 0.5 * 0.8 * std::numbers::sqrt2 * proportion(pad);
 }
@@ -103,8 +103,8 @@ struct WhyCon::Segments {
              const_cast<std::uint8_t*>(picture.data),  // cv::Mat has no read-only view
              static_cast<std::size_t>(picture.stride)) {
     const cv::Mat is_black = grey < threshold;
-    blacks = cv::connectedComponentsWithStats(is_black, black, black_boxes, black_middles, 4);
-    cv::connectedComponentsWithStats(~is_black, white, white_boxes, white_middles, 4);
+    blacks = cv::connectedComponentsWithStats(is_black, black, black_boxes, black_centroids, 4);
+    cv::connectedComponentsWithStats(~is_black, white, white_boxes, white_centroids, 4);
   }
 
   [[nodiscard]] static cv::Rect box(const cv::Mat& boxes, int label) {
@@ -115,18 +115,18 @@ struct WhyCon::Segments {
             box[cv::CC_STAT_HEIGHT]};
   }
 
-  [[nodiscard]] int white_at(const double* place) const {
-    return white.at<int>(static_cast<int>(std::lround(place[1])),
-                         static_cast<int>(std::lround(place[0])));
+  [[nodiscard]] int white_at(const double* point) const {
+    return white.at<int>(static_cast<int>(std::lround(point[1])),
+                         static_cast<int>(std::lround(point[0])));
   }
 
   cv::Mat grey;
   cv::Mat black;  // labels; 0 = other colour
   cv::Mat white;
   cv::Mat black_boxes;
-  cv::Mat black_middles;
+  cv::Mat black_centroids;
   cv::Mat white_boxes;
-  cv::Mat white_middles;
+  cv::Mat white_centroids;
   int blacks = 0;
 };
 
@@ -187,7 +187,7 @@ std::optional<WhyCon::Ring> WhyCon::ring_of(const Segments& segments, int black)
   const bool is_cut = box.x == 0 || box.y == 0 || box.br().x == segments.grey.cols ||
                       box.br().y == segments.grey.rows;
   if (is_cut || box.width < smallest || box.height < smallest) return std::nullopt;
-  const int white = segments.white_at(segments.black_middles.ptr<double>(black));
+  const int white = segments.white_at(segments.black_centroids.ptr<double>(black));
   if (white == 0) return std::nullopt;
   const cv::Rect white_box = Segments::box(segments.white_boxes, white);
   if ((white_box & box) != white_box) return std::nullopt;
@@ -224,17 +224,17 @@ bool WhyCon::is_ring(const Ring& ring) const {
   const double share = inner_ratio_ * inner_ratio_;
   const double area_error = kEdge_px * (perimeter_px(inner) + share * perimeter_px(outer));
   if (std::abs(ring.white.area() - share * ring.both.area()) > area_error) return false;
-  // The centre of a tilted circle's image is displaced from the image of its centre by radius^2
-  // sin(tilt) / focal length, to first order. The ellipses of concentric circles are displaced from
-  // each other accordingly.
+  // To first order, perspective displaces the centre of a tilted circle's image from the image of
+  // its centre by radius^2 sin(tilt) / focal length. The ellipses of concentric circles of different
+  // size are therefore not concentric.
   const double flatness = outer.semi_minor / outer.semi_major;
   const double perspective = (1.0 - share) * outer.semi_major * outer.semi_major / camera_.fx *
                              std::sqrt(1.0 - flatness * flatness);
   return (outer.center() - inner.center()).norm() <= kEdge_px + perspective;
 }
 
-// If the threshold is not midway between black and white, the black segment grows or shrinks
-// equally on both sides. The known proportion then gives the true outer edge.
+// A threshold that is not midway between black and white shifts both edges of the ring by the same
+// distance, in opposite directions. The known proportion then gives the true outer edge.
 Ellipse WhyCon::compensated(const Ring& ring) const {
   Ellipse e = ring.outer;
   const double share = 1.0 + inner_ratio_;
