@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr int kMinConsecutive = 4;           // consecutive detections before the target is trusted
 constexpr double kMinVisibleToStart = 0.6;   // visible fraction of the outline
-constexpr double kLost_s = 1.0;              // maximum time without detection, except in the descent
+constexpr double kLost_s = 1.0;              // max. time without detection, except in the descent
 constexpr double kRecent_s = 2.0;            // after a detection, without correction by radio
 constexpr double kSpiralGrowth = 0.5;        // growth of the search spiral [m/s]
 constexpr double kSpiralSpeed = 1.5;         // speed along the spiral [m/s]

@@ -225,8 +225,8 @@ bool WhyCon::is_ring(const Ring& ring) const {
   const double area_error = kEdge_px * (perimeter_px(inner) + share * perimeter_px(outer));
   if (std::abs(ring.white.area() - share * ring.both.area()) > area_error) return false;
   // To first order, perspective displaces the centre of a tilted circle's image from the image of
-  // its centre by radius^2 sin(tilt) / focal length. The ellipses of concentric circles of different
-  // size are therefore not concentric.
+  // its centre by radius^2 sin(tilt) / focal length. Ellipses of concentric circles with different
+  // radii are therefore not concentric.
   const double flatness = outer.semi_minor / outer.semi_major;
   const double perspective = (1.0 - share) * outer.semi_major * outer.semi_major / camera_.fx *
                              std::sqrt(1.0 - flatness * flatness);

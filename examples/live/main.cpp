@@ -26,7 +26,7 @@ gboolean on_signal(gpointer loop) {
   return G_SOURCE_CONTINUE;
 }
 
-// Ends on Ctrl-C, SIGTERM, or when the terminal closes. SIGHUP stays ignored under nohup.
+// Ends the main loop on SIGINT, SIGTERM and SIGHUP. Under nohup, SIGHUP stays ignored.
 void end_on_signals(GMainLoop* loop) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction now {};
@@ -41,9 +41,9 @@ std::string token_for(const live::Options& options) {
   return is_open && options.token.empty() ? live::make_token() : options.token;
 }
 
-void tell_addresses(const live::Options& options,
-                    const live::HttpServer& server,
-                    const live::Session& session) {
+void print_addresses(const live::Options& options,
+                     const live::HttpServer& server,
+                     const live::Session& session) {
   const bool is_ipv6 = options.bind.find(':') != std::string::npos;
   const std::string host = is_ipv6 ? "[" + options.bind + "]" : options.bind;
   std::cout << "ellipse-live: http://" << host << ":" << server.port() << "/"
@@ -57,7 +57,7 @@ void tell_addresses(const live::Options& options,
 int run(live::Options options) {
   options.token = token_for(options);
   const MainLoop loop(g_main_loop_new(nullptr, FALSE), g_main_loop_unref);
-  // Created before the session, so that the session's streams are destroyed first.
+  // Outlives the session, whose streams belong to the server's connections.
   live::HttpServer server({.address = options.bind, .port = options.port, .token = options.token});
   bool has_failed = false;
   live::Session session(options, [&] {
@@ -71,7 +71,7 @@ int run(live::Options options) {
   }
   live::add_api(server, session, options);
   session.open(options.source, options.fps);
-  tell_addresses(options, server, session);
+  print_addresses(options, server, session);
   end_on_signals(loop.get());
   if (!has_failed) g_main_loop_run(loop.get());
   return has_failed ? 1 : 0;

@@ -12,7 +12,7 @@
 namespace live {
 namespace {
 
-// The token is part of a cookie, a link and an RTSP URL, where other characters have a meaning.
+// The token is part of a cookie, a link and an RTSP URL, in which other characters are reserved.
 std::string is_token(const std::string& text) {
   const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '~' || c == '-';
@@ -59,12 +59,12 @@ Options parse_options(int argc, char** argv) {
          "--rtsp", options.rtsp_port, "Also serve rtsp://.../live on this port; 0 = any free port")
       ->check(CLI::Range(0, 65535));
   app.add_option(
-      "--record", options.record, "Record H.264 to this .mkv, and the JSON lines beside it");
-  app.add_option("--preset", options.preset, "Load this preset of ellipsetrack at the start");
+      "--record", options.record, "Record H.264 to this .mkv, and the JSON lines to an .ndjson");
+  app.add_option("--preset", options.preset, "Load this preset of ellipsetrack at startup");
   app.add_option("--labels", options.labels, "Folder for the data set of labelled snapshots");
   app.add_option("--cameras",
                  options.cameras,
-                 "Folder of calibrations from which clients may choose a camera-file")
+                 "Folder of calibration files that clients may select as camera-file")
       ->check(CLI::ExistingDirectory);
   app.add_option("--page", options.page, "Serve the page's files from this folder")
       ->check(CLI::ExistingDirectory);

@@ -27,7 +27,7 @@ struct Release {
 template <class T>
 using Ref = std::unique_ptr<T, Release>;
 
-/// Takes another reference to a GObject.
+/// Returns a new reference to a GObject.
 template <class T>
 [[nodiscard]] Ref<T> share(T* object) {
   return Ref<T>(static_cast<T*>(g_object_ref(object)));

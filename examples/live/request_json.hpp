@@ -18,7 +18,7 @@ class RequestJson {
 
   [[nodiscard]] std::string text(const char* name) const;
   [[nodiscard]] double number(const char* name) const;
-  /// A whole number from 0 to 2^53, up to which doubles represent each.
+  /// A whole number from 0 to 2^53; doubles represent all of them exactly.
   [[nodiscard]] guint64 whole(const char* name) const;
   /// A time [ns], as a number or a string of digits.
   [[nodiscard]] GstClockTime time(const char* name) const;

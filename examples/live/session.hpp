@@ -21,7 +21,7 @@ namespace live {
 /// the recording; everything else runs in the main loop.
 class Session {
  public:
-  /// @param on_failure  Called in the main loop when the source failed for good.
+  /// @param on_failure  Called in the main loop when the source has failed and is not retried.
   /// Throws std::runtime_error if the pipeline, RTSP or the recording cannot be set up.
   Session(const Options& options, std::function<void()> on_failure);
 
@@ -29,7 +29,7 @@ class Session {
   /// @param fps  For a folder, see parse_rate(); empty = default.
   void open(const std::string& source, const std::string& fps);
 
-  /* These pause a file. A live source continues; only the view of it is held. */
+  /* These pause a file. A live source continues, and only the view is held. */
   void play();
   void pause();
   void step();
@@ -39,8 +39,8 @@ class Session {
   [[nodiscard]] bool is_playing() const;
   /// Pauses and shows a frame of the history.
   void show(FramePtr frame);
-  /// Call after settings have changed. Analyses a paused or held frame again with them and replaces
-  /// it.
+  /// Call after settings have changed. Analyses a paused or held frame again with the new settings
+  /// and replaces it.
   void review();
 
   [[nodiscard]] FrameStore& store() { return store_; }

@@ -34,7 +34,7 @@ std::string text_of(JsonNode* node) {
   return text.get();
 }
 
-// Answers with the result of the work, later.
+// Replies when the work is complete.
 void reply_with(Analyst& analyst, const Request& request, Analyst::Work work) {
   const auto reply = std::make_shared<LaterReply>(request.message);
   const bool is_taken = analyst.ask(std::move(work), [reply](const auto& text, const auto& error) {
@@ -43,7 +43,7 @@ void reply_with(Analyst& analyst, const Request& request, Analyst::Work work) {
   if (!is_taken) reply->send(error_reply(503, "too many analyses are waiting"));
 }
 
-// The stored frame "frame", or the shown one.
+// The stored frame that "frame" names, or the shown frame.
 FramePtr frame_in(const RequestJson& json, Session& session) {
   if (!json.has("frame")) return session.store().newest();
   session.history().touch();
@@ -75,7 +75,7 @@ guint64 number_in(JsonNode* node) {
   throw std::invalid_argument("frames: expected an array of whole numbers");
 }
 
-// The frames in the array "frames", or all. Empty if one of them is not stored.
+// The stored frames that the array "frames" names, or all. Empty if one of them is not stored.
 std::vector<FramePtr> frames_in(const RequestJson& json, const FrameHistory& history) {
   if (!json.has("frames")) return history.frames();
   JsonNode* node = json.node("frames");

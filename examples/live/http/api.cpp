@@ -19,7 +19,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxStreams = 120;  // leaves 40 of the 160 connections for requests
+constexpr std::size_t kMaxStreams = 120;  // reserves 40 of the 160 connections for requests
 constexpr char kTooMany[] = "too many clients";
 
 void write_time(JsonWriter& json, const char* name, GstClockTime time) {
@@ -37,7 +37,7 @@ void add_page(HttpServer& server, const Options& options) {
   server.route("GET", "/*", [page](const Request& request) { return page.get(request.rest); });
 }
 
-// Streams must leave connections for requests.
+// Reserves connections for requests.
 bool has_room(Session& session) {
   return session.video().viewers() + session.lines().listeners() < kMaxStreams;
 }

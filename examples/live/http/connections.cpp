@@ -45,7 +45,7 @@ bool Connections::admit(GSocketConnection* connection) {
   return true;
 }
 
-// Local programs share one address, and so do the clients of a tunnel.
+// No limit per loopback address: all local programs and all clients of a tunnel share it.
 bool Connections::has_room(GInetAddress* address, const std::string& name) const {
   if (open_->size() >= kMaxConnections) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
@@ -72,7 +72,7 @@ void Connections::on_gone(gpointer data, GObject* /*connection*/) {
   gone->open->erase(gone->client);
 }
 
-// A client that sends a byte now and then never times out, so requests have a deadline. The
+// A client that sends single bytes never reaches the idle timeout, so requests have a deadline. The
 // shutdown ends libsoup's read, which closes the connection.
 gboolean Connections::on_tick(gpointer data) {
   const gint64 now_us = g_get_monotonic_time();

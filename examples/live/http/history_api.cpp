@@ -12,7 +12,7 @@
 namespace live {
 namespace {
 
-// The frames' times are text, for clients whose numbers are doubles.
+// Writes times as text, because doubles cannot represent nanoseconds since 1970 exactly.
 std::string history_json(const FrameHistory& history) {
   JsonWriter json;
   json.begin_object()

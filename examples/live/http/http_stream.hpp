@@ -30,7 +30,7 @@ class HttpStream {
   void write(GBytes* bytes);
   void write(const std::string& text);
 
-  /// Limits the socket's send buffer, so that a client that reads nothing is detected soon.
+  /// Limits the socket's send buffer, so that a client that has stopped reading is detected soon.
   void limit_buffer(int bytes);
   /// Closes the connection and discards unsent data.
   void end();

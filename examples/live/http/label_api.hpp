@@ -6,8 +6,9 @@
 
 namespace live {
 
-/// Adds the route that saves labelled snapshots to the folder of --labels; an error without one.
-/// See docs/live.md. Throws std::runtime_error if the folder cannot be created.
+/// Adds the route that saves labelled snapshots to the folder of --labels, see docs/live.md.
+/// Without the option, the route replies with an error. Throws std::runtime_error if the folder
+/// cannot be created.
 void add_labels(HttpServer& server, Session& session, const Options& options);
 
 }  // namespace live

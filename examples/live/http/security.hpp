@@ -38,7 +38,7 @@ struct Origin {
 /// rebinding: pages of other sites whose name resolves to this machine.
 [[nodiscard]] bool is_loopback_host(const std::string& host);
 
-/// Whether an address accepts connections from this machine only.
+/// Whether an address is a loopback address, which accepts connections from this machine only.
 [[nodiscard]] bool is_loopback_address(const std::string& address);
 
 /// Generates 32 random hexadecimal digits.

@@ -13,13 +13,13 @@ namespace {
 
 constexpr guint kKeepaliveSeconds = 20;
 
-// A request that becomes a WebSocket when its reply has been written.
+// A handshake whose reply is being written.
 struct Opening {
   Ref<GSocket> socket;
   WebSocketHandler on_open;
 };
 
-// Extensions are disabled: the size of a compressed message is unknown until it is unpacked.
+// Disables extensions: the size of a compressed message is unknown until it is decompressed.
 void on_reply_written(SoupServerMessage* message, gpointer data) {
   const std::unique_ptr<Opening> opening(static_cast<Opening*>(data));
   g_signal_handlers_disconnect_by_data(message, data);
@@ -39,7 +39,7 @@ void on_reply_written(SoupServerMessage* message, gpointer data) {
   opening->on_open(std::make_unique<WebSocket>(connection.get(), opening->socket.get()));
 }
 
-// The client disconnected during the handshake.
+// Called when the client disconnects during the handshake.
 void on_finished(SoupServerMessage* message, gpointer data) {
   g_signal_handlers_disconnect_by_data(message, data);
   delete static_cast<Opening*>(data);
@@ -49,7 +49,7 @@ void on_finished(SoupServerMessage* message, gpointer data) {
 
 void open_websocket(SoupServerMessage* message, GSocket* socket, const WebSocketHandler& on_open) {
   if (!soup_websocket_server_process_handshake(message, nullptr, nullptr, nullptr, nullptr)) return;
-  // Before anything reads from the socket: a pending read keeps the timeout that it started with.
+  // Must precede the first read, because a pending read keeps the timeout that it started with.
   g_socket_set_timeout(socket, 0);
   auto* opening = new Opening{share(socket), on_open};
   g_signal_connect(message, "wrote-informational", G_CALLBACK(on_reply_written), opening);

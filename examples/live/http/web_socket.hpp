@@ -31,7 +31,7 @@ class WebSocket {
   void send_binary(GBytes* bytes);
   void send_text(const char* text);
   void close(const char* why);
-  /// Limits the socket's send buffer, so that a client that reads nothing is detected soon.
+  /// Limits the socket's send buffer, so that a client that has stopped reading is detected soon.
   void limit_buffer(int bytes);
 
  private:

@@ -30,7 +30,7 @@ class SocketListener : public LineFeed::Listener {
   std::unique_ptr<WebSocket> socket_;
 };
 
-// A disconnected client is detected only by a write, so a comment is sent when there are no frames.
+// Sends a comment when there are no frames, because only a write detects a disconnected client.
 class EventListener : public LineFeed::Listener {
  public:
   EventListener(SoupServerMessage* request,

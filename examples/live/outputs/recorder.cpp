@@ -10,7 +10,7 @@
 namespace live {
 namespace {
 
-constexpr int kMaxWaiting = 8;  // frames; small, because they can hold a camera's buffers
+constexpr int kMaxWaiting = 8;  // frames; few, because they can hold buffers of a camera's pool
 constexpr guint64 kMaxLines = 300;
 
 std::filesystem::path numbered(const std::filesystem::path& file, int number) {

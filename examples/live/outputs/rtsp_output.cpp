@@ -50,7 +50,7 @@ struct RtspOutput::Inlets {
     connect(media, "unprepared", G_CALLBACK(on_unprepared), self);
     Ref<GstElement> inlet = inlet_of(media);
     const std::lock_guard lock(self->mutex);
-    // Gives a client that joins while a file is paused a frame to preroll on.
+    // Provides the frame to preroll for a client that connects while a file is paused.
     if (self->newest) push_frame(GST_APP_SRC(inlet.get()), *self->newest);
     self->inlets.push_back(std::move(inlet));
   }
@@ -119,7 +119,7 @@ void RtspOutput::put(const FramePtr& frame) {
   for (const auto& inlet : inlets_->inlets) push_frame(GST_APP_SRC(inlet.get()), *frame);
 }
 
-// Removes the sessions of clients that left without teardown.
+// Removes the sessions of clients that disconnected without TEARDOWN.
 gboolean RtspOutput::on_tick(gpointer data) {
   auto* self = static_cast<RtspOutput*>(data);
   const Ref<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(self->server_.get()));

@@ -62,7 +62,7 @@ Ref<GSocket> accept_from(GSocket* listener, GSocket* wanted) {
   return nullptr;
 }
 
-// Uses the client's address family, because the server selects the family of its UDP sockets by it.
+// Uses the client's address family, which determines the family of the server's UDP sockets.
 std::optional<Pair> make_pair(GSocketFamily family) {
   const Ref<GInetAddress> loopback(g_inet_address_new_loopback(family));
   const Ref<GSocketAddress> any_port(g_inet_socket_address_new(loopback.get(), 0));
@@ -164,7 +164,7 @@ void RtspProxy::admit(Ref<GSocket> socket) {
   relay(socket.get(), pair->ours.get(), on_end, new Ending{clients_, std::prev(clients_->end())});
 }
 
-// Local programs share one address, and so do the clients of a tunnel.
+// No limit per loopback address: all local programs and all clients of a tunnel share it.
 bool RtspProxy::has_room(GInetAddress* address) const {
   if (clients_->size() >= kMaxClients) return false;
   if (g_inet_address_get_is_loopback(address)) return true;
@@ -184,7 +184,7 @@ void RtspProxy::on_end(GObject* /*stream*/, GAsyncResult* result, gpointer data)
   ending->clients->erase(ending->client);
 }
 
-// A client that sends a byte now and then never times out, so clients without a session have a
+// A client that sends single bytes never reaches a timeout, so clients without a session have a
 // deadline.
 gboolean RtspProxy::on_tick(gpointer data) {
   for (Client& each : *static_cast<RtspProxy*>(data)->clients_) {

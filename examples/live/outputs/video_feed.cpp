@@ -78,8 +78,8 @@ class SocketViewer : public Viewer {
 };
 
 // A browser shows a picture only when the next part begins, so a picture without a successor is
-// sent twice. A disconnected client is detected only by a write, so the last picture is repeated
-// when there are no frames.
+// sent twice. Repeats the last picture when there are no frames, because only a write detects a
+// disconnected client.
 class StreamViewer : public Viewer {
  public:
   StreamViewer(SoupServerMessage* request,
@@ -201,7 +201,7 @@ void VideoFeed::update() {
   if (is_wanted && !is_current && !encoder_.is_busy()) encoder_.encode(newest);
 }
 
-// Sends the picture even if a newer frame exists: it is the newest encoded one.
+// Sends the picture even if a newer frame exists, which is not encoded yet.
 void VideoFeed::deliver(Picture picture) {
   picture_ = std::move(picture);
   for (const auto& viewer : viewers_) {

@@ -18,8 +18,8 @@ class Viewer {
   /// Whether another picture may be sent now.
   [[nodiscard]] virtual bool is_ready() const = 0;
   virtual void send(const Picture& picture) = 0;
-  /// Called once a second. Ends a client that has read nothing for too long; repeats a picture that
-  /// a browser does not show yet.
+  /// Called once a second. Disconnects a client that has read nothing for too long. Repeats a
+  /// picture that a browser does not show yet.
   virtual void tick(const Picture& newest) = 0;
 
   static constexpr guint64 kNothing = G_MAXUINT64;

@@ -24,8 +24,8 @@ class Analyst {
   Analyst(const Analyst&) = delete;
   Analyst& operator=(const Analyst&) = delete;
 
-  /// Returns JSON or throws. Called in the analyst's thread; a long one ends early if it is asked
-  /// to stop.
+  /// Returns JSON or throws. Called in the analyst's thread. Long work returns early on a stop
+  /// request.
   using Work = std::function<std::string(const std::stop_token& stop)>;
 
   /// Main loop only. @return false if too many requests are waiting.

@@ -5,8 +5,8 @@
 
 namespace live {
 
-/// The folder of camera calibrations that clients may select from. Without one, they may select
-/// none.
+/// The folder of camera calibrations that clients may select. Without a folder, they cannot select
+/// any.
 class CameraFolder {
  public:
   /// @param folder  Empty = none. Throws std::filesystem::filesystem_error if it does not exist.

@@ -11,8 +11,8 @@
 namespace live {
 
 /// The last frames of the source, for a client that compares settings on them. Bounded in number
-/// and memory: the oldest are dropped. Stores nothing until a client asks for it, and discards all
-/// frames when no client has used them for ten minutes.
+/// and memory: the oldest are dropped. Stores frames only at a client's request, and discards them
+/// when no client has used them for ten minutes.
 class FrameHistory {
  public:
   struct Limits {
@@ -36,7 +36,7 @@ class FrameHistory {
   void end() { is_storing_ = false; }
   /// Stores no further frames and discards the stored ones.
   void clear();
-  /// Tells that a client still uses the frames.
+  /// Restarts the ten minutes until unused frames are discarded.
   void touch() { used_us_ = g_get_monotonic_time(); }
 
   [[nodiscard]] const Limits& limits() const { return limits_; }

@@ -34,7 +34,7 @@ std::string launch_line(const SourceSpec& source, const Properties& properties) 
       "gst-launch-1.0 " +
       for_shell(video + " ! videoconvert ! ellipsetrack" + properties.launch_settings() +
                 " ! ellipseoverlay ! videoconvert ! autovideosink");
-  // In a subshell, because the preparation changes the working directory.
+  // Runs in a subshell, because the preparation changes the working directory.
   return source.preparation.empty() ? line + "\n"
                                     : "(" + source.preparation + " && " + line + ")\n";
 }

@@ -10,8 +10,8 @@ namespace live {
 namespace {
 
 constexpr guint kTickMs = 1000;
-// Ticks without a frame until a live source counts as dropped. The first frame takes longer: the
-// source has to connect and wait for a key frame.
+// Ticks without a frame until a live source counts as lost. The first frame takes longer, because
+// the source has to connect and wait for a key frame.
 constexpr guint kMaxTicksToFirstFrame = 15;
 constexpr guint kMaxTicksWithoutFrame = 5;
 constexpr guint kPollMs = 2;
@@ -171,8 +171,8 @@ void LivePipeline::begin_pause() {
 }
 
 // Advances towards the requested state, one transition at a time, each after the previous one is
-// complete. GStreamer 1.22 can hang between two states if it is reversed during a transition to
-// PLAYING, and a sink paused before it has resumed from its last pause continues to play.
+// complete. GStreamer 1.22 can hang if a transition to PLAYING is reversed before it is complete. A
+// sink that is paused again before it has resumed continues to play.
 void LivePipeline::advance() {
   GstState now = GST_STATE_VOID_PENDING;
   if (state_ != PlayState::kPlaying && state_ != PlayState::kPausing) return;
@@ -233,7 +233,7 @@ bool LivePipeline::is_at_end() const {
   return gst_app_sink_is_eos(GST_APP_SINK(sink_)) != FALSE;
 }
 
-// Stays paused at the first frame.
+// Leaves the source paused at the first frame.
 void LivePipeline::rewind() {
   frames_at_rewind_ = tap_.frames();
   if (seek(0)) return;
@@ -314,7 +314,7 @@ void LivePipeline::end_of_stream() {
   }
   const bool was_playing = state_ == PlayState::kPlaying;
   state_ = PlayState::kEnded;
-  // Paused at the end, so that a later seek shows one frame and does not play on.
+  // Pauses at the end, so that a later seek shows one frame and does not resume playback.
   gst_element_set_state(pipeline_, GST_STATE_PAUSED);
   const bool has_frames = tap_.frames() != frames_at_rewind_;
   if (!loops_ || !has_frames) return;
@@ -323,7 +323,7 @@ void LivePipeline::end_of_stream() {
 }
 
 void LivePipeline::source_dropped(const std::string& why) {
-  const bool is_news = why != trouble_;
+  const bool is_new = why != trouble_;
   trouble_ = why;
   stop();
   frames_at_tick_ = tap_.frames();  // earlier frames do not count as recovery
@@ -333,7 +333,7 @@ void LivePipeline::source_dropped(const std::string& why) {
     handlers_.on_failure();
     return;
   }
-  if (is_news) handlers_.on_trouble(trouble_);
+  if (is_new) handlers_.on_trouble(trouble_);
   state_ = PlayState::kReconnecting;
   cancel_retry();
   const guint delay = std::min(kFirstRetryMs << std::min(retries_, 8U), kMaxRetryMs);

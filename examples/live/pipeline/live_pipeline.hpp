@@ -44,10 +44,11 @@ class LivePipeline {
   void play();
   /// The state is kPausing until the frame in progress has been rendered.
   void pause();
-  /// Shows the next frame, now or once paused. Past the last frame, the source ends or loops.
+  /// Shows the next frame, immediately or when a pause completes. After the last frame, the source
+  /// ends or loops.
   void step();
-  /// Seeks to a time [ns]; a paused source shows the frame at once. A time past the end selects the
-  /// last frame; where there is no frame, the source ends. @return false if the source cannot seek.
+  /// Seeks to a time [ns]. A paused source shows the frame immediately. A time past the end selects
+  /// the last frame; if no frame follows, the source ends. @return false if the source cannot seek.
   bool seek(GstClockTime position);
 
   [[nodiscard]] GstElement* tracker() const { return tracker_; }
@@ -95,7 +96,7 @@ class LivePipeline {
   guint retries_ = 0;  // since the last frame
   PlayState state_ = PlayState::kStarting;
   std::string trouble_;
-  guint steps_ = 0;            // to do once paused
+  guint steps_ = 0;            // pending until the pause is complete
   bool is_moving_ = false;     // a step or a seek is in progress
   guint64 frames_before_ = 0;  // frame count when that step or seek began
   guint64 frames_at_rewind_ = 0;

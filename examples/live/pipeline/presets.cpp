@@ -41,7 +41,7 @@ void check_exists(GstElement* tracker, const std::string& name) {
   throw std::invalid_argument("no such preset: \"" + name + "\"");
 }
 
-// GStreamer copies system presets into the user's file, so only this mark identifies presets
+// GStreamer copies system presets into the user's file, so only this metadata identifies presets
 // created here.
 bool is_own(GstElement* tracker, const std::string& name) {
   gchar* origin = nullptr;

@@ -51,7 +51,7 @@ std::vector<GParamSpec*> tunable(GstElement* tracker) {
   auto** specs = reinterpret_cast<GParamSpec**>(list.get());
   std::vector<GParamSpec*> result;
   std::copy_if(specs, specs + count, std::back_inserter(result), [tracker](const GParamSpec* spec) {
-    // A client that could set this path could make the program open any file.
+    // With evidence-file, clients could make the program open any file.
     return spec->owner_type == G_OBJECT_TYPE(tracker) && (spec->flags & G_PARAM_WRITABLE) != 0 &&
            g_strcmp0(spec->name, "evidence-file") != 0;
   });
@@ -231,7 +231,7 @@ void Properties::copy_to(GstElement* other) const {
 }
 
 std::string Properties::launch_settings() const {
-  // gst-launch-1.0 sets one property after the other, starting from the defaults.
+  // gst-launch-1.0 sets the properties in order, starting from the defaults.
   std::string widening;
   std::string others;
   for (GParamSpec* spec : tunable(tracker_)) {

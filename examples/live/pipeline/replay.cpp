@@ -70,7 +70,7 @@ std::string replay_json(const ReplayRequest& request, const std::stop_token& sto
   JsonWriter json;
   json.begin_object().key("frames").begin_array();
   for (const FramePtr& frame : request.frames) {
-    if (stop.stop_requested()) throw std::runtime_error("the program ends");
+    if (stop.stop_requested()) throw std::runtime_error("the program is shutting down");
     if (request.is_single) tracker.reset();
     write_frame(json, tracker, *frame, request);
   }

@@ -15,13 +15,13 @@ struct ReplayRequest {
   std::vector<FramePtr> frames;  ///< In the order of the stream.
   ellipse::TrackerSettings settings;
   std::optional<ellipse::Rect> region = {};  ///< Search region; none = the whole frame.
-  bool is_single = false;  ///< Each frame by itself, without tracking; else as one stream.
+  bool is_single = false;  ///< Analyse each frame alone, without tracking.
 };
 
-/// Runs a new tracker over the frames. Returns a JSON object with the target of each frame and, if
-/// they are single, all found ellipses; docs/live.md describes it. Thread-safe.
+/// Runs a new tracker over the frames. Returns a JSON object with the target of each frame and, for
+/// single frames, all detected ellipses; docs/live.md describes it. Thread-safe.
 ///
-/// Throws std::runtime_error if a frame cannot be mapped or the program ends.
+/// Throws std::runtime_error if a frame cannot be mapped or a stop is requested.
 [[nodiscard]] std::string replay_json(const ReplayRequest& request, const std::stop_token& stop);
 
 }  // namespace live

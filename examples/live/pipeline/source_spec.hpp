@@ -18,7 +18,7 @@ struct SourceSpec {
   std::string description = {};  ///< For gst_parse_bin_from_description(); ends in raw video.
   std::string launch = {};       ///< The same for a gst-launch line; empty = `description`.
   std::string preparation = {};  ///< Shell commands that `launch` requires; empty = none.
-  bool is_live = false;          ///< Cannot be paused; reconnects when it drops or ends.
+  bool is_live = false;          ///< Cannot be paused; reconnects when it fails or ends.
   /// Temporary folder of numbered links to the pictures; removed with the last reference.
   std::shared_ptr<const std::filesystem::path> numbered = {};
 };

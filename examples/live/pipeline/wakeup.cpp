@@ -7,7 +7,7 @@ namespace live {
 namespace {
 
 gboolean dispatch(GSource* source, GSourceFunc callback, gpointer data) {
-  g_source_set_ready_time(source, -1);  // before the call: it may be requested again during it
+  g_source_set_ready_time(source, -1);  // before the call, which may request the next one
   return callback(data);
 }
 
