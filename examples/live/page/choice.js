@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Choice of the target of one frame: in a list, on the picture, drawn by points on its edge, or none.
+// Choice of a frame's target: from a list, by a click on the picture, drawn by points on the edge, or none.
 import { ellipseText } from "./analysis.js";
 import { make } from "./controls.js";
 import { distanceTo, drawEllipse, drawPicture } from "./drawing.js";
@@ -53,7 +53,7 @@ export class TargetChoice {
    * Offers the ellipses of a frame.
    * @param target       The frame's target, which is chosen at first, or undefined.
    * @param others       Other ellipses.
-   * @param keepsDrawn   Whether an ellipse that is being drawn applies to this frame, too.
+   * @param keepsDrawn   Whether an ellipse that is being drawn also applies to this frame.
    */
   offer({ pts, target, others, keepsDrawn }) {
     this.#choices = withoutDuplicates([target, ...others].filter(Boolean)).slice(0, kMaxChoices);

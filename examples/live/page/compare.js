@@ -62,7 +62,7 @@ export class Compare {
     if (this.playback.isPlaying) this.#timer = setTimeout(() => this.refresh(), kIntervalMs);
   });
 
-  // Those of the given settings that differ from the current ones.
+  // The given settings that differ from the current ones.
   #differences(wanted) {
     const now = this.settings.values();
     return Object.fromEntries(Object.entries(wanted).filter(([name, value]) => {

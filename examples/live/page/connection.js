@@ -3,11 +3,11 @@
 
 /** Sends a request. Throws an Error with the program's message and the `status` if it fails. */
 export async function ask(method, path, body) {
-  const wants = body === undefined ? {} : {
+  const init = body === undefined ? {} : {
     body: JSON.stringify(body),
     headers: { "Content-Type": "application/json" },
   };
-  const answer = await fetch(path, { method, ...wants });
+  const answer = await fetch(path, { method, ...init });
   const text = await answer.text();
   const isJson = answer.headers.get("Content-Type")?.startsWith("application/json");
   const value = isJson && text ? JSON.parse(text) : text;

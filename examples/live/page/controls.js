@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One control per property type. Each returns {head, body, set}: `set` shows a value, and the value
-// in force where 0 selects another one. `change` is called with the value that the user chose.
+// One control per property type. Each returns {head, body, set}. `set(value, inForce)` shows a value;
+// `inForce` is the value in force where 0 selects another one. `change` is called with the user's value.
 
 const kSteps = 1000;
 const kFarMax = 1e6;   // above this maximum, a slider ends at a practical value
@@ -91,7 +91,7 @@ function numberControl(property, change) {
     set(value);
     change(value);
   };
-  // Arrow keys move to the next different value; one slider step can be too small to change it.
+  // Arrow keys move to the next different value, because one slider step can be too small to change it.
   slider.onkeydown = (event) => {
     const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
     if (!way) return;

@@ -27,7 +27,7 @@ export function contextOf(canvas, width, height) {
   }
   const context = canvas.getContext("2d");
   const scale = canvas.width / width;
-  // The picture may not cover the last row of the canvas.
+  // Clears the canvas, because the picture may not cover its last row.
   context.setTransform(1, 0, 0, 1, 0, 0);
   context.clearRect(0, 0, wide, high);
   context.setTransform(scale, 0, 0, scale, 0.5 * scale, 0.5 * scale);
@@ -79,7 +79,7 @@ export function drawEllipse(context, e, look, layers) {
   context.restore();
 }
 
-/** Draws a region [x, y, width, height] in whole pixels. The user's own region has a solid line. */
+/** Draws a region [x, y, width, height] in whole pixels. The region set by the user has a solid line. */
 export function drawRegion(context, [x, y, width, height], look) {
   const isChosen = look === "chosen";
   const unit = context.lineWidth / 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The guide: see what is found, mark the target in three stored frames, get settings that find it.
+// The guide: shows what is found, lets the user mark the target in three stored frames, and proposes
+// settings that find it.
 import { analyze } from "./analysis.js";
 import { TargetChoice } from "./choice.js";
 import { newestOnly } from "./connection.js";
@@ -12,11 +13,11 @@ import { propose } from "./proposal.js";
 
 const kSeenKey = "ellipse-live-guide";
 const kMarks = 3;
-const kMinStored = 60;    // so that the marked frames differ; fewer if no more fit or none follow
+const kMinStored = 60;    // for distinct marked frames; fewer if the memory is full or the source is paused
 const kPollMs = 700;
 const kKeepMs = 60_000;   // the program discards frames that are unused for ten minutes
 const kGone = 410;
-// Offers ellipses that the current settings reject, too.
+// Relaxed settings, which also find ellipses that the current ones reject.
 const kWide = {
   "min-axis": 5,
   "max-axis": 4000,
@@ -99,7 +100,7 @@ export class Guide {
     if (this.#wasPlaying && !this.playback.isPlaying) this.playback.toggle();
   }
 
-  // Collects frames from here on.
+  // Starts over: stores new frames.
   #restart() {
     this.#marks = [];
     this.#proposal = null;
@@ -112,14 +113,15 @@ export class Guide {
     this.#step = step;
     this.#wanted = null;
     showStep(step);
-    // Playing on would replace the frame that is marked.
+    // Playback would replace the frame that is being marked.
     at("frame").closest("main").classList.toggle("marks", step !== "see");
     this.screen.canvas.parentElement.classList.toggle("picks", step === "mark");
     this.screen.view = step === "see" ? null : (context, frame) => this.#draw(context, frame);
     this.screen.draw();
   }
 
-  // Runs a task and shows its error with a button that repeats it, or begins anew if frames are gone.
+  // Runs a task. On an error, shows it with a button that repeats the task, or that starts over if frames
+  // are no longer stored.
   async #attempt(task) {
     hideTrouble();
     try {
@@ -137,7 +139,7 @@ export class Guide {
     this.#restart();
   }
 
-  /* 1 See */
+  /* Step "see" */
 
   #poll = newestOnly(async () => {
     clearTimeout(this.#timer);
@@ -150,20 +152,20 @@ export class Guide {
     if (this.#isOn) this.#timer = setTimeout(() => this.#poll(), this.#step === "see" ? kPollMs : kKeepMs);
   });
 
-  #see({ storing, full, max_frames: most, frames }) {
+  #see({ storing, full, max_frames: max, frames }) {
     const { source } = this.playback;
-    // A change of the source ends the storing.
+    // A change of the source stops the storing.
     if (!storing) this.#attempt(() => storeFrames(true));
     const isEnough = full || frames.length >= kMinStored || (!this.playback.isPlaying && frames.length > 0);
     at("guide-state").textContent = sourceText(source, this.screen.frame);
-    at("guide-stored").textContent = storedText(frames.length, most, full, this.playback.isPlaying);
-    at("guide-progress").max = most;
-    at("guide-progress").value = full ? most : frames.length;
+    at("guide-stored").textContent = storedText(frames.length, max, full, this.playback.isPlaying);
+    at("guide-progress").max = max;
+    at("guide-progress").value = full ? max : frames.length;
     at("guide-begin").disabled = !isEnough;
     at("guide-play").hidden = !source || source.playing || source.error !== "";
   }
 
-  /* 2 Mark your target */
+  /* Step "mark" */
 
   async #beginMarks() {
     this.#wasPlaying ||= this.playback.isPlaying;
@@ -179,7 +181,7 @@ export class Guide {
     return Math.min(kMarks, this.#stored.length);
   }
 
-  // Shows the next frame to mark. They are spread over the stored ones.
+  // Shows the next frame to mark. The marked frames are spread evenly over the stored ones.
   async #showNext() {
     const number = this.#marks.length;
     const position = Math.floor((number + 0.5) / this.#count * this.#stored.length);
@@ -214,7 +216,7 @@ export class Guide {
     if (!this.#isOn || !this.#wanted || this.#isShowing) return;
     const { position } = this.#wanted;
     if (this.playback.isPlaying) {
-      showTrouble("The source plays on.", "Show the frame", () => this.#attempt(() => this.#show(position)));
+      showTrouble("The source is playing.", "Show the frame", () => this.#attempt(() => this.#show(position)));
       return;
     }
     if (this.#step !== "mark" || !this.#isShown || !this.#choice.isWaiting) return;
@@ -244,7 +246,7 @@ export class Guide {
     await this.#attempt(() => (this.#marks.length < this.#count ? this.#showNext() : this.#propose()));
   }
 
-  /* 3 Settings */
+  /* Step "result" */
 
   async #propose() {
     this.#setStep("result");

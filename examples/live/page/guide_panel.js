@@ -3,7 +3,7 @@
 
 const at = (id) => document.getElementById(id);
 
-// On a phone the video covers what is scrolled below it.
+// On a phone, the sticky video covers content that is scrolled below it.
 function showStart(guide) {
   guide.scrollTop = 0;
   const covered = at("frame").getBoundingClientRect().bottom - guide.getBoundingClientRect().top;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the guide says: the state of the source, errors, and the proposal with its figures.
+// Texts of the guide: the state of the source, errors, and the proposal with its figures.
 import { ellipseText } from "./analysis.js";
 import { tableOf } from "./compare.js";
 import { make } from "./controls.js";
@@ -8,8 +8,8 @@ import { differencesOf } from "./proposal.js";
 
 const kMaxGroups = 8;
 const kStates = {
-  starting: "starts",
-  playing: "plays",
+  starting: "is starting",
+  playing: "is playing",
   pausing: "is being paused",
   paused: "is paused",
   held: "is paused",
@@ -19,7 +19,7 @@ const kStates = {
 };
 const kOutcomes = { right: "right", wrong: "another ellipse", missed: "not found", false: "a false target" };
 
-/** The source's state and what is found in the shown frame. */
+/** The state of the source, and the target in the shown frame. */
 export function sourceText(source, frame) {
   if (!source) return "Waiting for the program.";
   const state = `The source ${source.spec} ${kStates[source.state] ?? source.state}.`;
@@ -29,16 +29,16 @@ export function sourceText(source, frame) {
   return `${state} ${target ? `A target is ${target.state}: ${ellipseText(target)}.` : "No target is found."}`;
 }
 
-/** How many frames are stored. */
-export function storedText(count, most, isFull, isPlaying) {
+/** The number of stored frames. */
+export function storedText(count, max, isFull, isPlaying) {
   if (isFull) return `The last ${count} frames are stored.`;
-  if (isPlaying) return `${count} of ${most} frames are stored.`;
-  return `${count} of ${most} frames are stored; more follow while the source plays.`;
+  if (isPlaying) return `${count} of ${max} frames are stored.`;
+  return `${count} of ${max} frames are stored; play the source to store more.`;
 }
 
-/** An error of a request in plain words. */
+/** The text of a failed request's error. */
 export function troubleText(error, isGone) {
-  if (isGone) return "The stored frames are gone: the source has changed, or another page has discarded them.";
+  if (isGone) return "The frames are no longer stored: the source has changed, or another page has discarded them.";
   if (error instanceof TypeError) return "No connection to ellipse-live. Your marks are kept.";
   return error.message;
 }
@@ -49,9 +49,9 @@ function titleOf({ changes, before, after }, marks) {
   const count = `${marks.length} ${marks.length === 1 ? "mark" : "marks"}`;
   const { right } = before.verdict;
   if (!isEmpty(changes)) return "Proposed settings";
-  if (right === marks.length) return `The settings that you have are right on your ${count}.`;
+  if (right === marks.length) return `The current settings are right on your ${count}.`;
   if (marks.every(({ truth }) => truth === null)) return "Mark the target in at least one frame to get a proposal.";
-  return `No setting that was tried is right on more than ${after.verdict.right} of your ${count}.`;
+  return `None of the tried settings is right on more than ${after.verdict.right} of your ${count}.`;
 }
 
 function changesOf({ changes, why }, values) {
@@ -67,7 +67,7 @@ function effectTable({ changes, before, after }, marks) {
   const columns = isEmpty(changes) ? [before] : [before, after];
   const row = (name, valueOf) => [name, ...columns.map((each) => String(valueOf(each)))];
   return tableOf(`Effect on the last ${frames} frames`, [
-    row("Marks right, frame by itself", ({ verdict }) => `${verdict.right} of ${marks.length}`),
+    row("Marks right, single frames", ({ verdict }) => `${verdict.right} of ${marks.length}`),
     row("Marks right, tracked", ({ stream }) => `${stream.right} of ${marks.length}`),
     row("Wrong ellipses in marked frames", ({ verdict }) => verdict.wrong.length),
     row("Frames with a target", ({ stream }) => `${stream.found} of ${frames}`),
@@ -116,7 +116,7 @@ function reasonsOf({ reasons }) {
   const link = make("a", { href: "troubleshooting.md", target: "_blank", rel: "noopener" }, "Troubleshooting");
   return [
     ...texts.map((text) => make("p", { className: "reason-text" }, text)),
-    make("p", {}, link, " lists what else can be tried, from the symptom to the setting."),
+    make("p", {}, link, " lists further settings by symptom."),
   ];
 }
 
@@ -134,7 +134,7 @@ export function showProposal({ proposal, marks, values, onShow }) {
     ...frameList("Marked frames", markRows(proposal, marks), onShow),
     ...differences(proposal, onShow),
     make("p", { className: "help" }, isEmpty(proposal.changes)
-      ? "In the picture: dotted white, your mark; green, what is found while tracking."
+      ? "In the picture: dotted white, your mark; green, found while tracking."
       : "In the picture: dotted white, your mark; amber, found now; green, found with the proposed settings."),
   ];
 }

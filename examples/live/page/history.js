@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The last frames that the program stores, for settings to be compared on them.
+// Requests for the stored frames, on which settings are compared.
 import { ask } from "./connection.js";
 
-/** Begins or ends to store frames. @returns as storedFrames(). */
+/** Starts or stops storing frames. @returns as storedFrames(). */
 export const storeFrames = (storing) => ask("PUT", "api/history", { storing });
 
 /** @returns {storing, full, max_frames, frames: [{frame, pts_ns}]}, the oldest frame first. */
@@ -17,7 +17,7 @@ export const showStored = (frame) => ask("POST", "api/history/show", { frame });
 /**
  * Analyses stored frames with other settings.
  * @param properties  {name: value} that replace current settings.
- * @param frames      Numbers of frames that are analysed each by itself; undefined = all, as one stream.
+ * @param frames      Numbers of frames to analyse as single frames; undefined = all, as one stream.
  * @returns [{frame, target}]; for single frames also `found`, all ellipses that were found.
  */
 export async function replay(properties, frames) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Label tab: the user selects the target, and frame and ellipse are added to a data set.
+// The Label tab: adds the shown frame, with the target that the user selects, to a data set.
 import { analyze } from "./analysis.js";
 import { TargetChoice } from "./choice.js";
 import { ask, newestOnly } from "./connection.js";

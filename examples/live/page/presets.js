@@ -18,9 +18,9 @@ export function setUpPresets(settings, notify) {
       make("option", { value: "" }, "Preset…"),
       ...presets.map(({ name, comment }) => make("option", { value: name, title: comment }, name)));
     list.value = presets.some(({ name }) => name === chosen) ? chosen : "";
-    showWhatCanBeDone();
+    updateButtons();
   };
-  const showWhatCanBeDone = () => {
+  const updateButtons = () => {
     const preset = presets.find(({ name }) => name === list.value);
     at("preset-load").disabled = !preset;
     at("preset-delete").disabled = !preset?.is_own;
@@ -45,7 +45,7 @@ export function setUpPresets(settings, notify) {
   };
   const pathOf = (name) => `api/presets/${encodeURIComponent(name)}`;
 
-  list.onchange = showWhatCanBeDone;
+  list.onchange = updateButtons;
   at("preset-load").onclick = () => attempt(async () => {
     await ask("POST", `${pathOf(list.value)}/load`);
     await settings.refresh();
@@ -81,7 +81,7 @@ export function setUpPresets(settings, notify) {
     const line = (await ask("GET", "api/launch-line")).trim();
     at("launch-line").textContent = line;
     at("launch-line").hidden = false;
-    // Browsers allow copying only on localhost and over TLS. Otherwise the user can select the line.
+    // Browsers provide the clipboard only on localhost and over TLS. Elsewhere the user can select the line.
     if (!navigator.clipboard) return;
     await navigator.clipboard.writeText(line);
     notify("Copied");
@@ -90,7 +90,7 @@ export function setUpPresets(settings, notify) {
   return showState;
 }
 
-// Text that names the preset in force and counts the settings changed since.
+// Names the preset in force and counts the settings changed since.
 function stateOf({ name, values }, now) {
   const changed = Object.keys(values).filter((each) => JSON.stringify(values[each]) !== JSON.stringify(now[each]));
   if (changed.length === 0) return `In force: ${name}`;

@@ -5,17 +5,17 @@ import { replay } from "./history.js";
 import { admittingTrial, isPartOf, isSame, overlapOf, ringRatioOf, trialsFor } from "./trials.js";
 
 const kPasses = 2;
-const kNearOverlap = 0.6;  // a candidate that lies on a mark, if not exactly
+const kNearOverlap = 0.6;  // minimum overlap of a candidate near a mark
 const kBadRequest = 400;
 
-/** "right", "wrong" (another ellipse), "missed", or "false" (an ellipse where no target is). */
+/** "right", "wrong" (another ellipse), "missed", or "false" (an ellipse in a frame without a target). */
 function outcomeOf(truth, target) {
   if (!truth) return target ? "false" : "right";
   if (!target) return "missed";
   return isSame(truth, target) ? "right" : "wrong";
 }
 
-/** Judges settings by the marked frames, each by itself. */
+/** Judges settings by the marked frames, each as a single frame. */
 async function judge(marks, changes) {
   const frames = await replay(changes, marks.map(({ frame }) => frame));
   const outcomes = frames.map(({ target }, i) => outcomeOf(marks[i].truth, target));
@@ -36,7 +36,7 @@ async function judge(marks, changes) {
 const isBetter = (a, b) => a.right > b.right || (a.right === b.right && a.wrong.length < b.wrong.length);
 const isAsGood = (a, b) => !isBetter(b, a);
 
-// Judges further changes on top of the best ones so far. @returns the better ones.
+// Adds a trial's changes to the best ones so far and judges the sum. @returns the better of the two.
 async function attempt(marks, best, trial) {
   const changes = { ...best.changes, ...trial.changes };
   try {
@@ -47,7 +47,7 @@ async function attempt(marks, best, trial) {
     });
     return { changes, why: { ...best.why, ...Object.fromEntries(sentences) }, verdict };
   } catch (error) {
-    if (error.status === kBadRequest) return best;  // invalid together
+    if (error.status === kBadRequest) return best;  // an invalid combination
     throw error;
   }
 }
@@ -67,7 +67,7 @@ async function search(marks, values, start) {
   return best;
 }
 
-// Drops changes without which the frames are as right. Settings that act in pairs go together.
+// Removes changes that do not improve the verdict. Paired settings are removed together.
 async function pruned(marks, best) {
   let result = best;
   const groups = [["edge-low", "edge-high"], ["roi", "roi-source"]];
@@ -84,12 +84,12 @@ async function pruned(marks, best) {
   return result;
 }
 
-const isSeen = (target) => target !== null && target.state !== "predicted";
+const isVisible = (target) => target !== null && target.state !== "predicted";
 
-/** The stored frames as one stream. @returns {targets, found, right}: right are the marked frames. */
+/** Replays the stored frames as one stream. @returns {targets, found, right}; `right` counts marked frames. */
 async function streamOf(marks, changes) {
   const frames = await replay(changes);
-  const targets = new Map(frames.map(({ frame, target }) => [frame, isSeen(target) ? target : null]));
+  const targets = new Map(frames.map(({ frame, target }) => [frame, isVisible(target) ? target : null]));
   return {
     targets,
     found: [...targets.values()].filter(Boolean).length,
@@ -97,7 +97,7 @@ async function streamOf(marks, changes) {
   };
 }
 
-// The ring's ratio acts while tracking, so it is judged by the stream.
+// Judges ring-ratio by the stream, because it has an effect only while tracking.
 async function withRingRatio(marks, values, best, stream) {
   const ratio = ringRatioOf(marks);
   const isIdle = values.tracking !== "edges" || values["ring-ratio"] !== 0;
@@ -110,7 +110,7 @@ async function withRingRatio(marks, values, best, stream) {
   return { best: { ...best, changes, why: { ...best.why, "ring-ratio": why } }, stream: other };
 }
 
-// The candidate that lies on a mark, or undefined.
+// The candidate with the largest overlap with a mark, or undefined if none is near it.
 async function candidateAt(mark, properties) {
   const { candidates } = await analyze({ frame: mark.frame, properties });
   return candidates.filter(({ ellipse }) => ellipse)
@@ -119,23 +119,24 @@ async function candidateAt(mark, properties) {
     .sort((a, b) => b.overlap - a.overlap)[0];
 }
 
-// What the edges of an unlikely candidate lack. Its evidence is complete only if it is accepted.
+// Describes the missing evidence of an unlikely candidate. The evidence is complete only for accepted
+// candidates, so the candidate is analysed again without a minimum probability.
 async function lackOf(mark, properties) {
   const { evidence } = await candidateAt(mark, { ...properties, "min-probability": 0 }) ?? {};
   if (!evidence) return "";
   const support = evidence.find(({ name }) => name === "turn-support").value;
   const [worst] = evidence.sort((a, b) => a.contribution - b.contribution);
-  return `; ${Math.round(100 * support)} % of its outline has edges; most against it: ${worst.description}`;
+  return `; ${Math.round(100 * support)} % of its outline has edges; strongest evidence against it: ${worst.description}`;
 }
 
-// Why the mark is not right. Limits that were in its way are lifted, because that did not suffice.
+// Explains why a mark is not right although the limits that rejected it are relaxed.
 async function reasonFor(mark, outcome, target, { changes, admitted }) {
-  if (outcome === "false") return `An ellipse of ${ellipseText(target)} is reported where no target is.`;
+  if (outcome === "false") return `An ellipse of ${ellipseText(target)} is reported in a frame without a target.`;
   const properties = { ...changes, ...admitted };
   const near = await candidateAt(mark, properties);
   const even = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
-  const taken = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is taken.` : "";
-  if (!near) return `No candidate lies on your mark: its edges are too faint or too short.${taken}`;
+  const taken = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is selected.` : "";
+  if (!near) return `No candidate is near your mark: its edges are too faint or too short.${taken}`;
   const text = even ? `Even with ${even}: ${near.text}` : near.text[0].toUpperCase() + near.text.slice(1);
   const lack = near.reason === "unlikely" ? await lackOf(mark, properties) : "";
   return `${text}${lack}.${taken}`;
@@ -155,7 +156,7 @@ export async function propose(marks, values) {
   let best = await pruned(marks, await search(marks, values, start));
   let stream = best.changes === start.changes ? now : await streamOf(marks, best.changes);
   ({ best, stream } = await withRingRatio(marks, values, best, stream));
-  // Fewer wrong ellipses in the marked frames do not outweigh targets that are lost elsewhere.
+  // Fewer wrong ellipses in the marked frames do not outweigh targets lost in other frames.
   const isNeeded = best.verdict.right > start.verdict.right || stream.right > now.right;
   if (!isNeeded && stream.found < now.found) [best, stream] = [start, now];
   const { verdict } = best;

@@ -18,19 +18,19 @@ export class Region {
     canvas.addEventListener("pointerdown", (event) => this.#begin(event));
     canvas.addEventListener("pointermove", (event) => this.#drag(event));
     canvas.addEventListener("pointerup", () => this.#end());
-    canvas.addEventListener("pointercancel", () => this.#giveUp());
+    canvas.addEventListener("pointercancel", () => this.#cancel());
     canvas.addEventListener("dblclick", () => this.#clear());
     canvas.addEventListener("keydown", ({ key }) => {
       if (key !== "Escape") return;
-      if (this.#start) this.#giveUp();
+      if (this.#start) this.#cancel();
       else this.#clear();
     });
     screen.overlay = (context) => this.#draw(context);
   }
 
   #begin(event) {
-    const isPen = event.pointerType !== "touch" && event.button === 0;
-    if (!this.isOn || !isPen || !this.screen.frame) return;
+    const isDrawing = event.pointerType !== "touch" && event.button === 0;
+    if (!this.isOn || !isDrawing || !this.screen.frame) return;
     this.#start = this.screen.positionOf(event);
     this.screen.canvas.setPointerCapture(event.pointerId);
   }
@@ -47,14 +47,14 @@ export class Region {
 
   #end() {
     const roi = this.#dragged;
-    this.#giveUp();
+    this.#cancel();
     if (!roi) return;
     this.settings.set({ roi, "roi-source": "property" });
     this.screen.draw();
     this.notify(`Search region: ${roi[2]} × ${roi[3]} px; Escape or a double click removes it`);
   }
 
-  #giveUp() {
+  #cancel() {
     this.#start = this.#dragged = null;
     this.screen.draw();
   }

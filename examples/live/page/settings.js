@@ -5,14 +5,14 @@ import { make, makeControl } from "./controls.js";
 
 const kPollMs = 3000;
 const kGroups = {
-  detection: ["Detection", "what counts as an ellipse"],
-  edges: ["Edges", "what counts as an edge"],
-  tracking: ["Tracking", "how the target is followed"],
-  scale: ["Scale", "at which resolution a frame is searched"],
-  ROI: ["Region", "where a frame is searched"],
-  camera: ["Camera", "where the target is in space"],
-  load: ["Load", "which frames are analysed"],
-  output: ["Output", "what is reported and drawn"],
+  detection: ["Detection", "criteria for an ellipse"],
+  edges: ["Edges", "criteria for an edge"],
+  tracking: ["Tracking", "from frame to frame"],
+  scale: ["Scale", "resolution of the search"],
+  ROI: ["Region", "search region"],
+  camera: ["Camera", "lens and pose of the target"],
+  load: ["Load", "selection of frames"],
+  output: ["Output", "metadata, messages, overlay"],
   other: ["Other", ""],
 };
 const kOpenAtFirst = ["detection", "edges", "tracking"];
@@ -40,7 +40,7 @@ export class Settings {
   #controls = new Map();  // by name: {property, control, node, error, idle, value}
   #pending = {};
   #isSending = false;
-  /** Called when any value has changed, also by another client. */
+  /** Called when any value has changed, even by another client. */
   onChange = () => {};
 
   constructor(container, filter, resetAll) {
@@ -183,8 +183,8 @@ export class Settings {
     return isSame(value, usual);
   }
 
-  // Greys settings without effect for the current detector and tracking, and shows the reason. They
-  // can still be set.
+  // Greys out settings without effect for the current detector and tracking mode, and shows the reason.
+  // They can still be set.
   #showEffects() {
     const values = this.values();
     for (const { property, node, idle, value } of this.#controls.values()) {

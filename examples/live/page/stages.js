@@ -87,8 +87,8 @@ export class Stages {
   });
 
   #draw(context, { bitmap, pts }) {
-    const { image, candidates, choice, stage, pts_ns: lookedAt } = this.#result;
-    const isSame = String(lookedAt) === pts && stage === "luma";
+    const { image, candidates, choice, stage, pts_ns: analysedPts } = this.#result;
+    const isSame = String(analysedPts) === pts && stage === "luma";
     drawPicture(context, isSame || !image ? bitmap : image, bitmap.width, bitmap.height, stage !== "luma");
     this.screen.canvas.dataset.stage = choice;
     if (choice === "candidates") {
@@ -125,8 +125,8 @@ export class Stages {
   }
 
   #listed({ reason, members }) {
-    const most = this.#whole.has(reason) ? kMaxRows : kBest;
-    return members.filter(({ ellipse }) => ellipse).slice(0, most);
+    const limit = this.#whole.has(reason) ? kMaxRows : kBest;
+    return members.filter(({ ellipse }) => ellipse).slice(0, limit);
   }
 
   #showCount() {
@@ -209,7 +209,7 @@ export class Stages {
   /** Called with the name of the setting to show. */
   onSetting = () => {};
 
-  // Overlap settings exist for detecting and for tracking; this analysis detects.
+  // Overlap limits exist for detection and for tracking; this analysis only detects.
   #settingOf({ setting }) {
     if (!setting) return null;
     return setting in this.settings.values() ? setting : `detect-${setting}`;
@@ -266,10 +266,10 @@ function foundText({ evidence, probability, score }) {
 
 // Bars of each feature's contribution to the log odds: evidence for an ellipse points right.
 function evidenceOf(evidence) {
-  const most = Math.max(...evidence.map(({ contribution }) => Math.abs(contribution)), 1);
+  const largest = Math.max(...evidence.map(({ contribution }) => Math.abs(contribution)), 1);
   return make("dl", { className: "evidence" }, ...evidence.flatMap(({ description, contribution }) => {
     const bar = make("i", { className: contribution < 0 ? "against" : "for" });
-    bar.style.width = `${(50 * Math.abs(contribution)) / most}%`;
+    bar.style.width = `${(50 * Math.abs(contribution)) / largest}%`;
     const figure = `${contribution < 0 ? "−" : "+"}${Math.abs(contribution).toFixed(1)}`;
     return [make("dt", {}, description), make("dd", {}, make("span", { className: "weight" }, bar), figure)];
   }));

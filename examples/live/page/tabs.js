@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tabs for mouse and keyboard, following the ARIA Authoring Practices.
 
-// The tab list is sticky: scrolls so that a new panel starts below it.
+// Scrolls so that a new panel starts below the sticky tab list.
 function showStartOf(panel, tabList) {
   const hidden = tabList.getBoundingClientRect().bottom - panel.getBoundingClientRect().top;
   if (hidden > 1) scrollBy(0, -hidden);

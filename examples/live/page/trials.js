@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Changes of settings that may make marked frames right, each with the figures that suggest it.
+// Candidate changes of settings for marked frames, each with its reason in figures.
 //
 // A trial is {changes: {name: value}, why: {name: sentence}}. A sentence can be a function of the
-// numbers of right marks with and without the trial, which is judged elsewhere.
+// numbers of right marks with and without the trial. proposal.js judges the trials.
 
 const kGrid = 48;            // samples across both ellipses
 const kConcentric = 0.25;    // distance of concentric centres in minor semi-axes
-const kRelaxMargin = 1.4;    // between a mark and a limit that admits it
-const kClearFactor = 2;      // between marks and ellipses that a limit keeps out
-const kRivalFactor = 1.1;    // the same for ellipses that are taken for the target
+const kRelaxMargin = 1.4;    // factor between a mark and a relaxed limit
+const kClearFactor = 2;      // minimum factor between marks and ellipses that a limit rejects
+const kRivalFactor = 1.1;    // the same for ellipses that are selected as the target
 const kUsualProbability = 0.5;
 const kMaxRegionShare = 0.5; // of the frame; a larger region hardly helps
 const kFaintEdges = { "edge-low": 1, "edge-high": 2 };
@@ -17,7 +17,7 @@ const kDetectors = ["arcs", "contours"];
 /** Minimum intersection over union of a right answer, as in ellipse-evaluate. */
 export const kSameOverlap = 0.8;
 
-/** Limits of ellipsetrack, and the size of an ellipse that they limit. */
+/** Limits of ellipsetrack, and the quantity of an ellipse that each limits. */
 const kLimits = [
   { name: "min-axis", what: "Minor axis", unit: " px", isMin: true, of: (e) => 2 * e.semi_minor, round: Math.round },
   { name: "max-axis", what: "Major axis", unit: " px", isMin: false, of: (e) => 2 * e.semi_major, round: Math.round },
@@ -30,13 +30,13 @@ const kLimits = [
     round: (value) => Math.round(10 * value) / 10,
   },
 ];
-// Half of an outline can be hidden or broken.
+// Assumes that up to half of the outline is occluded or fragmented.
 const kContour = {
   name: "min-contour-size",
   what: "Half the perimeter",
   unit: " px",
   isMin: true,
-  least: 5,
+  minValue: 5,
   of: (e) => Math.PI * Math.hypot(e.semi_major, e.semi_minor) / Math.SQRT2,
   round: Math.round,
 };
@@ -90,7 +90,7 @@ function rangeText(values, unit) {
   return low === high ? `${low}${unit}` : `${low} – ${high}${unit}`;
 }
 
-// One trial with the changes of several; null without any.
+// Merges several trials into one; null if there are none.
 function together(trials) {
   if (trials.length === 0) return null;
   return {
@@ -99,14 +99,14 @@ function together(trials) {
   };
 }
 
-// Limits that reject marked ellipses become wide enough for all of them.
+// Relaxes limits that reject marked ellipses, until they accept all of them.
 function wideLimits(truths, values) {
-  return [...kLimits, kContour].flatMap(({ name, what, unit, isMin, least = 1, of, round }) => {
+  return [...kLimits, kContour].flatMap(({ name, what, unit, isMin, minValue = 1, of, round }) => {
     const sizes = truths.map(of);
     const limit = values[name];
     const rejected = sizes.filter((size) => (isMin ? size < limit : size > limit)).length;
     if (rejected === 0) return [];
-    const to = isMin ? Math.max(least, round(Math.min(...sizes) / kRelaxMargin))
+    const to = isMin ? Math.max(minValue, round(Math.min(...sizes) / kRelaxMargin))
       : round(Math.max(...sizes) * kRelaxMargin);
     const why = `${what} of your marks: ${rangeText(sizes, unit)}. ${short(limit)}${unit} rejects ${rejected} of ` +
       `${truths.length}.`;
@@ -114,7 +114,7 @@ function wideLimits(truths, values) {
   });
 }
 
-// A region that marked ellipses leave is removed.
+// Removes a region that does not contain all marked ellipses.
 function wholeFrame(truths, { roi, "roi-source": source }) {
   if (source !== "property" || !roi[2]) return [];
   const [x, y, width, height] = roi;
@@ -122,19 +122,19 @@ function wholeFrame(truths, { roi, "roi-source": source }) {
     return left < x || top < y || right > x + width || bottom > y + height;
   });
   if (outside.length === 0) return [];
-  const why = `${outside.length} of ${truths.length} marks leave the region of ${width} × ${height} px.`;
+  const why = `${outside.length} of ${truths.length} marks extend beyond the region of ${width} × ${height} px.`;
   return [{ changes: { "roi-source": "none" }, why: { "roi-source": why } }];
 }
 
 function adaptedEdges({ "edge-low": low, "edge-high": high }) {
   if (low === 0 && high === 0) return [];
-  const why = `Edge thresholds are fixed at ${low} and ${high} grey levels per px; 0 adapts them to the frame.`;
+  const why = `Edge thresholds are fixed at ${low} and ${high} grey levels per px; with 0 they adapt to the frame.`;
   return [{ changes: { "edge-low": 0, "edge-high": 0 }, why: { "edge-low": why } }];
 }
 
 function faintEdges({ "edge-low": low, "edge-high": high }) {
   if (low !== 0 || high !== 0) return [];
-  const why = (right, before) => `Fainter edges than the whole frame suggests: ${right} instead of ${before} marks ` +
+  const why = (right, before) => `Lower thresholds than the adaptive ones: ${right} instead of ${before} marks ` +
     "are right.";
   return [{ changes: kFaintEdges, why: { "edge-low": why } }];
 }
@@ -148,7 +148,8 @@ function otherDetector(values) {
 const logOdds = (p) => Math.log(p / (1 - p));
 const inOdds = (p) => Math.min(1 - 1e-6, Math.max(1e-6, p));
 
-// Between the marked ellipses and all others, if they separate: the default, or half way.
+// A threshold that separates the marked ellipses from all others, if one exists: the default, or the mean
+// of the log odds.
 function separatingProbability(marks, values) {
   if (values.detector !== "arcs") return [];
   const probabilities = ({ candidates }, isWanted) => candidates
@@ -168,7 +169,7 @@ function separatingProbability(marks, values) {
   return [{ changes: { "min-probability": to }, why: { "min-probability": why } }];
 }
 
-// Limits between the marked ellipses and wrong ones that are smaller, larger or flatter by a factor.
+// Limits that reject wrong ellipses which are smaller, larger or flatter than all marks by a factor.
 function tightLimits(truths, wrong, factor) {
   return kLimits.flatMap(({ name, what, unit, isMin, of, round }) => {
     const sizes = truths.map(of);
@@ -202,7 +203,7 @@ function regionOfMarks(truths, wrong, { width, height }, { "roi-source": source 
 
 const truthsOf = (marks) => marks.filter(({ truth }) => truth).map(({ truth }) => truth);
 
-/** The trial whose limits and region admit all marked ellipses; null if the current ones do. */
+/** The trial whose limits and region accept all marked ellipses; null if the current ones do. */
 export function admittingTrial(marks, values) {
   const truths = truthsOf(marks);
   return together([...wideLimits(truths, values), ...wholeFrame(truths, values)]);
@@ -214,7 +215,7 @@ export function admittingTrial(marks, values) {
  *                = no target.
  * @param values  All settings by name.
  * @param wrong   Ellipses that these settings find in the marked frames and that are not marked.
- * @param rivals  Ellipses that these settings take for the target instead.
+ * @param rivals  Ellipses that these settings select as the target instead.
  * @param isRight Whether these settings are right on all marked frames.
  */
 export function trialsFor({ marks, values, wrong, rivals, isRight }) {

@@ -116,7 +116,7 @@ describe("the guide", () => {
 
   it("says what is found", async () => {
     const page = await openGuide(browser, program);
-    await page.waitForFunction(() => /test:orbit plays. A target is tracked: \d+ × \d+ px/
+    await page.waitForFunction(() => /test:orbit is playing. A target is tracked: \d+ × \d+ px/
       .test(document.querySelector("#guide-state").textContent));
     await program.ask("PUT", "/api/properties", kTooStrict);
     await program.ask("PUT", "/api/properties", { tracking: "none" });
@@ -154,8 +154,8 @@ describe("the guide", () => {
     assert.match(text, /Minor axis of your marks: .* px. 300 px rejects 3 of 3/);
     assert.match(text, /Axis ratio of your marks: .* 1.02 rejects 3 of 3/);
     assert.equal(await page.locator("[data-proposed]").count(), 2);
-    assert.equal(await cellOf(page, "Marks right, frame by itself", 0), "0 of 3");
-    assert.equal(await cellOf(page, "Marks right, frame by itself", 1), "3 of 3");
+    assert.equal(await cellOf(page, "Marks right, single frames", 0), "0 of 3");
+    assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
     assert.match(await cellOf(page, "Frames with a target", 0), /^0 of/);
     const [found, all] = (await cellOf(page, "Frames with a target", 1)).split(" of ").map(Number);
     assert.ok(found >= 0.9 * all, `${found} of ${all}`);
@@ -187,8 +187,8 @@ describe("the guide", () => {
     const text = await resultOf(page);
     assert.match(text, /max-axis: 700 → \d+/);
     assert.match(text, /Major axis of your marks: .* px; of 3 wrong ellipses: .* px/);
-    assert.equal(await cellOf(page, "Marks right, frame by itself", 0), "0 of 3");
-    assert.equal(await cellOf(page, "Marks right, frame by itself", 1), "3 of 3");
+    assert.equal(await cellOf(page, "Marks right, single frames", 0), "0 of 3");
+    assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
     await page.close();
   });
 
@@ -209,7 +209,7 @@ describe("the guide", () => {
     const page = await openGuide(browser, program);
     await beginMarks(page);
     for (let i = 1; i <= 3; ++i) await markByClick(page, program, i);
-    assert.match(await resultOf(page), /The settings that you have are right on your 3 marks/);
+    assert.match(await resultOf(page), /The current settings are right on your 3 marks/);
     assert.equal(await page.locator("#guide-apply").isVisible(), false);
     assert.equal(await textOf(page, "discard"), "Done");
     await page.close();
@@ -224,8 +224,8 @@ describe("the guide", () => {
     await choicesOf(page, 3);
     await markByHand(page, await targetOf(program), 3);
     const text = await resultOf(page);
-    assert.match(text, /Mark 2: An ellipse of .* is reported where no target is/);
-    assert.equal(await cellOf(page, "Marks right, frame by itself", 1), "2 of 3");
+    assert.match(text, /Mark 2: An ellipse of .* is reported in a frame without a target/);
+    assert.equal(await cellOf(page, "Marks right, single frames", 1), "2 of 3");
     const rows = readFileSync(join(labels, "gt.csv"), "utf8").trim().split("\n");
     assert.ok(rows.length > 3, rows.join("\n"));
     await page.click("#guide-discard");
@@ -240,8 +240,8 @@ describe("the guide", () => {
     const nowhere = { cx: 60, cy: 50, semi_major: 40, semi_minor: 30, angle_rad: 0.3, width: 640, height: 360 };
     for (let i = 1; i <= 3; ++i) await markByHand(page, nowhere, i);
     const text = await resultOf(page);
-    assert.match(text, /No setting that was tried is right on more than 0 of your 3 marks/);
-    assert.match(text, /Mark 1: (No candidate lies on your mark|Its edges do not support an ellipse)/);
+    assert.match(text, /None of the tried settings is right on more than 0 of your 3 marks/);
+    assert.match(text, /Mark 1: (No candidate is near your mark|Its edges do not support an ellipse)/);
     const help = await page.locator("#guide-result a").getAttribute("href");
     assert.match(await program.ask("GET", `/${help}`), /^# Troubleshooting/);
     await page.close();
@@ -252,7 +252,7 @@ describe("the guide", () => {
     await beginMarks(page);
     await program.ask("DELETE", "/api/history");
     await markNone(page, 1);
-    await page.getByText("The stored frames are gone").waitFor();
+    await page.getByText("The frames are no longer stored").waitFor();
     await page.click("#guide-again");
     await isAtStep(page, "see");
     await beginMarks(page);
@@ -268,7 +268,7 @@ describe("the guide", () => {
     await page.click("#guide-again");
     await choicesOf(page, 2);
     await program.ask("POST", "/api/play");
-    await page.getByText("The source plays on").waitFor();
+    await page.getByText("The source is playing").waitFor();
     await page.click("#guide-again");
     await choicesOf(page, 2);
     await markNone(page, 2);
