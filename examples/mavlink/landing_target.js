@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: MIT
 //
-// Reads the JSON lines of ellipsejson from standard input, sends MAVLink LANDING_TARGET over UDP:
+// Reads the JSON lines of ellipsejson from standard input and sends MAVLink LANDING_TARGET over UDP:
 //   gst-launch-1.0 -q ... ! ellipsetrack hfov=1.01 target-diameter=1.5 ! ellipsejson ! fdsink |
 //     node landing_target.js --to 127.0.0.1:14550
 import dgram from 'node:dgram'

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Decodes the messages that arrive on the loopback and compares them with the scene's truth.
+// Decodes the messages received on the loopback interface and compares them with the scene's truth.
 import assert from 'node:assert/strict'
 import { spawn } from 'node:child_process'
 import dgram from 'node:dgram'
@@ -43,11 +43,11 @@ async function run(lines, options, nodeOptions = []) {
   })
   child.stdin.on('error', () => {}) // the program may exit before it has read everything
   child.stdin.end(lines.map((line) => line + '\n').join(''))
-  const [complaint, [status]] = await Promise.all([textOf(child.stderr), once(child, 'close')])
-  return { complaint, status }
+  const [errorOutput, [status]] = await Promise.all([textOf(child.stderr), once(child, 'close')])
+  return { errorOutput, status }
 }
 
-/** Runs the program and decodes what it sends to an address of this machine. */
+/** Runs the program and decodes the messages that it sends to an address of this machine. */
 async function sentTo(address, lines, options, nodeOptions) {
   const isIpv6 = address.includes(':')
   const socket = dgram.createSocket(isIpv6 ? 'udp6' : 'udp4')
@@ -59,7 +59,7 @@ async function sentTo(address, lines, options, nodeOptions) {
   const packets = []
   stream.pipe(new MavLinkPacketSplitter()).pipe(parser)
   parser.on('data', (packet) => packets.push(packet))
-  const marker = 'all that was sent has arrived' // datagrams on the loopback stay in order
+  const marker = 'end of the messages' // the loopback preserves the order of datagrams
   socket.on('message', (datagram) => (String(datagram) === marker ? stream.end() : stream.write(datagram)))
   const to = isIpv6 ? `[${address}]:${port}` : `${address}:${port}`
   const ended = await run(lines, ['--to', to, ...options], nodeOptions)
@@ -77,8 +77,8 @@ const sentFor = (lines, ...options) => sentTo('127.0.0.1', lines, options)
 
 const truthOf = (line) => line.targets.find((one) => one.role === 'truth')
 const targetOf = (line) => line.targets.find((one) => one.role === 'target')
-const near = (actual, expected, most, what) =>
-  assert.ok(Math.abs(actual - expected) <= most, `${what}: ${actual}, not ${expected}`)
+const near = (actual, expected, tolerance, what) =>
+  assert.ok(Math.abs(actual - expected) <= tolerance, `${what}: ${actual}, not ${expected}`)
 
 let withPose
 let withoutCamera
@@ -114,7 +114,7 @@ function distanceFrom(ellipse, line, message) {
   return farthest
 }
 
-test('a position for each frame, as the scene has it', async () => {
+test('each frame has a position that matches the scene', async () => {
   const { status, messages, targets } = await sentFor(withPose)
   assert.equal(status, 0)
   assert.ok(messages[0].data instanceof minimal.Heartbeat)
@@ -134,16 +134,16 @@ test('a position for each frame, as the scene has it', async () => {
     near(Math.tan(data.angleY), -data.x / data.z, 1e-5, 'angle_y')
     // The message's circle, projected into the picture, is the scene's true ellipse.
     const off = distanceFrom(truthOf(line), line, data)
-    assert.ok(off < 0.5, `frame ${i}: its picture is ${off} px off`)
+    assert.ok(off < 0.5, `frame ${i}: projection error ${off} px`)
   })
 })
 
-test('at least ten messages a second', async () => {
+test('messages are sent at 10 Hz or more', async () => {
   const { targets } = await sentFor(withPose)
   targets.slice(1).forEach(({ data }, i) => assert.ok(data.timeUsec - targets[i].data.timeUsec <= 100000n))
 })
 
-test('angles and sizes where there is no pose', async () => {
+test('without a pose, messages have angles and sizes', async () => {
   const { targets } = await sentFor(withoutCamera, '--hfov', String(hfov))
   assert.equal(targets.length, frames)
   targets.forEach(({ data }, i) => {
@@ -160,7 +160,7 @@ test('angles and sizes where there is no pose', async () => {
   })
 })
 
-test('angles alone where they are asked for', async () => {
+test('--angles-only omits the position', async () => {
   const { targets } = await sentFor(withPose, '--angles-only')
   assert.equal(targets.length, frames)
   targets.forEach(({ data }, i) => {
@@ -171,7 +171,7 @@ test('angles alone where they are asked for', async () => {
   })
 })
 
-test('nothing while the target is lost', async () => {
+test('no message is sent while the target is lost', async () => {
   const lost = withPose.map((text, i) => {
     const line = JSON.parse(text)
     if (i >= 20 && i < 40) line.targets = line.targets.filter((one) => one.role === 'truth')
@@ -184,7 +184,7 @@ test('nothing while the target is lost', async () => {
   assert.equal(more.length, frames - 20)
 })
 
-test('the way the camera is mounted', () => {
+test('vectors are rotated by the mounting of the camera', () => {
   const close = (actual, expected) =>
     ['x', 'y', 'z'].forEach((axis) => near(actual[axis], expected[axis], 1e-12, axis))
   const ahead = { x: 0, y: 0, z: 1 }
@@ -195,33 +195,33 @@ test('the way the camera is mounted', () => {
   close(bodyFromCamera(right, { pitch: 0, turn: Math.PI / 2 }), { x: -1, y: 0, z: 0 })
 })
 
-test('a line that is none, or tells no direction, is named', async () => {
+test('an invalid line, or one without a bearing, ends the program with its number', async () => {
   const broken = await sentFor([withPose[0], '{"frame":1,'])
   assert.equal(broken.status, 1)
-  assert.match(broken.complaint, /^landing_target\.js: line 2: /)
+  assert.match(broken.errorOutput, /^landing_target\.js: line 2: /)
   const blind = await sentFor(withoutCamera)
   assert.equal(blind.status, 1)
-  assert.match(blind.complaint, /line 1: no bearing: set a camera for ellipsetrack, or --hfov/)
+  assert.match(blind.errorOutput, /line 1: no bearing: set a camera for ellipsetrack, or --hfov/)
   const port = await sentFor([], '--to', 'nowhere')
-  assert.match(port.complaint, /--to nowhere: expected HOST:PORT/)
+  assert.match(port.errorOutput, /--to nowhere: expected HOST:PORT/)
 })
 
-test('an address that nothing can be sent to ends it', async () => {
+test('an address that cannot be sent to ends the program', async () => {
   for (const to of ['255.255.255.255:14550', '127.0.0.1:99999']) { // neither is sent off this machine
-    const { status, complaint } = await run(withPose, ['--to', to])
+    const { status, errorOutput } = await run(withPose, ['--to', to])
     assert.equal(status, 1, to)
-    assert.match(complaint, /^landing_target\.js: .+\n$/, to)
+    assert.match(errorOutput, /^landing_target\.js: .+\n$/, to)
   }
 })
 
 const hasIpv6 = Object.values(networkInterfaces()).some((all) => all.some((one) => one.address === '::1'))
-test('an address of IPv6', { skip: !hasIpv6 && 'this machine has no ::1' }, async () => {
+test('messages can be sent to an IPv6 address', { skip: !hasIpv6 && 'this machine has no ::1' }, async () => {
   const { status, targets } = await sentTo('::1', withPose, [])
   assert.equal(status, 0)
   assert.equal(targets.length, frames)
 })
 
-test('a network that is away for a moment ends nothing', async () => {
+test('the program continues after a temporary network error', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'landing-target-'))
   const preload = join(folder, 'preload.cjs')
   writeFileSync(
@@ -230,15 +230,15 @@ test('a network that is away for a moment ends nothing', async () => {
      const send = Socket.prototype.send
      let number = 0
      Socket.prototype.send = function (packet, port, host, done) {
-       const isAway = ++number > 10 && number <= 15
-       return isAway ? done(new Error('send ENETUNREACH')) : send.call(this, packet, port, host, done)
+       const isDown = ++number > 10 && number <= 15
+       return isDown ? done(new Error('send ENETUNREACH')) : send.call(this, packet, port, host, done)
      }`,
   )
-  const { status, complaint, messages } = await sentTo('127.0.0.1', withPose, [], ['--require', preload])
+  const { status, errorOutput, messages } = await sentTo('127.0.0.1', withPose, [], ['--require', preload])
   rmSync(folder, { recursive: true })
   assert.equal(status, 0)
   assert.equal(
-    complaint,
+    errorOutput,
     'landing_target.js: send ENETUNREACH; continuing\nlanding_target.js: messages not sent: 5\n',
   )
   assert.ok(messages.length >= 1 + frames - 5) // and one heartbeat per second

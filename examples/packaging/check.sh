@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs the packages that debian.sh has built, runs their smoke tests and purges them. Fails if a
-# test fails or a file stays behind. Changes the system on which it runs: for a chroot or a container,
-# as root.
+# test fails or a file remains. Modifies the system: run it as root in a chroot or a container.
 #   examples/packaging/check.sh PACKAGES_FOLDER
 set -euo pipefail
 [ $# -eq 1 ] || { echo "usage: check.sh PACKAGES_FOLDER" >&2; exit 2; }
@@ -22,13 +21,13 @@ package_names() {
   for package in "${packages[@]}"; do dpkg-deb --field "$package" Package; done
 }
 
-# All packages that the tests need besides those under test, from the field Depends.
+# The packages in the tests' field Depends, without those under test.
 test_dependencies() {
   sed -n 's/^Depends: //p' "$tests/control" | tr -d ' ' | tr ',' '\n' | sort -u |
     grep -vxFf <(package_names)
 }
 
-# Installs what the packages depend on, so that the files between two lists are theirs.
+# Installs all dependencies first, so that new files belong to the packages under test.
 install_dependencies() {
   mapfile -t others < <(test_dependencies)
   install "${others[@]}"
@@ -37,7 +36,7 @@ install_dependencies() {
   [ ${#others[@]} -eq 0 ] || install "${others[@]}"
 }
 
-# All files but those in which dpkg and apt keep their state and logs.
+# All files except virtual and temporary ones, and the state and logs of dpkg and apt.
 list_files() {
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /run -o -path /tmp \
     -o -path /var/lib/dpkg -o -path /var/lib/apt -o -path /var/cache/apt -o -path /var/log \
@@ -58,5 +57,5 @@ for name in $(sed -n 's/^Tests: //p' "$tests/control"); do run_test "$name"; don
 mapfile -t names < <(package_names)
 apt-get purge -q -y "${names[@]}"
 list_files > "$work/after"
-diff "$work/before" "$work/after" || { echo "check.sh: purging leaves other files than before" >&2; exit 1; }
-echo "check.sh: ${names[*]}: installed, tested, purged without a trace"
+diff "$work/before" "$work/after" || { echo "check.sh: the files after purging differ from those before the installation" >&2; exit 1; }
+echo "check.sh: ${names[*]}: installed, tested and purged; no file remains"

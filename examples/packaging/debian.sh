@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Builds the Debian packages of this tree, a git clone or an unpacked tarball, and checks them with
-# lintian. Works in a temporary folder; the tree stays as it is.
+# lintian. Builds in a temporary folder and does not modify the tree.
 #   examples/packaging/debian.sh [--out FOLDER]   default: out/packages
 # DEB_BUILD_OPTIONS is passed to dpkg-buildpackage; default: noautodbgsym.
 set -euo pipefail
@@ -13,7 +13,7 @@ usage() {
   exit 2
 }
 
-# The project's version in meson.build counts; the changelog, which dpkg reads, has the same.
+# The changelog, which dpkg reads, must have the version of meson.build.
 check_version() {
   local project_version package_version
   project_version=$(sed -n "s/^  version: '\(.*\)',$/\1/p" "$project/meson.build")
@@ -23,8 +23,7 @@ check_version() {
   exit 1
 }
 
-# copy_tree FOLDER: all files with the changelog's date, so that packages of different copies are the
-# same.
+# copy_tree FOLDER: copies all files with the changelog's date, so that packages are reproducible.
 copy_tree() {
   local date
   date=$(dpkg-parsechangelog -l "$debian/changelog" -S Timestamp)
@@ -33,7 +32,7 @@ copy_tree() {
   cp -a "$1/examples/packaging/debian" "$1/debian"
 }
 
-# Packages of debug symbols only on request.
+# Builds packages of debug symbols only on request.
 export DEB_BUILD_OPTIONS=${DEB_BUILD_OPTIONS-noautodbgsym}
 out=$PWD/out/packages
 while [ $# -gt 0 ]; do

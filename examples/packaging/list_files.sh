@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Names the files of this tree, each ended by a 0 byte: those that git tracks; without git all but what
-# builds and programs leave.
+# Lists the files of this tree, each terminated by a null byte: those tracked by git, or without git
+# all except the output of builds and programs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if [ "$(git rev-parse --show-toplevel 2> /dev/null)" = "$PWD" ]; then
