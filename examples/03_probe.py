@@ -67,7 +67,7 @@ def main():
     Gst.init(None)
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # exit silently in ./03_probe.py | head
     if not Gst.ElementFactory.find("ellipsetrack"):
-        sys.exit("there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?")
+        sys.exit("no element ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?")
     source = sys.argv[1] if len(sys.argv) > 1 else "ellipsetestsrc num-buffers=60"
     try:
         pipeline = Gst.parse_launch(f"{source} ! ellipsetrack name=track ! fakesink")

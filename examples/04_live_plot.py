@@ -137,7 +137,7 @@ def main():
     parser.add_argument("--save", metavar="PNG")
     options = parser.parse_args()
     if not Gst.ElementFactory.find("ellipsetrack"):
-        sys.exit("there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?")
+        sys.exit("no element ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?")
     sink = "fakesink" if options.save else "fakesink sync=true"
     try:
         pipeline = Gst.parse_launch(f"{options.source} ! ellipsetrack name=track ! {sink}")

@@ -91,7 +91,7 @@ static gboolean has_element(const gchar* name) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   if (!has_element("ellipsetrack")) {
-    g_printerr("there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
+    g_printerr("no element ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
     return 1;
   }
   const gchar* source = argc > 1 ? argv[1] : "ellipsetestsrc num-buffers=60";

@@ -28,7 +28,8 @@ Eigen::Vector2d middle_of(const cv::Rect& box) {
   return {box.x + 0.5 * box.width, box.y + 0.5 * box.height};
 }
 
-// KCF fails at random on grey pictures (opencv_contrib issues 1991 and 3893).
+// Converts to colour, because KCF fails at random on grey pictures (opencv_contrib issues 1991 and
+// 3893).
 void colour(const cv::Mat& grey, cv::Mat& colour) {
   cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
 }

@@ -80,7 +80,7 @@ class EdgeDrawingPeer final : public Peer {
     }
   }
 
-  // The validation table is made for the size of the first picture and kept.
+  // A new object per size, because OpenCV keeps the validation table of the first picture's size.
   void start_over(const cv::Size& size) {
     size_ = size;
     edge_drawing_ = cv::ximgproc::createEdgeDrawing();

@@ -70,7 +70,7 @@ class Controller {
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Whether ellipsetrack tracks something else and should search again.
+  /// Whether the method tracks a false target and should search again.
   [[nodiscard]] bool is_off_target() const { return rejected_ >= kMaxRejected; }
 
   /// Number of aborted descents.

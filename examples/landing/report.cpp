@@ -51,8 +51,8 @@ std::vector<double> sorted(const Group& group, const Figure& figure) {
 // The smallest value that this fraction of the values does not exceed.
 double quantile(const std::vector<double>& values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double place = std::ceil(share * static_cast<double>(values.size())) - 1.0;
-  return values[static_cast<std::size_t>(std::max(place, 0.0))];
+  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
+  return values[static_cast<std::size_t>(std::max(rank, 0.0))];
 }
 
 double off_of(const Outcome& outcome) {

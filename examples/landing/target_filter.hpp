@@ -23,7 +23,7 @@ class TargetFilter {
   bool see(double time_s, const Eigen::Vector3d& position, double error);
 
   /// Updates with a radio report of position and velocity. A report that contradicts the state
-  /// resets it, because the detections must have been of something else.
+  /// resets it, because the detections must have been of another object.
   /// @param is_recently_seen  The target was detected recently. The estimate is then more accurate
   /// than radio and is not corrected.
   /// @param position_error, velocity_error  Standard deviations of the horizontal coordinates [m,

@@ -77,9 +77,9 @@ export function landingTarget(line, { mount, hfov, anglesOnly, predicted }) {
   message.frame = common.MavFrame.BODY_FRD
   message.type = common.LandingTargetType.VISION_OTHER
   // Angles as for a camera that points straight down: x to the right, y to the back.
-  const way = bodyFromCamera(bearing(line, target, hfov), mount)
-  message.angleX = Math.atan2(way.y, way.z)
-  message.angleY = Math.atan2(-way.x, way.z)
+  const direction = bodyFromCamera(bearing(line, target, hfov), mount)
+  message.angleX = Math.atan2(direction.y, direction.z)
+  message.angleY = Math.atan2(-direction.x, direction.z)
   ;[message.sizeX, message.sizeY] = sizes(line, target, hfov)
   message.q = [0, 0, 0, 0]
   if (!target.position || anglesOnly) {

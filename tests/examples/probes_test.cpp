@@ -85,7 +85,7 @@ TEST_P(Reader, SaysThatThePluginIsMissing) {
                     (folder_ / "registry.bin").string() + " " + command(GetParam(), "fakesrc"));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.text,
-            "there is no ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
+            "no element ellipsetrack: is gst-ellipse installed, or GST_PLUGIN_PATH set?\n");
 }
 
 // Modules of these names that fail to import come before the real ones in the path.

@@ -8,7 +8,7 @@
 
 namespace live {
 
-/// Limits what a client may send over a WebSocket by parsing its frames [RFC 6455, section 5.2].
+/// Limits a client's input over a WebSocket by parsing its frames [RFC 6455, section 5.2].
 /// libsoup itself collects the fragments of a message without a limit and answers every ping.
 class FrameGuard {
  public:

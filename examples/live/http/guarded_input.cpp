@@ -32,7 +32,7 @@ GInputStream* base_of(gpointer stream) {
   return g_filter_input_stream_get_base_stream(G_FILTER_INPUT_STREAM(stream));
 }
 
-// Returns 0, the end of the stream, if the guard rejects the bytes.
+// Returns 0 (end of stream) if the guard rejects the bytes.
 gssize passed(GuardedInput* self, const void* buffer, gssize size) {
   if (size <= 0) return size;
   const auto* bytes = static_cast<const guint8*>(buffer);

@@ -9,8 +9,8 @@
 
 namespace live {
 
-/// Limits what a client may send over RTSP by parsing its bytes. gst-rtsp-server itself collects a
-/// request's headers without a limit before it asks for the password.
+/// Limits a client's input over RTSP by parsing its bytes. gst-rtsp-server itself collects a
+/// request's headers without a limit before it requests the password.
 ///
 /// Follows the parser of GstRTSPConnection: requests without a body, and interleaved binary data
 /// [RFC 2326, section 10.12]. Input that the two parsers could interpret differently is rejected,

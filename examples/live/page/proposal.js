@@ -134,12 +134,12 @@ async function reasonFor(mark, outcome, target, { changes, admitted }) {
   if (outcome === "false") return `An ellipse of ${ellipseText(target)} is reported in a frame without a target.`;
   const properties = { ...changes, ...admitted };
   const near = await candidateAt(mark, properties);
-  const even = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
+  const relaxed = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
   const taken = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is selected.` : "";
   if (!near) return `No candidate is near your mark: its edges are too faint or too short.${taken}`;
-  const text = even ? `Even with ${even}: ${near.text}` : near.text[0].toUpperCase() + near.text.slice(1);
-  const lack = near.reason === "unlikely" ? await lackOf(mark, properties) : "";
-  return `${text}${lack}.${taken}`;
+  const text = relaxed ? `Even with ${relaxed}: ${near.text}` : near.text[0].toUpperCase() + near.text.slice(1);
+  const detail = near.reason === "unlikely" ? await lackOf(mark, properties) : "";
+  return `${text}${detail}.${taken}`;
 }
 
 /**
