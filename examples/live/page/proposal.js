@@ -135,11 +135,11 @@ async function reasonFor(mark, outcome, target, { changes, admitted }) {
   const properties = { ...changes, ...admitted };
   const near = await candidateAt(mark, properties);
   const relaxed = Object.entries(admitted).map(([name, value]) => `${name}=${value}`).join(", ");
-  const taken = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is selected.` : "";
-  if (!near) return `No candidate is near your mark: its edges are too faint or too short.${taken}`;
+  const alternative = outcome === "wrong" ? ` Instead, ${ellipseText(target)} is selected.` : "";
+  if (!near) return `No candidate is near your mark: its edges are too faint or too short.${alternative}`;
   const text = relaxed ? `Even with ${relaxed}: ${near.text}` : near.text[0].toUpperCase() + near.text.slice(1);
   const detail = near.reason === "unlikely" ? await lackOf(mark, properties) : "";
-  return `${text}${detail}.${taken}`;
+  return `${text}${detail}.${alternative}`;
 }
 
 /**

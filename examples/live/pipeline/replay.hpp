@@ -15,7 +15,7 @@ struct ReplayRequest {
   std::vector<FramePtr> frames;  ///< In the order of the stream.
   ellipse::TrackerSettings settings;
   std::optional<ellipse::Rect> region = {};  ///< Search region; none = the whole frame.
-  bool is_single = false;  ///< Analyse each frame alone, without tracking.
+  bool is_single = false;                    ///< Analyse each frame alone, without tracking.
 };
 
 /// Runs a new tracker over the frames. Returns a JSON object with the target of each frame and, for
