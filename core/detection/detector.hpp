@@ -66,8 +66,6 @@ class Detector {
   [[nodiscard]] virtual Overlaps detecting_overlaps() const = 0;
   /// The lower defaults for the region around a tracked target.
   [[nodiscard]] virtual Overlaps tracking_overlaps() const = 0;
-  /// The default of Thresholds::min_contour_size; 0 = any.
-  [[nodiscard]] virtual int min_contour_size() const { return 0; }
 
   /// Records the stages and verdicts of later detect() calls; nullptr = off. The detections stay
   /// bit-identical. Borrowed.

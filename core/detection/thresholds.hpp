@@ -16,21 +16,21 @@ struct Range {
 inline constexpr Range kShareRange{0.0, 1.0};
 inline constexpr Range kAxisRangePx{1.0, 32768.0};
 inline constexpr Range kAxisRatioRange{1.0, 100.0};
-inline constexpr Range kContourSizeRangePx{0.0, 2147483647.0};
+inline constexpr Range kContourSizeRangePx{5.0, 2147483647.0};
 inline constexpr Range kEdgeRange{0.0, 1e4};
 
 /// Throws std::invalid_argument that names field, value and range if the value is outside.
 void check_range(const char* field, double value, const Range& range);
 
 /// Thresholds of a detector, with the names and the defaults of [Keipour2021] Table I and III.A
-/// (detecting).
+/// (detecting), except max_axis_px: 700 there.
 struct Thresholds {
   double contour_overlap = 0.95;          ///< Eq. (1), smallest accepted share, 0 to 1.
   double ellipse_overlap = 0.95;          ///< Eq. (2), smallest accepted share, 0 to 1.
   double min_axis_px = 5.0;               ///< mnAxSize: smallest accepted minor axis, full length.
   double max_axis_px = kAxisRangePx.max;  ///< mxAxSize: largest accepted major axis, full length.
   double max_axis_ratio = 5.0;            ///< maxAxisRatio: largest accepted major / minor axis.
-  int min_contour_size = 50;     ///< minContourSize: shortest accepted contour [px]; 0 = any.
+  int min_contour_size = 50;              ///< minContourSize: shortest accepted contour [px].
   double edge_low = 0.0;         ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
   double edge_high = 0.0;        ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
   double min_probability = 0.5;  ///< Smallest accepted, if the detector has one; 0 to 1.

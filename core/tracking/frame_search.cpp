@@ -40,10 +40,7 @@ Thresholds FrameSearch::tracking_thresholds(int scale) const {
 Thresholds FrameSearch::thresholds_at(int scale,
                                       const Overlaps& requested,
                                       const Overlaps& own) const {
-  Thresholds thresholds = settings_.limits;
-  int& min_contour_size = thresholds.min_contour_size;
-  if (min_contour_size == 0) min_contour_size = detector_->min_contour_size();
-  thresholds = thresholds.at_scale(scale);
+  Thresholds thresholds = settings_.limits.at_scale(scale);
   thresholds.wants_all = settings_.wants_candidates;
   thresholds.contour_overlap = or_own(requested.contour, own.contour);
   thresholds.ellipse_overlap = or_own(requested.ellipse, own.ellipse);

@@ -45,8 +45,6 @@ TrackerSettings in_force(const TrackerSettings& settings) {
   };
   fill(result.detect_overlaps, detector->detecting_overlaps());
   fill(result.track_overlaps, detector->tracking_overlaps());
-  int& min_contour_size = result.limits.min_contour_size;
-  if (min_contour_size == 0) min_contour_size = detector->min_contour_size();
   if (result.fy_px == 0.0) result.fy_px = settings.fx_px;
   return result;
 }

@@ -108,10 +108,7 @@ const std::array kSettings = {
         "above 0.982 act as 0.982",
         kOfArcs),
     setting<kLimits, &Thresholds::min_contour_size>(
-        "min-contour-size",
-        kContourSizeRangePx,
-        true,
-        "Minimum contour length [px]; 0 = detector default"),
+        "min-contour-size", kContourSizeRangePx, true, "Minimum contour length [px]"),
     setting<&TrackerSettings::max_scale>(
         "max-scale", kMaxScaleRange, false, "Maximum factor by which a frame is reduced", kOfScale),
     setting<&TrackerSettings::min_target_size_px>(

@@ -26,8 +26,7 @@ struct TrackerSettings {
   Refinement refine = Refinement::kEdges;  ///< Of the ellipse during edge tracking.
   Overlaps detect_overlaps = {};           ///< Each 0 = the detector's own.
   Overlaps track_overlaps = {};            ///< Each 0 = the detector's own.
-  /// All other thresholds; the overlaps above replace its own. Contour size 0 = the detector's own.
-  Thresholds limits = {.min_contour_size = 0};
+  Thresholds limits = {};  ///< All other thresholds; the overlaps above replace its own.
   EvidenceTable evidence = built_in_evidence();  ///< For the detector `arcs`.
   double min_target_size_px = 40.0;   ///< minTargetSize: full axis at the processed scale.
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.

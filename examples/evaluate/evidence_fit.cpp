@@ -27,7 +27,7 @@ constexpr int kRounds = 2;                // fits after the first one
 constexpr int kWrongPerFrame = 5;         // number of wrong candidates per frame
 constexpr double kMinCandidates = 100.0;  // a source with fewer is weighted less
 constexpr ellipse::Tolerance kSameEllipse{1.0, 0.05};
-constexpr double kRidge = 1e-3;
+constexpr double kRidge = 1e-5;
 constexpr int kMaxNewtonSteps = 40;
 
 enum class Label { kRight, kWrong, kUnclear };

@@ -25,7 +25,6 @@ class ContourDetector final : public Detector {
                                                   const Thresholds& thresholds) override;
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {0.95, 0.95}; }
   [[nodiscard]] Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
-  [[nodiscard]] int min_contour_size() const override { return Thresholds{}.min_contour_size; }
 
   /// The thresholds used for the last picture, adaptive or as given.
   [[nodiscard]] const EdgeThresholds& edge_thresholds() const { return edge_thresholds_; }
