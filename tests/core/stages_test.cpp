@@ -67,7 +67,7 @@ TEST(Thresholds, HaveThePapersDefaults) {
   EXPECT_EQ(t.contour_overlap, 0.95);
   EXPECT_EQ(t.ellipse_overlap, 0.95);
   EXPECT_EQ(t.min_axis_px, 5);
-  EXPECT_EQ(t.max_axis_px, 700);
+  EXPECT_EQ(t.max_axis_px, kAxisRangePx.max);  // the paper: 700
   EXPECT_EQ(t.max_axis_ratio, 5);
   EXPECT_EQ(t.min_contour_size, 50);
   EXPECT_NO_THROW(t.validate());

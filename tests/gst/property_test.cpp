@@ -292,7 +292,7 @@ TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
   EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "Turned pair"));
   EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
   EXPECT_EQ(value_of<int>(element, "detector"), 1);
-  EXPECT_EQ(value_of<double>(element, "max-axis"), 700.0);
+  EXPECT_EQ(value_of<double>(element, "max-axis"), 32768.0);
   g_object_set(element, "max-axis", 600.0, nullptr);  // later values apply as before
   EXPECT_EQ(value_of<double>(element, "max-axis"), 600.0);
   EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "No such preset"));

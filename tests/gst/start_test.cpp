@@ -40,7 +40,7 @@ Owned<GstElement> tracker_in_null() {
 }
 
 TEST(EllipseTrackStart, FailsForAPairTheWrongWayRound) {
-  const std::string error = run_tracker("min-axis=800");
+  const std::string error = run_tracker("min-axis=800 max-axis=700");
   EXPECT_NE(error.find("max-axis = 700 is not in [800, "), std::string::npos) << error;
   EXPECT_EQ(run_tracker("min-axis=20 max-axis=30"), "");
 }
@@ -107,7 +107,8 @@ TEST(EllipseTrackStart, FailsForAVectorThatIsNone) {
 
 TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
   const Owned<GstElement> element = tracker_in_null();
-  g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "min-axis", 800.0, nullptr);
+  g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "max-axis", 700.0, nullptr);
+  g_object_set(element.get(), "min-axis", 800.0, nullptr);
   EXPECT_EQ(number(element, "min-axis"), 5.0);
   EXPECT_EQ(start(element), GST_STATE_CHANGE_FAILURE);
   g_object_set(element.get(), "camera-file", "", nullptr);

@@ -20,7 +20,7 @@ const kGone = 410;
 // Relaxed settings, which also find ellipses that the current ones reject.
 const kWide = {
   "min-axis": 5,
-  "max-axis": 4000,
+  "max-axis": 32768,
   "max-axis-ratio": 10,
   "min-contour-size": 20,
   "edge-low": 0,

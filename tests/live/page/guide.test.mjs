@@ -10,7 +10,7 @@ import { openPage, startBrowser, startProgram } from "./program.mjs";
 
 const kPhone = { width: 390, height: 844 };
 const kTooStrict = { "min-axis": 300, "max-axis": 600, "max-axis-ratio": 1.02 };
-const kStart = { "min-axis": 5, "max-axis": 700, "max-axis-ratio": 5, "min-probability": 0.5 };
+const kStart = { "min-axis": 5, "max-axis": 32768, "max-axis-ratio": 5, "min-probability": 0.5 };
 const kPoints = 10;
 
 const textOf = (page, id) => page.textContent(`#guide-${id}`);
@@ -185,7 +185,7 @@ describe("the guide", () => {
       await page.click("#guide-mark:enabled");
     }
     const text = await resultOf(page);
-    assert.match(text, /max-axis: 700 → \d+/);
+    assert.match(text, /max-axis: 32768 → \d+/);
     assert.match(text, /Major axis of your marks: .* px; of 3 wrong ellipses: .* px/);
     assert.equal(await cellOf(page, "Marks right, single frames", 0), "0 of 3");
     assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
@@ -285,7 +285,7 @@ describe("the guide", () => {
       const mark = (...candidates) => ({ truth: circle(100, 50), candidates, width: 1000, height: 500 });
       const ring = mark(arcs(circle(100, 40), 0.9), arcs(circle(100, 50), 0.2), arcs(circle(800, 20), 0.1));
       const values = {
-        "min-axis": 5, "max-axis": 700, "max-axis-ratio": 5, "min-contour-size": 50, "min-probability": 0.5,
+        "min-axis": 5, "max-axis": 32768, "max-axis-ratio": 5, "min-contour-size": 50, "min-probability": 0.5,
         "edge-low": 0, "edge-high": 0, "roi-source": "none", roi: [], detector: "arcs",
       };
       const wrong = [circle(800, 50)];

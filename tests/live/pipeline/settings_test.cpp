@@ -48,7 +48,7 @@ TEST(LiveSettings, DescribesEveryPropertyOfTheElement) {
   EXPECT_STREQ(json_object_get_string_member(axis, "unit"), "px");
   EXPECT_STREQ(json_object_get_string_member(axis, "type"), "double");
   EXPECT_EQ(json_object_get_double_member(axis, "max"), 32768.0);
-  EXPECT_EQ(json_object_get_double_member(axis, "default"), 700.0);
+  EXPECT_EQ(json_object_get_double_member(axis, "default"), 32768.0);
 }
 
 TEST(LiveSettings, SettingsActOnTheRunningPipeline) {
@@ -72,7 +72,7 @@ TEST(LiveSettings, SetsAllPropertiesOrNone) {
     EXPECT_EQ(value_of(client, "min-axis"), 5.0) << body;
   };
   expect_rejected(R"({"min-axis":20,"max-axis":-3})", "max-axis");
-  expect_rejected(R"({"min-axis":800})", "max-axis");
+  expect_rejected(R"({"min-axis":800,"max-axis":700})", "max-axis");
   expect_rejected(R"({"min-axis":20,"interval":1.5})", "interval");
   expect_rejected(R"({"min-axis":20,"detector":"magic"})", "contours");
   expect_rejected(R"({"min-axis":20,"overlay":7})", "overlay");
