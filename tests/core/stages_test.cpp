@@ -88,7 +88,7 @@ TEST(Thresholds, NameTheFieldThatIsWrong) {
 
 TEST(Thresholds, ShrinkWithThePicture) {
   const Thresholds at_four = Thresholds{}.at_scale(4);
-  EXPECT_EQ(at_four.max_axis_px, 175.0);
+  EXPECT_EQ(at_four.max_axis_px, kAxisRangePx.max / 4.0);
   EXPECT_EQ(at_four.min_axis_px, 1.25);
   EXPECT_EQ(at_four.min_contour_size, 12);
   EXPECT_EQ(at_four.contour_overlap, 0.95);

@@ -123,6 +123,7 @@ TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
 // A value rejected while running is discarded; a warning reported it.
 TEST(EllipseTrackStart, DoesNotFailForWhatWasRefusedWhileItRan) {
   const Owned<GstElement> element = tracker_in_null();
+  g_object_set(element.get(), "max-axis", 700.0, nullptr);
   ASSERT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);
   g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "min-axis", 800.0, nullptr);
   stop(element);

@@ -75,7 +75,7 @@ TEST_F(ScriptedRedetectTracker, ScaleDoublesWhileTheTargetIsLarge) {
   EXPECT_EQ(track()->scale, 4);
   EXPECT_EQ(track()->scale, 4);
   EXPECT_EQ(script_.calls[1].height, 180);
-  EXPECT_EQ(script_.calls[1].thresholds.max_axis_px, 350.0);
+  EXPECT_EQ(script_.calls[1].thresholds.max_axis_px, kAxisRangePx.max / 2.0);
 }
 
 TEST_F(ScriptedRedetectTracker, ScaleHalvesWhileTheTargetIsSmall) {
