@@ -276,6 +276,7 @@ TEST(EllipseTrackPreset, EachFindsWhatItIsFor) {
   const ellipse::Ellipse near{640.3, 500.2, 450.0, 400.0, 0.4};
   const ellipse::Ellipse far{640.3, 500.2, 7.5, 6.5, 0.4};
   const ellipse::Ellipse flat{640.3, 500.2, 120.0, 45.0, 0.4};
+  EXPECT_TRUE(finds(nullptr, near));
   EXPECT_TRUE(finds("Landing pad", near));
   EXPECT_FALSE(finds("Keipour 2021", near));
   EXPECT_TRUE(finds("Small and far", far));
