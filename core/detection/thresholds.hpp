@@ -23,7 +23,7 @@ inline constexpr Range kEdgeRange{0.0, 1e4};
 void check_range(const char* field, double value, const Range& range);
 
 /// Thresholds of a detector, with the names and the defaults of [Keipour2021] Table I and III.A
-/// (detecting), except max_axis_px: 700 there.
+/// (detecting), except max_axis_px, which is 700 px there and has no limit here.
 struct Thresholds {
   double contour_overlap = 0.95;          ///< Eq. (1), smallest accepted share, 0 to 1.
   double ellipse_overlap = 0.95;          ///< Eq. (2), smallest accepted share, 0 to 1.

@@ -24,7 +24,7 @@ namespace ellipse::wild {
                            const Paint& paint);
 /// Its corners lie on the unit circle.
 [[nodiscard]] std::vector<Eigen::Vector2d> regular_corners(int count, double turn_rad);
-/// Wires of a mesh with square meshes of this size, sheared by an angle.
+/// Wires of a mesh with square openings of this size, sheared by an angle.
 [[nodiscard]] Shape mesh(double spacing, double wire_width, double shear_rad, const Paint& paint);
 /// An irregular blot that deviates from any ellipse by at least 20 %.
 [[nodiscard]] Shape blot(const Eigen::Vector2d& center,

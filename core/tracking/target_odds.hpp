@@ -12,7 +12,7 @@ namespace ellipse {
 /// Deterministic; allocates nothing; one thread at a time.
 class TargetOdds {
  public:
-  /// Bound of the sum's magnitude: a target may leave at any moment.
+  /// Bound of the sum's magnitude: limits how long a target that has left is still reported.
   static constexpr double kMax = 4.0;
 
   /// Starts a new hypothesis.

@@ -49,7 +49,7 @@ struct HomographyFilter {
 
 /// Covariance of a view's change under random camera motion.
 /// @param turn_rad  Standard deviation of the rotation about each axis.
-/// @param shift     And of the shift along each [radii of the pad]; less along the optical axis.
+/// @param shift     That of the shift along each axis [radii]; less along the optical axis.
 [[nodiscard]] HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                                                 const Camera& camera,
                                                 double turn_rad,
