@@ -155,12 +155,15 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
 
   it("says why a value is refused, and shows the one in force", async () => {
     const page = await live.open();
-    const field = setting(page, "min-axis").locator("input[type=number]");
-    await field.fill("900");
+    const field = setting(page, "max-axis").locator("input[type=number]");
+    const before = await field.inputValue();
+    await field.fill("3");  // below min-axis
     await field.press("Enter");
-    await page.waitForFunction(() => /axis/.test(document.querySelector("[data-setting=min-axis] .error").textContent));
+    await page.waitForFunction(() => /axis/.test(document.querySelector("[data-setting=max-axis] .error").textContent));
     await field.blur();
-    await page.waitForFunction(() => document.querySelector("[data-setting=min-axis] input[type=number]").value === "5");
+    await page.waitForFunction((value) => {
+      return document.querySelector("[data-setting=max-axis] input[type=number]").value === value;
+    }, before);
     await page.close();
   });
 
@@ -543,10 +546,12 @@ describe("presets", () => {
     await once("Keipour 2021 is selected, not loaded");
     await page.click("#preset-load");
     await once("In force: Keipour 2021");
-    await setting(page, "max-axis").locator("input[type=number]").fill("650");
-    await setting(page, "max-axis").locator("input[type=number]").press("Enter");
+    const field = setting(page, "max-axis").locator("input[type=number]");
+    await field.fill("650");
+    await field.press("Enter");
     await once("In force: Keipour 2021, 1 setting changed since");
-    await setting(page, "max-axis").getByRole("button", { name: "Reset max-axis" }).click();
+    await field.fill("700");  // the preset's
+    await field.press("Enter");
     await once("In force: Keipour 2021");
     await page.close();
     await program.stop();
