@@ -198,8 +198,12 @@ describe("the guide", () => {
     await beginMarks(page);
     for (let i = 1; i <= 3; ++i) await markByClick(page, program, i);
     const text = await resultOf(page);
-    assert.match(text, /min-probability: 0.999999 → 0.5/);
-    assert.match(text, /Probability of your marks: at least \d\.\d\d; of other ellipses: (none found|at most)/);
+    // Which frames are marked depends on time, and so does what else is found in them.
+    const [, proposed] = text.match(/min-probability: 0.999999 → (0\.\d+)/);
+    const [, ofMarks, , ofOthers = "0"] =
+      text.match(/Probability of your marks: at least (\d\.\d\d); of other ellipses: (none found|at most (\d\.\d\d))/);
+    assert.ok(Number(ofMarks) >= Number(proposed) && Number(proposed) >= Number(ofOthers), text);
+    assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
     await page.click("#guide-apply");
     await page.getByText("Applied.").waitFor();
     await page.close();
