@@ -10,10 +10,9 @@
 namespace ellipse {
 namespace {
 
-constexpr double kJudge_s = 0.15;         // period of evaluation while certain
-constexpr double kLessMatched = 0.1;      // drop of the matched share that triggers an evaluation
-constexpr double kEnoughToJudge = 0.5;    // min visible share of the perimeter
-constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
+constexpr double kJudge_s = 0.15;       // period of evaluation while certain
+constexpr double kLessMatched = 0.1;    // drop of the matched share that triggers an evaluation
+constexpr double kEnoughToJudge = 0.5;  // min visible share of the perimeter
 
 // Crops a window to an ellipse and its surroundings.
 LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
@@ -22,7 +21,7 @@ LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
                    window.luma.width,
                    window.luma.height};
   const Rect around = intersect(calculate_roi(outline,
-                                              kJudgedExpansion,
+                                              kRoiExpansion,
                                               kCoarsestScale,
                                               static_cast<int>(window.frame_px.x()),
                                               static_cast<int>(window.frame_px.y())),

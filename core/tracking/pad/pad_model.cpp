@@ -17,13 +17,11 @@ constexpr double kRadiusStep = 0.005;   // in steps of this [radii]
 constexpr int kAngles = 128;            // per radius
 constexpr int kMinVisible = 12;         // of these
 constexpr int kOuterSlack = 14;         // search range to each side of radius 1 [steps]
-constexpr double kMinContrast = 6.0;    // of the outer circle [grey levels]
 constexpr double kOuterContrast = 0.6;  // min share of the strongest step near radius 1
 constexpr double kInnerContrast = 0.5;  // min share of the outer circle's contrast
 constexpr int kApart = 5;               // min distance between circles [steps]
-constexpr std::size_t kMaxCircles = 5;
-constexpr double kMinAgreement = 0.7;  // min share of angles that show a circle's step
-constexpr double kUnknown = -1.0;      // level outside the image
+constexpr double kMinAgreement = 0.7;   // min share of angles that show a circle's step
+constexpr double kUnknown = -1.0;       // level outside the image
 
 double radius_at(int i) {
   return kFirstRadius + i * kRadiusStep;

@@ -143,7 +143,7 @@ TEST_P(EachLensView, EdgesMoveAsTheirRowsSay) {
   const support::Picture picture(640, 360);
   EdgeSearch search;
   const LensView view(lens_);
-  search.sample(model, {pose, view}, picture.view(), 60);
+  search.sample(model, {pose, view}, picture.view());
   ASSERT_GT(search.samples().size(), 40U);
   constexpr double kStep = 1e-5;
   for (const EdgeSample& sample : search.samples()) {
