@@ -13,7 +13,6 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMinSupport = 0.5;         // share of the perimeter with a gradient maximum
 constexpr std::size_t kSamples = 48;        // half of the detector's, since this runs in each frame
 constexpr double kBlurBiasShare = 0.2;      // sigma of the blur correction, share of it
 constexpr double kReachOfNextEdgePx = 2.0;  // blur of the ring's inner edge
@@ -42,7 +41,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        polarity_of(circle.is_bright_outside),
                                        kGradientOfStep * min_contrast,
                                        kSamples);
-  if (!edge || edge->support < kMinSupport) return std::nullopt;
+  if (!edge || edge->support < kMajority) return std::nullopt;
   return FittedEllipse{edge->ellipse, edge->uncertainty};
 }
 

@@ -15,6 +15,9 @@ inline constexpr double kMinContrastShare = 0.25;
 /// Min contrast of any pad edge [grey levels].
 inline constexpr double kMinContrast = 4.0;
 
+/// Min share of a pad's edges, or of the angles of a circle, that match.
+inline constexpr double kMinCoverage = 0.65;
+
 /// Most of an outline, of its samples, or of frames: at least this share.
 inline constexpr double kMajority = 0.5;
 

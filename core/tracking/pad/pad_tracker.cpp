@@ -10,6 +10,7 @@
 
 #include "core/camera/circle_pose.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/tracking/frame_clock.hpp"
 #include "core/tracking/roi.hpp"
 
 namespace ellipse {
@@ -25,10 +26,8 @@ constexpr double kDeformation = 0.012;     // distance of deformed edges from th
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
 constexpr double kMaxReach = 0.14;         // beyond it [radii]
 constexpr int kMaxSteps = 3;               // searches of a frame, and before a lock
-constexpr double kMinCoverage = 0.65;      // matched share of all samples
 constexpr double kEnoughVisible = 0.15;    // share of the outer circle that determines the centre
 constexpr double kMaxCentreSigma = 0.025;  // [radii], if less is visible
-constexpr double kLongestMiss = 12.0;      // [1/30 s]
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
 constexpr int kTrialsOfLine = 24;          // samples before a line is judged
 constexpr double kSharedVariance = 1.3;    // of the refined edge: errors of samples are correlated
@@ -312,7 +311,7 @@ void PadTracker::coast(const Eigen::Matrix3d& prediction,
   view_ = prediction;
   motion_ = before;
   missed_ += frames;
-  if (missed_ > kLongestMiss) is_locked_ = false;
+  if (missed_ * kFrame_s > kMaxAbsence_s) is_locked_ = false;
 }
 
 std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {

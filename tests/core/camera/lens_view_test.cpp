@@ -103,7 +103,7 @@ TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
   LensView(lens_).distort(
       {0.0, 0.0}, {2, x.data(), y.data(), nx.data(), ny.data(), across.data(), along.data()});
   EXPECT_LT(std::abs(x[0]), 640.0F);
-  EXPECT_EQ(x[1], CurveSamples::kOutOfRange);
+  EXPECT_EQ(x[1], static_cast<float>(kFarPx));
 }
 
 TEST_P(EachLensView, WhatIsBentIsUnbent) {
