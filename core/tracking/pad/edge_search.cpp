@@ -255,7 +255,7 @@ void EdgeSearch::search_along(const ImageView& luma,
   const int steps = static_cast<int>(std::ceil(reach / step));
   const double step_px = step * std::abs(slope);
   const double gap_px = narrowest_ * sample.view.px_per_unit;
-  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step_px, 1.0, double(kMaxBox)));
+  const int box = static_cast<int>(std::clamp(0.5 * gap_px / step_px, 1.0, double(kMaxBox)));
   const bool is_forth = slope > 0.0;
   const int before = (is_forth ? middle : end - 1 - middle) / step;
   const int behind = (is_forth ? end - 1 - middle : middle) / step;

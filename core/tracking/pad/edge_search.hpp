@@ -54,7 +54,7 @@ class EdgeSearch {
   [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
 
   static constexpr int kSamples = 96;               ///< Of a search.
-  static constexpr int kMaxSamples = 2 * kSamples;  ///< At least, since each edge rounds up.
+  static constexpr int kMaxSamples = 2 * kSamples;  ///< Capacity: each edge rounds up.
   static constexpr std::size_t kCircleSteps = 256;  ///< Resolution of a circle's visible part.
 
  private:
