@@ -285,8 +285,8 @@ void GradientMap::measure_noise(const ImageView& luma) {
   // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6 [Immerkaer1996].
   const double of_pixels = std::sqrt(0.5 * std::numbers::pi) / 6.0 *
                            static_cast<double>(second_differences) / std::max(1, samples);
-  noise_ = std::sqrt(std::max(rounding, noise_of(quantile)) *
-                     std::max(rounding, kGradientOfNoise * of_pixels));
+  texture_ = std::max(rounding, noise_of(quantile));
+  noise_ = std::sqrt(texture_ * std::max(rounding, kGradientOfNoise * of_pixels));
 }
 
 void GradientMap::compute(const Picture& picture, const EdgeThresholds& thresholds) {

@@ -218,7 +218,7 @@ void EllipseVerifier::measure(const GradientMap& map,
   const double turn_support = found.turn_support * sums.share_of_turn();
   const double error = direction_errors_.empty() ? 0.5 : median(direction_errors_);
   measured.gradient = edges.empty() ? 0.0 : sums.contrast / double(edges.size());
-  const double signal_to_noise = measured.gradient / map.noise();
+  const double signal_to_noise = measured.gradient / map.texture();
   set(Feature::kTurnSupport, turn_support);
   set(Feature::kDirectionError, std::log(0.01 + error));
   set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest_gap(edges, samples))));
