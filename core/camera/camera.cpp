@@ -16,13 +16,10 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kWidestRad = 1.53;    // 87.7 degrees: the ideal plane diverges at 90
-constexpr double kMinSlope = 0.05;     // of the radial map to count as one to one
-constexpr int kRadialSteps = 512;      // samples for that test
-constexpr int kTableSteps = 3;         // Newton steps per table entry
-constexpr double kTableMargin = 1.05;  // for the tangential part
-constexpr int kMaxIterations = 20;     // Newton steps per point
-constexpr double kNearPx = 1e-5;       // residual after which one more step is exact
+constexpr double kWidestRad = 1.53;  // 87.7 degrees: the ideal plane diverges at 90
+constexpr double kMinSlope = 0.05;   // of the radial map to count as one to one
+constexpr int kMaxIterations = 20;   // of Newton's method
+constexpr double kNearPx = 1e-5;     // residual after which one more step is exact
 
 // In normalized coordinates (focal length 1).
 LensPoint distorted(const Camera& camera, const Vector2d& p) {
@@ -69,6 +66,7 @@ struct Distortion {
 
 template <LensModel kModel>
 ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& samples) {
+  const auto far = static_cast<float>(kFarPx);
   ELLIPSE_NO_ALIAS
   for (std::size_t k = 0; k < samples.count; ++k) {
     const float x = by.to_x.scale * samples.x[k] + by.to_x.offset;
@@ -84,8 +82,8 @@ ELLIPSE_INLINE void distort_all(Distortion by, const CurveSamples& samples) {
     const float across_y = at.x_by_x * ny - x_by_y * nx;
     const float along = std::sqrt(across_x * across_x + across_y * across_y);
     const bool is_shown = x * x + y * y <= by.largest_squared;
-    samples.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : CurveSamples::kOutOfRange;
-    samples.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : CurveSamples::kOutOfRange;
+    samples.x[k] = is_shown ? by.from_x.scale * at.x + by.from_x.offset : far;
+    samples.y[k] = is_shown ? by.from_y.scale * at.y + by.from_y.offset : far;
     samples.nx[k] = across_x / along;
     samples.ny[k] = across_y / along;
     samples.px_per_ideal_along[k] = along;
@@ -144,11 +142,10 @@ Eigen::Matrix3d Camera::matrix() const {
 }
 
 void Camera::validate() const {
-  constexpr double kLargest = 1e6;
-  const auto is_length = [](double v) { return v > 0.0 && v <= kLargest; };
-  const auto is_coordinate = [](double v) { return std::abs(v) <= kLargest; };
-  check(width > 0 && width <= kLargest, "width is not between 1 and 1e6 px");
-  check(height > 0 && height <= kLargest, "height is not between 1 and 1e6 px");
+  const auto is_length = [](double v) { return v > 0.0 && v <= kFarPx; };
+  const auto is_coordinate = [](double v) { return std::abs(v) <= kFarPx; };
+  check(width > 0 && width <= kFarPx, "width is not between 1 and 1e6 px");
+  check(height > 0 && height <= kFarPx, "height is not between 1 and 1e6 px");
   check(is_length(fx), "fx is not in (0, 1e6] px");
   check(is_length(fy), "fy is not in (0, 1e6] px");
   check(is_coordinate(cx), "cx is not between -1e6 and 1e6 px");
@@ -162,8 +159,8 @@ Lens::Lens(const Camera& camera)
       inverse_focal_(focal_.cwiseInverse()),
       middle_(camera.cx, camera.cy) {
   double widest = 0.0;
-  for (int i = 1; i <= kRadialSteps; ++i) {
-    const double theta = kWidestRad * i / kRadialSteps;
+  for (std::size_t i = 1; i <= kTableSize; ++i) {
+    const double theta = kWidestRad * static_cast<double>(i) / kTableSize;
     if (!(radial_slope(camera, theta) > kMinSlope)) break;
     widest = theta;
   }
@@ -172,19 +169,30 @@ Lens::Lens(const Camera& camera)
   if (camera.is_distorted()) make_table();
 }
 
+// Radius of the picture's corners, with their tangential distortion.
+double Lens::farthest_radius() const {
+  double farthest = 0.0;
+  for (const double x : {-1.0, 1.0 * camera_.width}) {
+    for (const double y : {-1.0, 1.0 * camera_.height}) {
+      const auto ideal = ideal_from_picture({x, y});
+      if (!ideal) return largest_picture_;
+      const double aside = beside_radial(camera_, ray(*ideal)).norm();
+      farthest = std::max(farthest, ray({x, y}).norm() + aside);
+    }
+  }
+  return std::min(farthest, largest_picture_);
+}
+
 // Covers the picture to its corners. Inverts the radial part by Newton's method, starting from the
 // angle of the previous entry.
 void Lens::make_table() {
-  const Vector2d farthest(std::max(camera_.cx + 1.0, camera_.width - camera_.cx),
-                          std::max(camera_.cy + 1.0, camera_.height - camera_.cy));
-  const double end =
-      std::min(largest_picture_, kTableMargin * farthest.cwiseProduct(inverse_focal_).norm());
+  const double end = farthest_radius();
   table_scale_ = kTableSize / (end * end);
   table_[0] = 1.0F;
   double theta = 0.0;
   for (std::size_t i = 1; i <= kTableSize; ++i) {
     const double distorted_radius = std::sqrt(static_cast<double>(i) / table_scale_);
-    for (int step = 0; step < kTableSteps; ++step) {
+    for (int step = 0; step < kMaxIterations; ++step) {
       const double t = std::tan(theta);
       const double per_angle = camera_.lens == LensModel::kFisheye ? 1.0 : 1.0 + t * t;
       theta += (distorted_radius - radial_point(camera_, theta)) /
@@ -244,7 +252,7 @@ void Lens::distort(const Vector2d& origin_px, double scale, const CurveSamples& 
 std::optional<Vector2d> Lens::ideal_from_picture(const Vector2d& picture_px) const {
   const Vector2d distorted_ray = ray(picture_px);
   const double radius = distorted_ray.norm();
-  if (!(radius <= 1.1 * largest_picture_)) return std::nullopt;
+  if (!std::isfinite(radius)) return std::nullopt;
   // Initial value: exact at small angles, and at all angles for an equidistant lens.
   Vector2d p = distorted_ray;
   if (camera_.lens == LensModel::kFisheye && radius > 0.0) {

@@ -7,6 +7,9 @@
 
 namespace ellipse {
 
+/// Coordinate beyond any picture; also the largest size and focal length of a camera [px].
+inline constexpr double kFarPx = 1e6;
+
 /// Lens distortion model.
 enum class LensModel {
   kBrownConrady,  ///< Rational radial and tangential: k1, k2, p1, p2, k3, k4, k5, k6.
@@ -61,8 +64,6 @@ struct CurveSamples {
   float* px_per_ideal = nullptr;        ///< Output: picture pixels per pixel of the ideal plane,
                                         ///< for displacements of the curve along its normal;
   float* px_per_ideal_along = nullptr;  ///< and for lengths along the curve.
-
-  static constexpr float kOutOfRange = 1e8F;  ///< Outside of any picture.
 };
 
 /// Maps between a camera's picture and its ideal plane. A value; thread-safe; allocates nothing.
@@ -76,7 +77,7 @@ class Lens {
   [[nodiscard]] std::optional<LensPoint> picture_from_ideal(const Eigen::Vector2d& ideal_px) const;
 
   /// Distorts a curve in place, within 1e-6 of the picture's size. Samples outside the one-to-one
-  /// range become kOutOfRange.
+  /// range get the coordinates kFarPx.
   /// @param origin_px, scale  Sample p is pixel origin + scale p, before and after.
   void distort(const Eigen::Vector2d& origin_px, double scale, const CurveSamples& samples) const;
 
@@ -92,6 +93,7 @@ class Lens {
   static constexpr std::size_t kTableSize = 1024;  // steps, even in the squared radius
 
   void make_table();
+  [[nodiscard]] double farthest_radius() const;
   [[nodiscard]] Eigen::Vector2d from_table(const Eigen::Vector2d& distorted) const;
 
   [[nodiscard]] Eigen::Vector2d ray(const Eigen::Vector2d& px) const {

@@ -235,15 +235,12 @@ LensModel model_of(const File& file) {
 // polynomial extrapolates and is not monotonic.
 bool is_one_to_one(const Camera& camera) {
   constexpr int kDirections = 16;
-  constexpr int kSteps = 4;
   const Lens lens(camera);
-  const Eigen::Vector2d corner(camera.width / 2.0, camera.height / 2.0);
-  for (int i = 0; i < kDirections * kSteps; ++i) {
+  const Eigen::Vector2d middle(camera.width / 2.0, camera.height / 2.0);
+  for (int i = 0; i < kDirections; ++i) {
     const double angle = kTwoPi * i / kDirections;
-    const int step = 1 + i / kDirections;
-    const double radius = 0.5 * corner.norm() * step / kSteps;
-    const Eigen::Vector2d aside(radius * std::cos(angle), radius * std::sin(angle));
-    const auto ideal = lens.ideal_from_picture(corner + aside);
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    const auto ideal = lens.ideal_from_picture(middle + 0.5 * middle.norm() * direction);
     const auto there = ideal ? lens.picture_from_ideal(*ideal) : std::nullopt;
     if (!there || !(there->slope.determinant() > 0.0)) return false;
   }

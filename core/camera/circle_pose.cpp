@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ellipse {
 namespace {
@@ -15,16 +16,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kStretchNoise = 2.3;    // weight of sigma over stretch in the tilt's widening
-constexpr double kTiltOfNoise = 8.0;     // prior variance of the tilt, in sigmas of the stretch
-constexpr double kMemory = 0.98;         // decay of the inner edges' information per frame
-constexpr double kMaxNoiseShare = 0.95;  // of an inner edge's variance that averages out
-constexpr double kModelDegrees = 4.0;    // degrees of freedom of the errors' scale
+constexpr double kMemory = 50.0;         // of the inner edges' evidence [frames]
 constexpr double kErrorOverSigma = 0.4;  // measured .25 to .6: stated sigmas are too large
 constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
-constexpr double kMaxInnerOdds = 12.0;   // log odds: inner edges may belong to clutter
 constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
-constexpr double kTurnPerFrame = 0.05;   // typical change of a normal between frames [rad]
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -74,18 +69,16 @@ std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
                                     const RingChange& measured,
                                     const RingMatrix& information,
                                     double radius) {
-  constexpr double kStep = 1e-3;  // relative radius step of the numeric derivative
-  constexpr int kSteps = 2;       // Gauss-Newton steps
   RadiusFit fit;
-  for (int step = 0; step <= kSteps; ++step) {
+  for (const bool is_last : {false, true}) {  // a Gauss-Newton step
     const auto here = ring_change(view, project_circle(predicted, radius));
-    const auto there = ring_change(view, project_circle(predicted, (1.0 + kStep) * radius));
-    if (!here || !there) return std::nullopt;
-    const RingChange by_radius = (*there - *here) / kStep;
+    if (!here) return std::nullopt;
+    const Matrix3d circle = predicted * Vector3d(radius, radius, 1.0).asDiagonal();
+    const RingChange growth = ring_changes(circle, view).col(2);
+    const RingChange weighted = information * growth;
     fit.residual = measured - *here;
-    const RingChange weighted = information * by_radius;
-    radius *= 1.0 + std::clamp(weighted.dot(fit.residual) / weighted.dot(by_radius), -0.5, 0.5);
-    fit.weights = information - weighted * weighted.transpose() / weighted.dot(by_radius);
+    fit.weights = information - weighted * weighted.transpose() / weighted.dot(growth);
+    if (!is_last) radius *= 1.0 + weighted.dot(fit.residual) / weighted.dot(growth);
   }
   return fit;
 }
@@ -121,16 +114,15 @@ void add_misfit(const Camera& camera,
   misfit.chi_squared[1] += second->residual.dot(weights * second->residual);
   const RingChange apart = second->residual - first->residual;
   misfit.separation += apart.dot(weights * apart);
-  misfit.degrees += 4;
+  misfit.degrees += RingChange::SizeAtCompileTime - 1;  // the radius is fitted
 }
 
-// Log likelihood ratio of the first solution under errors of unknown scale: Student's t. If neither
-// fits, as on a pad that is not flat, the ratio is small.
+// Log likelihood ratio of the first solution under errors of unknown scale: Student's t, with as
+// many degrees of freedom as were measured. If neither fits, as on a pad that is not flat, the
+// ratio is small.
 double log_odds(const InnerMisfit& misfit) {
-  const double odds =
-      0.5 * (misfit.degrees + kModelDegrees) *
-      std::log((kModelDegrees + misfit.chi_squared[1]) / (kModelDegrees + misfit.chi_squared[0]));
-  return std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
+  const double degrees = misfit.degrees;
+  return degrees * std::log((degrees + misfit.chi_squared[1]) / (degrees + misfit.chi_squared[0]));
 }
 
 double from_level(const CirclePose& pose, const Vector3d& gravity) {
@@ -192,17 +184,17 @@ Matrix3d position_covariance(const Camera& camera,
   changes.col(4) = change_of(-inverse * pose.normal * first).head<5>();
   const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
   RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
-  // Near a frontal view the stretch is quadratic in the tilt. As the stretch approaches its noise,
-  // the tilt's sigma grows, up to the order of the square root of that noise.
+  // Near a frontal view the stretch is quadratic in the tilt. The tilt's sigma grows as the stretch
+  // comes within two sigma of its noise, up to a radian.
   const double noise = std::sqrt(covariance(3, 3) + covariance(4, 4));
   const double cosine = pose.normal.dot(pose.position.normalized());
-  const double stretch = 0.25 * (1.0 - cosine * cosine);
-  const double wider = std::hypot(1.0, kStretchNoise * noise / std::max(stretch, 1e-12));
+  const double stretch =
+      std::max(0.25 * (1.0 - cosine * cosine), std::numeric_limits<double>::epsilon());
+  const double wider = std::hypot(1.0, 2.0 * noise / stretch);
   covariance.bottomRows<2>() *= wider;
   covariance.rightCols<2>() *= wider;
   RingMatrix information = changes.transpose() * covariance.inverse() * changes;
-  information(3, 3) += 1.0 / (kTiltOfNoise * noise);
-  information(4, 4) += 1.0 / (kTiltOfNoise * noise);
+  information.diagonal().tail<2>().array() += 1.0;
   return information.inverse().topLeftCorner<3, 3>();
 }
 
@@ -213,9 +205,12 @@ void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
     const auto turn = [&](std::size_t here, std::size_t there) {
       return angle_between(poses[here].normal, (*last_)[there].normal);
     };
-    const double apart = angle_between(poses[0].normal, poses[1].normal) / kTurnPerFrame;
-    const double kept = 1.0 - std::exp(-0.5 * apart * apart);
-    const bool is_swapped = turn(0, 0) + turn(1, 1) > turn(0, 1) + turn(1, 0);
+    const double same = turn(0, 0) + turn(1, 1);
+    const double other = turn(0, 1) + turn(1, 0);
+    const bool is_swapped = same > other;
+    const double ambiguity = std::min(same, other) / std::max(same, other);
+    const double kept = ambiguity < 1.0 ? 1.0 - ambiguity * ambiguity : 0.0;  // or no difference
+    is_first_ = is_first_ != is_swapped;
     odds_ *= is_swapped ? -kept : kept;
     inner_.odds *= is_swapped ? -kept : kept;
     inner_.last_deviation *= is_swapped ? -1.0 : 1.0;
@@ -225,17 +220,16 @@ void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
 }
 
 double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
-  constexpr double kMaxDifferences = 30.0;  // length of the running mean [frames]
   if (information > 0.0) {
-    differences = std::min(differences + 1.0, kMaxDifferences);
+    differences = std::min(differences + 1.0, kMemory);
     const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));
     noise_share += (squared - noise_share) / differences;
   }
   last_deviation = deviation;
-  information = kMemory * information + separation;
+  information = (1.0 - 1.0 / kMemory) * information + separation;
   odds += separation / information * (frame_odds - odds);
   const double frames = std::max(1.0, information / separation);
-  const double noise = std::min(noise_share, kMaxNoiseShare);
+  const double noise = std::min(noise_share, 1.0 - 1.0 / kMemory);
   return odds / (1.0 - noise + noise / frames);
 }
 
@@ -256,7 +250,6 @@ double PoseEstimator::update_odds(const Camera& camera,
   if (!has_inner && !has_gravity) return odds_;
   double odds = inner_.odds;
   if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation);
-  odds = std::clamp(odds, -kMaxInnerOdds, kMaxInnerOdds);
   if (has_gravity) {
     odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
                    std::pow(from_level(poses[0], gravity), 2));
@@ -275,13 +268,10 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
   if (!poses) return std::nullopt;
   follow_solutions(*poses);
   const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
-  // Without evidence, keeps the previous selection.
-  constexpr double kMinLogOdds = 1e-3;
   odds_ = std::isfinite(odds) ? odds : 0.0;
-  const bool is_first = odds_ >= 0.0;
-  odds_ = std::copysign(std::max(std::abs(odds_), kMinLogOdds), odds_);
-  const CirclePose& chosen = (*poses)[is_first ? 0 : 1];
-  const CirclePose& other = (*poses)[is_first ? 1 : 0];
+  if (odds_ != 0.0) is_first_ = odds_ > 0.0;  // without evidence, keeps the previous selection
+  const CirclePose& chosen = (*poses)[is_first_ ? 0 : 1];
+  const CirclePose& other = (*poses)[is_first_ ? 1 : 0];
 
   TargetPose pose;
   pose.bearing = chosen.position.normalized();

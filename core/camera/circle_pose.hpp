@@ -102,8 +102,9 @@ class PoseEstimator {
   };
 
   // Log odds of the first solution against the second, in the order of the last frame.
-  double odds_ = 0.0;  // from all evidence
-  OddsAverage inner_;  // from inner edges alone
+  double odds_ = 0.0;     // from all evidence
+  bool is_first_ = true;  // whether the first one is selected
+  OddsAverage inner_;     // from inner edges alone
   std::optional<std::array<CirclePose, 2>> last_;
 };
 

@@ -12,8 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t kFitPoints = 24;      // samples to fit a distorted ellipse
-constexpr std::size_t kOutlinePoints = 96;  // samples to measure a distorted perimeter
+constexpr std::size_t kOutlinePoints = 96;  // samples of a distorted outline
 
 bool is_shown(const Vector2d& point) {
   return point.allFinite();
@@ -38,7 +37,7 @@ template <class Map>
 std::optional<Ellipse> mapped(const Ellipse& e, std::size_t min_points, const Map& map) {
   std::optional<Moments> moments;
   std::size_t count = 0;
-  for_each_point(e, kFitPoints, [&](std::size_t, const Vector2d& from) {
+  for_each_point(e, kOutlinePoints, [&](std::size_t, const Vector2d& from) {
     const std::optional<Vector2d> point = map(from);
     if (!point) return;
     if (!moments) moments.emplace(*point);
@@ -118,7 +117,7 @@ void distorted_outline(const LensView& lens, const Ellipse& ideal, std::span<Vec
 
 std::optional<Ellipse> distorted(const LensView& lens, const Ellipse& ideal) {
   if (!lens.is_distorted()) return ideal;
-  return mapped(ideal, kFitPoints, [&](const Vector2d& point) {
+  return mapped(ideal, kOutlinePoints, [&](const Vector2d& point) {
     const auto shown = lens.picture_from_ideal(point);
     return shown ? std::optional(shown->picture_px) : std::nullopt;
   });
@@ -126,7 +125,7 @@ std::optional<Ellipse> distorted(const LensView& lens, const Ellipse& ideal) {
 
 std::optional<Ellipse> undistorted(const LensView& lens, const Ellipse& in_picture) {
   if (!lens.is_distorted()) return in_picture;
-  return mapped(in_picture, kFitPoints / 4, [&](const Vector2d& point) {
+  return mapped(in_picture, kOutlinePoints / 4, [&](const Vector2d& point) {
     return lens.ideal_from_picture(point);
   });
 }

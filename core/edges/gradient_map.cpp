@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <numbers>
 
 #include "core/edges/noise.hpp"
 
@@ -20,11 +22,12 @@ constexpr int kPadRight = 64;  // and after the last one, so that blocks may ove
 constexpr int kNoiseRows = 16;  // approximate number of sampled rows
 constexpr double kLowOverNoise = 3.0;
 constexpr double kHighOverLow = 2.0;      // [Canny1986]: two to three
-constexpr double kMinLow = 1.25;          // [grey levels / px]
-constexpr double kMinNoise = 20.0;        // [units of Gradient]; rounding to grey levels gives 7.6
 constexpr int kHistogramBins = 1536;      // of magnitudes
 constexpr int kHistogramShift = 4;        // log2 of a bin [units of Gradient]
 constexpr double kMaxGradient = 24480.0;  // keeps thresholds in 16 bits [units of Gradient]
+
+// Sigma of a gradient's component if that of the pixels is 1: the norm of the kernel.
+const double kGradientOfNoise = std::sqrt(70.0 * 10.0);
 
 // The compiler vectorizes these plain loops, for SSE2 and AVX2 on x86-64 and for NEON on AArch64.
 // Sixteen bits suffice: the largest component is 16 x 255 x 3 = 12240.
@@ -175,6 +178,14 @@ bool is_saturated(std::uint8_t level) {
   return level < 2 || level > 253;
 }
 
+// Along both axes: zero on any plane and on straight edges along an axis.
+int second_difference(const ImageView& luma, int x, int y) {
+  const auto along_row = [x](const std::uint8_t* row) {
+    return row[x - 1] - 2 * row[x] + row[x + 1];
+  };
+  return along_row(luma.row(y - 1)) - 2 * along_row(luma.row(y)) + along_row(luma.row(y + 1));
+}
+
 // Never shrinks, since pictures of two sizes may alternate.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
@@ -249,9 +260,13 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
       smooth, difference, row_of(x_, y), row_of(y_, y), row_of(magnitude_, y), out, width_);
 }
 
+// The geometric mean of two estimates. Gradients also show texture and shading, which hide weak
+// edges as noise does. Second differences show neither, so that a soft edge in a shaded picture is
+// found.
 void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
+  std::int64_t second_differences = 0;
   const int step = std::max(1, height_ / kNoiseRows);
   for (int y = kBorder; y < height_ - kBorder; y += step) {
     compute_row(luma, y);
@@ -260,12 +275,18 @@ void GradientMap::measure_noise(const ImageView& luma) {
     for (int x = 2; x < width_ - 2; x += 2) {
       if (is_saturated(levels[x])) continue;  // clipping hides the noise
       ++histogram_[static_cast<std::size_t>(std::min(m[x] >> kHistogramShift, kHistogramBins - 1))];
+      second_differences += std::abs(second_difference(luma, x, y));
       ++samples;
     }
   }
+  const double rounding = kGradientOfNoise / std::sqrt(12.0);  // of pixels to grey levels
   const double quantile =
       (static_cast<double>(noise_bin(histogram_, samples)) + 0.5) * (1 << kHistogramShift);
-  noise_ = std::max(kMinNoise, noise_of(quantile));
+  // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6 [Immerkaer1996].
+  const double of_pixels = std::sqrt(0.5 * std::numbers::pi) / 6.0 *
+                           static_cast<double>(second_differences) / std::max(1, samples);
+  texture_ = std::max(rounding, noise_of(quantile));
+  noise_ = std::sqrt(texture_ * std::max(rounding, kGradientOfNoise * of_pixels));
 }
 
 void GradientMap::compute(const Picture& picture, const EdgeThresholds& thresholds) {
@@ -277,7 +298,8 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
   const auto used = [](double level, double by_default) {
     return std::min(level > 0.0 ? level : by_default, kMaxGradient / kGradientGain);
   };
-  const double by_noise = std::max(kLowOverNoise * noise_ / kGradientGain, kMinLow);
+  // Rounding makes steps of one grey level along any slow shading; they are no edges.
+  const double by_noise = std::max(kLowOverNoise * noise_, kGradientOfStep) / kGradientGain;
   thresholds_.low =
       used(thresholds.low, thresholds.high > 0.0 ? thresholds.high / kHighOverLow : by_noise);
   thresholds_.high = used(thresholds.high, kHighOverLow * thresholds_.low);

@@ -84,6 +84,8 @@ class GradientMap {
 
   /// Standard deviation of the gradient's noise in one direction [units of Gradient].
   [[nodiscard]] double noise() const { return noise_; }
+  /// The same from the gradients alone, which also show texture and shading.
+  [[nodiscard]] double texture() const { return texture_; }
   /// Thresholds used by compute().
   [[nodiscard]] const EdgeThresholds& thresholds() const { return thresholds_; }
 
@@ -106,6 +108,7 @@ class GradientMap {
   int height_ = 0;
   int stride_ = 0;
   double noise_ = 0.0;
+  double texture_ = 0.0;
   EdgeThresholds thresholds_;
   std::vector<Gradient> gradients_;
   std::vector<std::uint8_t> maxima_;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <span>
 
+#include "core/camera/camera.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/image/simd.hpp"
 
@@ -16,24 +18,14 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr int kLanes = 12;               // pixels across the edge: kPhotometricBandPx at 45 degrees
-constexpr int kBefore = 6;               // of these, before the pixel nearest to the edge
-constexpr std::size_t kMaxSectors = 80;  // sizes buffers
-constexpr double kTypicalSectors = 64.0;  // unless they would be too short
-constexpr double kShortestSector = 6.0;   // lines
-constexpr double kLongestPx = 1e6;        // limit of the perimeter in the count of lines
-constexpr double kFewLines = 96.0;        // of the first pass
-constexpr double kMaxLines = 800.0;       // of the second pass
-constexpr std::size_t kMinSectors = 8;    // with an edge
-constexpr std::size_t kNeighbours = 3;    // sectors on each side that share the two levels
-constexpr double kTypicalStepPx = 2.3;    // half the width of the blurred step
-constexpr double kMinStepPx = 1.8;        // bounds of the fitted width
-constexpr double kMaxStepPx = 5.0;
-constexpr double kAlike = 9.0;             // largest chi-square of shared levels
-constexpr double kNoiseFloor = 1.0;        // variance in a sector [grey levels^2]
-constexpr double kTukeyReachPx = 1.0;      // minimum
-constexpr double kTukeyOfSigma = 4.7;      // reach over the scatter
+constexpr std::size_t kMaxSectors = 72;  // fewer if they would be too short
+constexpr double kShortestSector = 6.0;  // lines
+constexpr double kMaxLines = 480.0;      // of a pass; above it, lines are subsampled
+constexpr std::size_t kNeighbours = 3;   // sectors on each side that share the two levels
+constexpr double kTypicalStepPx = 2.3;   // half the width of the blurred step; others are within
+                                         // half and twice of it
+constexpr double kTukeyOfSigma = 4.7;    // reach over the scatter
 constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
-constexpr double kMinShare = 0.5;          // of the sectors with an edge
 
 // Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
 // g, its derivative w by narrowing, and the brightness i.
@@ -56,7 +48,7 @@ struct Crossing {
   float quadratic = 0.0F;               // half its second derivative
 
   void read(std::uint8_t (&levels)[kLanes]) const {
-    const std::uint8_t* next = pixel - kBefore * along;
+    const std::uint8_t* next = pixel - kLanes / 2 * along;
     for (std::uint8_t& level : levels) {
       level = *next;
       next += along;
@@ -75,7 +67,7 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
                              float inside_px,
                              float inverse_step,
                              LaneSums& sums) {
-  constexpr auto kOutsidePx = static_cast<float>(kPhotometricBandPx);
+  const auto outside_px = static_cast<float>(kPhotometricBandPx);
   alignas(16) std::uint8_t levels[kLanes];
   crossing.read(levels);
   // A separate loop: with the conversion from bytes, the next one would use vectors of two floats.
@@ -84,9 +76,9 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
     intensities[lane] = static_cast<float>(levels[lane]) - 128.0F;
   }
   for (int lane = 0; lane < kLanes; ++lane) {
-    const float t = static_cast<float>(lane - kBefore) - crossing.offset;
+    const float t = static_cast<float>(lane - kLanes / 2) - crossing.offset;
     const float distance = t * (crossing.slope + crossing.quadratic * t);
-    const float one = distance >= -inside_px && distance <= kOutsidePx ? 1.0F : 0.0F;
+    const float one = distance >= -inside_px && distance <= outside_px ? 1.0F : 0.0F;
     // The step's slope is (1 - x^2)^3: close to a Gaussian, without an exponential.
     const float x = std::min(1.0F, std::max(-1.0F, distance * inverse_step));
     const float xx = x * x;
@@ -164,7 +156,6 @@ class Accumulator {
 };
 
 struct Pass {
-  double max_lines = 0.0;  // above it, lines are subsampled
   bool fits_width = false;
   double step_px = 0.0;
 };
@@ -178,10 +169,10 @@ class Band {
         shape_(shape_matrix(e)),
         conic_(shape_.inverse()),
         luma_(luma) {
-    const double lines = std::min(kLongestPx, 0.9 * perimeter_px(e));
-    stride_ = static_cast<int>(std::ceil(lines / pass.max_lines));
+    const double lines = std::min(kFarPx, perimeter_px(e));
+    stride_ = static_cast<int>(std::ceil(lines / kMaxLines));
     lines_of_sector_ =
-        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kTypicalSectors)));
+        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kMaxSectors)));
     for (int quarter = 0; quarter < 4; ++quarter) read(quarter);
     close_sector();
   }
@@ -223,7 +214,7 @@ class Band {
       at[other] = slant * at[axis] +
                   side * std::sqrt(std::max(0.0, (1.0 - determinant * at[axis] * at[axis]) * c));
       const double crossing = center_[other] + at[other];
-      if (!(crossing >= kBefore && crossing < size[other] - kLanes + kBefore)) continue;
+      if (!(crossing >= kLanes / 2 && crossing < size[other] - kLanes + kLanes / 2)) continue;
       const int nearest = static_cast<int>(std::floor(crossing + 0.5));
       add_crossing(luma_.data + nearest * along + line * step, along, crossing - nearest, at);
     }
@@ -253,7 +244,7 @@ class Band {
   void close_sector() {
     Sector& sector = sectors_[count_];
     sector.sums = accumulator_.take();
-    if (2 * sector.lines >= lines_of_sector_ && count_ + 1 < kMaxSectors) {
+    if (2 * sector.lines >= lines_of_sector_ && count_ < kMaxSectors) {
       ++count_;
     } else {
       sector = {};
@@ -264,7 +255,7 @@ class Band {
   Eigen::Vector2d center_;
   Eigen::Matrix2d shape_;
   Eigen::Matrix2d conic_;
-  std::array<Sector, kMaxSectors> sectors_;
+  std::array<Sector, kMaxSectors + 1> sectors_;  // the last one is incomplete
   std::size_t count_ = 0;
   ImageView luma_;
   int stride_ = 1;
@@ -342,8 +333,9 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
                       shared.values[3] * own[kWG]) /
                      own[kGG];
   const double rest = squares(own, alone.values);
-  const double noise = kNoiseFloor + rest / std::max(1.0, own[k1] - 3.0);
-  const bool is_alike = squares(own, shared.values) - rest < kAlike * noise;
+  // At least the variance of rounding to grey levels.
+  const double noise = 1.0 / 12.0 + rest / std::max(1.0, own[k1] - 3.0);
+  const bool is_alike = std::sqrt((squares(own, shared.values) - rest) / noise) < 3.0;  // sigma
   const Eigen::Vector4d& values = is_alike ? shared.values : alone.values;
   const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.offset_variance);
   return Edge{&sectors[i],
@@ -367,7 +359,7 @@ std::optional<double> fit_edges(const Band& band,
                                 std::span<const Edge> edges,
                                 FittedEllipse& refined) {
   const double scatter = scatter_of(edges);
-  const double reach = std::max(kTukeyReachPx, kTukeyOfSigma * scatter);
+  const double reach = kTukeyOfSigma * scatter;
   GeometricFit fit(refined.ellipse);
   double narrower = 0.0;
   double weights = 0.0;
@@ -396,10 +388,11 @@ std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
                                                      Polarity polarity,
                                                      double inside_px,
                                                      double min_contrast) {
-  if (!(inside_px >= kMinPhotometricBandPx)) return std::nullopt;
+  inside_px -= kTypicalStepPx;  // the next edge is blurred alike
+  if (!(inside_px >= kTypicalStepPx)) return std::nullopt;
   const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
   FittedEllipse refined{e, {}};
-  Pass pass{kFewLines, true, kTypicalStepPx};
+  Pass pass{true, kTypicalStepPx};
   for (int i = 0; i < 2; ++i) {
     const Band band(luma, refined.ellipse, inside_px, pass);
     const auto sectors = band.sectors();
@@ -409,12 +402,10 @@ std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
       const auto edge = edge_of(sectors, k, brighter_outside, min_contrast);
       if (edge) edges[count++] = *edge;
     }
-    if (count < kMinSectors || count < kMinShare * static_cast<double>(sectors.size())) {
-      return std::nullopt;
-    }
+    if (count < kMinEdgesOfEllipse || 2 * count < sectors.size()) return std::nullopt;
     const auto step_px = fit_edges(band, std::span(edges).first(count), refined);
     if (!step_px) return std::nullopt;
-    pass = {kMaxLines, false, std::clamp(*step_px, kMinStepPx, kMaxStepPx)};
+    pass = {false, std::clamp(*step_px, 0.5 * kTypicalStepPx, 2.0 * kTypicalStepPx)};
   }
   return refined;
 }

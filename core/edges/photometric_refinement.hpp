@@ -11,9 +11,6 @@ namespace ellipse {
 
 /// Largest distance from an edge at which pixels carry information on its position [px].
 inline constexpr double kPhotometricBandPx = 3.8;
-/// Smallest `inside_px`: in a narrower band the edge is not separable from the next one [px].
-inline constexpr double kMinPhotometricBandPx = 2.8;
-
 /// Refines an ellipse that is known within about half a pixel, from the brightness of every pixel
 /// beside its perimeter: a step between two levels, blurred by the lens.
 ///
@@ -22,7 +19,9 @@ inline constexpr double kMinPhotometricBandPx = 2.8;
 /// to the offsets with Tukey's weights, which reject outliers. Within 1.6 times the Cramer-Rao
 /// bound of the centre for edges in focus, from 12 px on.
 ///
-/// @param inside_px     Distance to the target's next edge inside the perimeter.
+/// @param inside_px     Distance to the target's next edge inside the perimeter; nothing is found
+/// if
+///                      the two blurred edges overlap.
 /// @param min_contrast  Smallest difference of the two levels [grey levels].
 /// @return nullopt if fewer than 8 or than half of the sectors inside the picture show the step, or
 ///         the band is too narrow. Allocates nothing; O(perimeter), up to a few hundred pixels.

@@ -6,18 +6,17 @@
 namespace ellipse {
 namespace {
 
-constexpr double kUnitNs = 1e9 / 30.0;  // 1/30 s
-constexpr double kLongestGap = 30.0;    // [1/30 s]
+constexpr double kLongestGap = 30.0;  // [1/30 s]
 
 }  // namespace
 
 double FrameClock::advance_to(std::int64_t pts_ns) {
   if (pts_ns < 0) {
-    now_ns_ += interval_ * kUnitNs;
+    now_ns_ += interval_ * (1e9 * kFrame_s);
     return interval_;
   }
   const auto pts = static_cast<double>(pts_ns);
-  const double elapsed = (pts - now_ns_) / kUnitNs;
+  const double elapsed = (pts - now_ns_) / (1e9 * kFrame_s);
   now_ns_ = pts;
   interval_ = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
   return interval_;

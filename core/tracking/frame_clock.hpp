@@ -5,6 +5,11 @@
 
 namespace ellipse {
 
+inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Unit of FrameClock and PadTracker.
+
+/// Longest time without a match after which a target is still the same.
+inline constexpr double kMaxAbsence_s = 0.4;
+
 /// Time between frames. Depacketizers and decoders omit some time stamps: a frame without one
 /// repeats the previous interval.
 class FrameClock {

@@ -10,10 +10,7 @@
 namespace ellipse {
 namespace {
 
-constexpr double kJudge_s = 0.15;         // period of evaluation while certain
-constexpr double kLessMatched = 0.1;      // drop of the matched share that triggers an evaluation
-constexpr double kEnoughToJudge = 0.5;    // min visible share of the perimeter
-constexpr double kJudgedExpansion = 2.0;  // of the region, as TrackerSettings::roi_expansion
+constexpr double kLessMatched = 0.1;  // drop of the matched share that triggers an evaluation
 
 // Crops a window to an ellipse and its surroundings.
 LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
@@ -22,7 +19,7 @@ LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
                    window.luma.width,
                    window.luma.height};
   const Rect around = intersect(calculate_roi(outline,
-                                              kJudgedExpansion,
+                                              kRoiExpansion,
                                               kCoarsestScale,
                                               static_cast<int>(window.frame_px.x()),
                                               static_cast<int>(window.frame_px.y())),
@@ -36,8 +33,8 @@ LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
 
 }  // namespace
 
-void OutlineJudge::start(double log_odds, double absence_s) {
-  odds_.start(log_odds, absence_s);
+void OutlineJudge::start(double log_odds, bool is_known) {
+  odds_.start(log_odds, is_known);
   since_judged_s_ = 0.0;
   max_visible_ = 0.0;
   judged_overlap_ = 0.0;
@@ -72,9 +69,9 @@ void OutlineJudge::judge(Detector& detector,
 // of the perimeter is visible, evaluates only outlines that were not more visible since the last
 // detection.
 bool OutlineJudge::is_due(const Target& target) const {
-  if (target.visible_fraction < std::min(kEnoughToJudge, max_visible_)) return false;
+  if (target.visible_fraction < std::min(kMajority, max_visible_)) return false;
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
-  return !is_sure() || is_less_matched || since_judged_s_ >= kJudge_s;
+  return !is_sure() || is_less_matched || since_judged_s_ >= kCheckPeriod_s;
 }
 
 bool OutlineJudge::is_sure() const {

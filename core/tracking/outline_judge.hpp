@@ -8,13 +8,16 @@
 
 namespace ellipse {
 
+/// While a target is certain: period of its evaluation, and of searches for a better one.
+inline constexpr double kCheckPeriod_s = 0.2;
+
 /// Accumulates the detector's evidence for the outline of the tracked hypothesis over frames.
 ///
 /// One object serves one stream, one thread at a time. Deterministic.
 class OutlineJudge {
  public:
   /// Starts a hypothesis from a new detection. See TargetOdds::start().
-  void start(double log_odds, double absence_s);
+  void start(double log_odds, bool is_known);
   /// Adds a detection of the tracked hypothesis.
   void confirm(double log_odds);
 

@@ -5,6 +5,9 @@
 
 namespace ellipse {
 
+/// Expansion of a target's surroundings by one semi-major axis, of the default search region.
+inline constexpr double kRoiExpansion = 2.0;
+
 /// Search region for the next frame: the target's box with a margin of (expansion - 1) semi-major
 /// axes on every side, clipped to the frame. CalculateROI of [Keipour2021] Algorithm 2.
 /// The margin is the same on all sides, because the motion does not depend on the aspect ratio.

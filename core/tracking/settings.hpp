@@ -10,6 +10,7 @@
 #include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
 #include "core/tracking/pad/refinement.hpp"
+#include "core/tracking/roi.hpp"
 
 namespace ellipse {
 
@@ -32,7 +33,8 @@ struct TrackerSettings {
   double max_target_size_px = 120.0;  ///< maxTargetSize: full axis at the processed scale.
   int max_scale = 100;                ///< maxScale: coarsest frame scale, 1 to 128.
   bool wants_candidates = false;      ///< All ellipses of every frame, also during edge tracking.
-  double roi_expansion = 2.0;         ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
+  double roi_expansion =
+      kRoiExpansion;                  ///< Margin of the ROI: (this - 1) semi-major axes; 1 to 10.
   double ring_ratio = 0.0;            ///< Inner over outer radius of the pad's ring; 0 = learned.
   std::optional<Camera> camera = {};  ///< From a file; overrides the numbers below.
   double hfov_rad = 0.0;              ///< Horizontal field of view of a pinhole; 0 = unknown.

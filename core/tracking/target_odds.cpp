@@ -9,8 +9,7 @@ namespace {
 
 // Measured or chosen in docs/provenance.md, "Evidence over time".
 constexpr double kMemory_s = 0.3;    // correlation time of the evidence
-constexpr double kPrior = -0.4;      // log odds after a long absence
-constexpr double kReturn_s = 2.0;    // time constant of the prior's decay towards kPrior
+constexpr double kPrior = -0.4;      // log odds of a new target
 constexpr double kMaxOfFrame = 5.0;  // log odds: single frames are not calibrated beyond
 
 double of_frame(double log_odds) {
@@ -19,10 +18,9 @@ double of_frame(double log_odds) {
 
 }  // namespace
 
-void TargetOdds::start(double log_odds, double absence_s) {
+void TargetOdds::start(double log_odds, bool is_known) {
   last_ = of_frame(log_odds);
-  const double prior = kPrior * (1.0 - std::exp(-absence_s / kReturn_s));
-  sum_ = std::clamp(last_ + prior, -kMax, kMax);
+  sum_ = std::clamp(last_ + (is_known ? 0.0 : kPrior), -kMax, kMax);
 }
 
 void TargetOdds::add(double log_odds, double elapsed_s) {

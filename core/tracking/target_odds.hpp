@@ -16,10 +16,9 @@ class TargetOdds {
   static constexpr double kMax = 4.0;
 
   /// Starts a new hypothesis.
-  /// @param log_odds   From its first frame.
-  /// @param absence_s  Since a target was last reported: the shorter, the higher the prior.
-  ///                   Infinite if there was none.
-  void start(double log_odds, double absence_s);
+  /// @param log_odds  From its first frame; may be infinite.
+  /// @param is_known  Whether it may be a target that was reported shortly before.
+  void start(double log_odds, bool is_known);
 
   /// @param log_odds   From one more frame; may be infinite.
   /// @param elapsed_s  Since the last frame that was added.

@@ -13,13 +13,8 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30.0;                // unit of the frame clock
-constexpr double kDetectionPeriod_s = 8.0 * kFrame_s;  // period of detections while tracking
-constexpr double kMaxAbsenceToKeepId_s = 0.4;  // max absence after which a target keeps its id
-constexpr double kEnoughToLock = 0.45;         // min visible share of the perimeter to lock
-constexpr double kMinPredicted = 0.5;          // min visible share to report a prediction
-constexpr double kMinCoverage = 0.4;           // min matched share of its edges for the same
-constexpr double kDetectedSigmaPx = 0.3;       // edge sigma of an ellipse that is not tracked
+constexpr double kMinPredicted = 0.4;     // min matched share of a reported prediction
+constexpr double kDetectedSigmaPx = 0.3;  // edge sigma of an ellipse that is not tracked
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -143,7 +138,7 @@ bool Tracker::needs_detection(const std::optional<Target>& followed) const {
 }
 
 bool Tracker::is_detection_due() const {
-  return settings_.wants_candidates || since_detection_s_ >= kDetectionPeriod_s;
+  return settings_.wants_candidates || since_detection_s_ >= kCheckPeriod_s;
 }
 
 // Reads only the search window of the pad.
@@ -158,7 +153,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   const auto track = pad_tracker_->track(window, elapsed);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(frame.lens, track->ellipse, width, height);
-  const bool is_likely = visible >= kMinPredicted && track->coverage >= kMinCoverage;
+  const bool is_likely = visible >= kMajority && track->coverage >= kMinPredicted;
   if (!track->is_visible && !is_likely) return std::nullopt;
   Target target;
   target.ellipse = track->ellipse;
@@ -205,20 +200,19 @@ bool Tracker::is_too_large(const Ellipse& e) const {
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
 }
 
-// Replaces or confirms the hypothesis by a detection. Locks only if at least 45 % of the perimeter
-// is visible.
+// Replaces or confirms the hypothesis by a detection. Locks only if most of the perimeter is
+// visible.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
   if (hypothesis_ && is_near(*hypothesis_, target.ellipse)) {
     judge_->confirm(log_odds(target.probability));
   } else {
-    judge_->start(log_odds(target.probability), absence_s_);
-    const bool is_back =
-        absence_s_ < kMaxAbsenceToKeepId_s && is_near(last_ellipse_, target.ellipse);
+    const bool is_back = absence_s_ < kMaxAbsence_s && is_near(last_ellipse_, target.ellipse);
+    judge_->start(log_odds(target.probability), is_back);
     id_ = is_back ? last_id_ : last_id_ + 1;
   }
   target.id = id_;
   pad_tracker_->release();
-  if (target.visible_fraction >= kEnoughToLock) {
+  if (target.visible_fraction >= kMajority) {
     (void)pad_tracker_->lock(window_on(frame, frame.searchable), target.ellipse);
   }
   return target;

@@ -44,6 +44,11 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   return true;
 }
 
+// Whether the map has edges of this gradient, rather than noise that hides them.
+bool would_show(const GradientMap& map, double gradient) {
+  return gradient >= kGradientGain * map.thresholds().high;
+}
+
 }  // namespace
 
 std::span<const Detection> ArcDetector::detect(const Picture& picture,
@@ -235,7 +240,8 @@ bool ArcDetector::is_certain() {
 }
 
 // Averages the log odds of ellipses from reduced pictures with those at the finer scales: reduction
-// hides the corners of a polygon, which show again at the finer scales.
+// hides the corners of a polygon, which show again at the finer scales. Skips a scale whose noise
+// may hide the outline, since blur reduces the gradient by up to the ratio of the scales.
 void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   Thresholds thresholds = full;
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
@@ -245,6 +251,7 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
     double sum = log_odds(found.measured.probability);
     int scales = 1;
     for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
+      if (!would_show(map_at(scale), found.measured.gradient * scale / found.scale)) continue;
       const Ellipse guess = to_region(found.measured.ellipse, {}, scale);
       MeasuredEllipse finer;
       const Verdict verdict = verifier_.verify(map_at(scale),

@@ -217,7 +217,8 @@ void EllipseVerifier::measure(const GradientMap& map,
   const double radius = radius_of(e);
   const double turn_support = found.turn_support * sums.share_of_turn();
   const double error = direction_errors_.empty() ? 0.5 : median(direction_errors_);
-  const double signal_to_noise = sums.contrast / (double(edges.size()) * map.noise() + 1e-9);
+  measured.gradient = edges.empty() ? 0.0 : sums.contrast / double(edges.size());
+  const double signal_to_noise = measured.gradient / map.texture();
   set(Feature::kTurnSupport, turn_support);
   set(Feature::kDirectionError, std::log(0.01 + error));
   set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest_gap(edges, samples))));

@@ -17,6 +17,7 @@ struct MeasuredEllipse {
   Polarity polarity = Polarity::kDarkInside;
   double support = 0.0;     ///< Share of the perimeter inside the picture with edges, by length.
   double on_ellipse = 0.0;  ///< Share of these edges on the ellipse, by length.
+  double gradient = 0.0;    ///< Mean of these edges [units of Gradient].
   Features features{};
   double probability = 0.0;  ///< Of being an ellipse, by the evidence table.
   int candidate = -1;        ///< As in Detection.

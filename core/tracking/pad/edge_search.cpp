@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/geometry/ellipse.hpp"
@@ -13,24 +14,20 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kFineSteps = 4;  // per circle step, if little of the pad is visible
-constexpr double kMinContrast = 4.0;   // [grey levels]
-constexpr int kMaxSteps = 24;          // to each side of the expected position
-constexpr int kMaxBox = 3;             // max samples averaged on each side of an edge
+constexpr int kMaxSteps = 24;  // to each side of the expected position
+constexpr int kMaxBox = 3;     // max samples averaged on each side of an edge
 constexpr int kLongestProfile = 2 * (kMaxSteps + kMaxBox) + 3;
 
-// Unit vectors at kCircleSteps * kFineSteps angles.
-const Eigen::Vector2d& direction(std::size_t fine_step) {
-  constexpr std::size_t kDirections = EdgeSearch::kCircleSteps * kFineSteps;
+const Eigen::Vector2d& direction(std::size_t step) {
   static const auto kTurn = [] {
-    std::array<Eigen::Vector2d, kDirections> turn;
-    for (std::size_t i = 0; i < kDirections; ++i) {
-      const double angle = kTwoPi * static_cast<double>(i) / kDirections;
+    std::array<Eigen::Vector2d, EdgeSearch::kCircleSteps> turn;
+    for (std::size_t i = 0; i < turn.size(); ++i) {
+      const double angle = kTwoPi * static_cast<double>(i) / EdgeSearch::kCircleSteps;
       turn[i] = {std::cos(angle), std::sin(angle)};
     }
     return turn;
   }();
-  return kTurn[fine_step];
+  return kTurn[step];
 }
 
 // Pixel levels across an edge.
@@ -71,7 +68,7 @@ void keep_edges(const Profile& profile, float min_contrast, double reach_px, Edg
       EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
       if (candidate.contrast > other.contrast) std::swap(candidate, other);
     }
-    if (sample.count < 3) {
+    if (sample.count < static_cast<int>(sample.candidates.size())) {
       sample.candidates[static_cast<std::size_t>(sample.count++)] = candidate;
     }
   }
@@ -106,21 +103,18 @@ struct EdgeSearch::Placement {
   }
 };
 
-void EdgeSearch::sample(const PadModel& model,
-                        const PadView& view,
-                        const ImageView& luma,
-                        int samples) {
+void EdgeSearch::sample(const PadModel& model, const PadView& view, const ImageView& luma) {
   samples_.clear();
   samples_.reserve(kMaxSamples);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
   std::array<VisibleSteps, kMaxCircles> visible;
   double total_px = 0.0;
   const std::size_t circles = std::min(model.circles.size(), visible.size());
-  narrowest_ = 1e9;
+  narrowest_ = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < circles; ++c) {
     const PadCircle& circle = model.circles[c];
     for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      visible[c][i] = placement.visible.has(circle.radius * direction(kFineSteps * i));
+      visible[c][i] = placement.visible.has(circle.radius * direction(i));
     }
     const auto count = static_cast<double>(visible[c].count());
     total_px += count * placement.step_px(circle);
@@ -133,7 +127,7 @@ void EdgeSearch::sample(const PadModel& model,
   }
   if (!(total_px > 0.0)) return;
 
-  placement.spacing_px = std::max(2.0, total_px / samples);
+  placement.spacing_px = std::max(1.0, total_px / kSamples);
   for (std::size_t c = 0; c < circles; ++c) {
     sample_circle(placement, model.circles[c], visible[c], static_cast<int>(c));
   }
@@ -150,22 +144,18 @@ void EdgeSearch::sample_circle(const Placement& placement,
   const double step_px = placement.step_px(circle);
   const double spacing_px = placement.spacing_px;
   const double sign = circle.is_bright_outside ? 1.0 : -1.0;
-  const int fine = spacing_px < step_px ? static_cast<int>(kFineSteps) : 1;
   double since_px = 0.5 * spacing_px;
   for (std::size_t i = 0; i < kCircleSteps; ++i) {
     if (!visible[i]) continue;
-    for (int k = 0; k < fine; ++k) {
-      since_px += step_px / fine;
-      if (since_px < spacing_px) continue;
-      const Eigen::Vector2d& outwards = direction(kFineSteps * i + static_cast<std::size_t>(k));
-      if (k > 0 && !placement.visible.has(circle.radius * outwards)) continue;
-      since_px = std::min(since_px - spacing_px, spacing_px);
-      add(placement.view.ideal_from_pad,
-          circle.radius * outwards,
-          sign * outwards,
-          circle.contrast,
-          feature);
-    }
+    since_px += step_px;
+    if (since_px < spacing_px) continue;
+    since_px = std::min(since_px - spacing_px, spacing_px);
+    const Eigen::Vector2d& outwards = direction(i);
+    add(placement.view.ideal_from_pad,
+        circle.radius * outwards,
+        sign * outwards,
+        circle.contrast,
+        feature);
   }
 }
 
@@ -215,7 +205,7 @@ void EdgeSearch::search(const ImageView& luma,
     if (covariance != nullptr) {
       const double variance = sample.view.row.dot(*covariance * sample.view.row);
       // Rounding may make the variance negative.
-      reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)) + 2.0, reach_px, max_px);
+      reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)), reach_px, max_px);
     }
     search_along(luma, gain, reach, sample);
   }
@@ -265,7 +255,7 @@ void EdgeSearch::search_along(const ImageView& luma,
   const int steps = static_cast<int>(std::ceil(reach / step));
   const double step_px = step * std::abs(slope);
   const double gap_px = narrowest_ * sample.view.px_per_unit;
-  const int box = static_cast<int>(std::clamp(0.6 * gap_px / step_px, 1.0, double(kMaxBox)));
+  const int box = static_cast<int>(std::clamp(0.5 * gap_px / step_px, 1.0, double(kMaxBox)));
   const bool is_forth = slope > 0.0;
   const int before = (is_forth ? middle : end - 1 - middle) / step;
   const int behind = (is_forth ? end - 1 - middle : middle) / step;

@@ -36,12 +36,12 @@ struct EdgeSample {
 /// Searches an image for the edges of a pad along their normals.
 class EdgeSearch {
  public:
-  /// Places samples on all visible edges, evenly by their length in the image.
-  void sample(const PadModel& model, const PadView& view, const ImageView& luma, int samples);
+  /// Places kSamples on all visible edges, evenly by their length in the image.
+  void sample(const PadModel& model, const PadView& view, const ImageView& luma);
 
   /// Searches edges of the expected polarity at each sample.
   /// @param gain       Ratio of image contrast to model contrast.
-  /// @param reach_px   Search range. With a covariance: 3 sigma + 2 px at each sample, within
+  /// @param reach_px   Search range. With a covariance: 3 sigma at each sample, within
   ///                   [reach_px, max_px].
   void search(const ImageView& luma,
               double gain,
@@ -53,11 +53,11 @@ class EdgeSearch {
   /// Visible share of the outer circle at the last sample().
   [[nodiscard]] double visible_fraction() const { return visible_fraction_; }
 
-  static constexpr int kMaxSamples = 256;
-  static constexpr std::size_t kCircleSteps = 128;  ///< Resolution of a circle's visible part.
+  static constexpr int kSamples = 96;               ///< Of a search.
+  static constexpr int kMaxSamples = 2 * kSamples;  ///< Capacity: each edge rounds up.
+  static constexpr std::size_t kCircleSteps = 256;  ///< Resolution of a circle's visible part.
 
  private:
-  static constexpr std::size_t kMaxCircles = 8;  // of a model; sizes a buffer
   using VisibleSteps = std::bitset<kCircleSteps>;
   struct Placement;
 

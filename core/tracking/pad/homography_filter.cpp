@@ -10,11 +10,7 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kFocalOverWidth = 0.8;      // if no camera is known
-constexpr double kAlongShare = 0.7;          // share of the shift along the optical axis
-constexpr double kUnmodelledSigma = 0.0015;  // sigma of stretch and tilt for unmodelled effects
-constexpr double kUnmodelledShare = 0.05;    // share of that variance for size and rotation
-constexpr double kMinVariance = 1e-9;        // variance added to all parameters
-constexpr double kMaxTurn = 0.05;  // max sigma of the rotation that rings leave open [rad]
+constexpr double kUnmodelledSigma = 0.0015;  // of a view's change that is no camera motion
 
 // Changes of a view by one-sigma camera motions, one per column.
 Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pad,
@@ -22,14 +18,14 @@ Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pa
                                             double turn_rad,
                                             double shift) {
   Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, kAlongShare * shift;
+  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, shift;
   return change_by_camera(image_from_pad, camera.matrix()) * sigmas.asDiagonal();
 }
 
 }  // namespace
 
 Camera default_camera(const Eigen::Vector2d& frame_px) {
-  const auto width = static_cast<int>(frame_px.x());
+  const int width = std::max(1, static_cast<int>(frame_px.x()));
   const auto height = static_cast<int>(frame_px.y());
   return Camera::with_hfov(2.0 * std::atan(0.5 / kFocalOverWidth), width, height);
 }
@@ -73,12 +69,7 @@ HomographyFilter HomographyFilter::after(double frames,
   next.homography_velocity =
       homography_velocity + frames * velocity_variance + 0.5 * frames * noise;
   next.velocity_variance = velocity_variance + noise;
-  const double large = kUnmodelledSigma * kUnmodelledSigma;
-  const double small = kUnmodelledShare * large;
-  next.pose.diagonal() +=
-      (HomographyChange() << kMinVariance, kMinVariance, small, large, large, small, large, large)
-          .finished();
-  next.pose.diagonal().array() += kMinVariance;
+  next.pose.diagonal().array() += kUnmodelledSigma * kUnmodelledSigma;
   return next;
 }
 
@@ -91,15 +82,15 @@ HomographyFilter HomographyFilter::corrected(const HomographyEstimate& measured)
   const HomographyCovariance reduced =
       velocity_variance - gain * (pose - result.pose) * gain.transpose();
   result.velocity_variance = 0.5 * (reduced + reduced.transpose());
-  result.velocity_variance.diagonal().array() += 1e-12;
   return result;
 }
 
-void HomographyFilter::leave_rotation_free() {
+void HomographyFilter::fix_rotation() {
   velocity(5) = 0.0;
-  const double factor = std::min(1.0, kMaxTurn / std::sqrt(pose(5, 5)));
-  pose.row(5) *= factor;
-  pose.col(5) *= factor;
+  for (HomographyCovariance* part : {&pose, &homography_velocity, &velocity_variance}) {
+    part->row(5).setZero();
+    part->col(5).setZero();
+  }
 }
 
 double HomographyFilter::centre_sigma() const {

@@ -37,9 +37,8 @@ struct HomographyFilter {
   /// @param measured  Posterior change from the prediction: the prior is already included.
   [[nodiscard]] HomographyFilter corrected(const HomographyEstimate& measured) const;
 
-  /// Limits the uncertainty of the rotation about the pad's normal, which rings do not determine,
-  /// and sets its velocity to 0.
-  void leave_rotation_free();
+  /// Fixes the rotation about the pad's normal, which rings do not determine.
+  void fix_rotation();
 
   /// Standard deviation of the pad's centre [radii].
   [[nodiscard]] double centre_sigma() const;
@@ -49,7 +48,7 @@ struct HomographyFilter {
 
 /// Covariance of a view's change under random camera motion.
 /// @param turn_rad  Standard deviation of the rotation about each axis.
-/// @param shift     That of the shift along each axis [radii]; less along the optical axis.
+/// @param shift     That of the shift along each axis [radii].
 [[nodiscard]] HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                                                 const Camera& camera,
                                                 double turn_rad,

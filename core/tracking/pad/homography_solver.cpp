@@ -8,6 +8,12 @@
 #include "core/geometry/least_squares.hpp"
 
 namespace ellipse {
+namespace {
+
+constexpr int kIterations = 2;  // with each reach
+
+}  // namespace
+
 const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px) {
   const EdgeCandidate* best = nullptr;
   for (int k = 0; k < sample.count; ++k) {
@@ -22,19 +28,19 @@ const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicte
 
 std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> samples,
                                                    const HomographyPrior& prior,
-                                                   const HomographyChange& start,
+                                                   double first_reach_px,
                                                    double reach_px,
-                                                   double sigma_px,
-                                                   int iterations) {
-  HomographyEstimate estimate{start, {}};
-  for (int step = 0; step < iterations; ++step) {
+                                                   double sigma_px) {
+  HomographyEstimate estimate;
+  for (int step = 0; step < 2 * kIterations; ++step) {
+    const double reach = step < kIterations ? first_reach_px : reach_px;
     LeastSquares<8> equations(prior.mean, prior.information);
     for (const EdgeSample& sample : samples) {
       const double predicted = sample.predicted_px(estimate.change);
       const EdgeCandidate* edge = nearest_candidate(sample, predicted);
       if (edge == nullptr) continue;
       const double weight =
-          tukey_weight(edge->distance_px - predicted, reach_px) / (sigma_px * sigma_px);
+          tukey_weight(edge->distance_px - predicted, reach) / (sigma_px * sigma_px);
       if (weight > 0.0) equations.add(sample.view.row, edge->distance_px, weight);
     }
     const auto change = equations.solve();
@@ -44,16 +50,10 @@ std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> s
   return estimate;
 }
 
-double explained(std::span<const EdgeSample> samples,
-                 const HomographyChange& change,
-                 double reach_px) {
-  double sum = 0.0;
-  for (const EdgeSample& sample : samples) {
-    const double predicted = sample.predicted_px(change);
-    const EdgeCandidate* edge = nearest_candidate(sample, predicted);
-    if (edge != nullptr) sum += tukey_weight(edge->distance_px - predicted, reach_px);
-  }
-  return sum;
+bool is_matched(const EdgeSample& sample, const HomographyChange& change, double max_px) {
+  const double predicted = sample.predicted_px(change);
+  const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+  return edge != nullptr && std::abs(edge->distance_px - predicted) <= max_px;
 }
 
 HomographySupport support_of(std::span<const EdgeSample> samples,
@@ -61,32 +61,30 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
                              double tolerance_px,
                              int circles) {
   HomographySupport support;
-  std::array<int, 8> visible{};
-  std::array<int, 8> matched{};
+  std::array<int, kMaxCircles> visible{};
+  std::array<int, kMaxCircles> matched{};
   std::array<float, EdgeSearch::kMaxSamples> gains;
   for (const EdgeSample& sample : samples) {
     if (!sample.is_visible) continue;
     const double predicted = sample.predicted_px(change);
     const EdgeCandidate* edge = nearest_candidate(sample, predicted);
-    const bool is_matched =
+    const bool has_edge =
         edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
-    if (is_matched)
+    if (has_edge)
       gains[static_cast<std::size_t>(support.matched)] = edge->contrast / sample.contrast;
     ++support.visible;
-    support.matched += is_matched ? 1 : 0;
+    support.matched += has_edge ? 1 : 0;
     if (sample.feature >= circles) continue;
     const auto circle = static_cast<std::size_t>(sample.feature);
     ++visible[circle];
-    matched[circle] += is_matched ? 1 : 0;
+    matched[circle] += has_edge ? 1 : 0;
   }
   if (support.visible == 0) return support;
   support.coverage = static_cast<double>(support.matched) / support.visible;
   if (visible[0] > 0) support.outline = static_cast<double>(matched[0]) / visible[0];
   support.weakest = 1.0;
   for (std::size_t i = 0; i < visible.size(); ++i) {
-    if (visible[i] >= 4) {
-      support.weakest = std::min(support.weakest, static_cast<double>(matched[i]) / visible[i]);
-    }
+    support.weakest = std::min(support.weakest, (matched[i] + 1.0) / (visible[i] + 1.0));
   }
   if (support.matched > 0) {
     const auto middle = gains.begin() + support.matched / 2;

@@ -25,7 +25,7 @@ struct HomographySupport {
   int matched = 0;        ///< Of these, with an edge within the tolerance.
   double coverage = 0.0;  ///< matched over visible.
   double outline = 0.0;   ///< The same of the outer circle alone; 0 if none of it is visible.
-  double weakest = 0.0;   ///< Lowest coverage of a circle with at least 4 visible samples.
+  double weakest = 0.0;   ///< Lowest coverage of a circle, with one sample more that is matched.
   double gain = 1.0;      ///< Median ratio of image contrast to model contrast.
 };
 
@@ -33,25 +33,24 @@ struct HomographySupport {
 /// reweighted least squares with Tukey's weights, on each sample's candidate nearest to the
 /// prediction.
 ///
-/// @param start     Initial change.
-/// @param reach_px  Residual from which weights are 0.
-/// @param sigma_px  Standard deviation of an edge's position.
+/// @param first_reach_px  Residual from which weights are 0, in the first iterations;
+/// @param reach_px        and in the last ones.
+/// @param sigma_px        Standard deviation of an edge's position.
 /// @return nullopt if the system is singular. Allocates nothing.
 [[nodiscard]] std::optional<HomographyEstimate> solve_homography(
     std::span<const EdgeSample> samples,
     const HomographyPrior& prior,
-    const HomographyChange& start,
+    double first_reach_px,
     double reach_px,
-    double sigma_px,
-    int iterations);
+    double sigma_px);
 
 /// The candidate nearest to the predicted edge; nullptr if there is none.
 [[nodiscard]] const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px);
 
-/// Sum of the samples' Tukey weights under a change.
-[[nodiscard]] double explained(std::span<const EdgeSample> samples,
-                               const HomographyChange& change,
-                               double reach_px);
+/// Whether a sample has a candidate within max_px of its predicted edge.
+[[nodiscard]] bool is_matched(const EdgeSample& sample,
+                              const HomographyChange& change,
+                              double max_px);
 
 [[nodiscard]] HomographySupport support_of(std::span<const EdgeSample> samples,
                                            const HomographyChange& change,

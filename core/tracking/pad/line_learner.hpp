@@ -48,7 +48,6 @@ class LineLearner {
                                      const Eigen::Vector2d& from,
                                      const Eigen::Vector2d& to) const;
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
-  void keep_longest();
   [[nodiscard]] static Eigen::Vector2d pad_point_of(int column, int row);
   [[nodiscard]] Eigen::Vector2d pad_point_of(std::int32_t pixel) const;
 

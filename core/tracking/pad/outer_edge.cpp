@@ -13,11 +13,9 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMinSupport = 0.5;         // share of the perimeter with a gradient maximum
-constexpr std::size_t kSamples = 48;        // half of the detector's, since this runs in each frame
-constexpr double kBlurBiasShare = 0.2;      // sigma of the blur correction, share of it
-constexpr double kReachOfNextEdgePx = 2.0;  // blur of the ring's inner edge
-constexpr Tolerance kNear{1.0, 0.03};       // max distance from the predicted outline
+constexpr std::size_t kSamples = 48;    // half of the detector's, since this runs in each frame
+constexpr double kBlurBiasShare = 0.2;  // sigma of the blur correction, share of it
+constexpr Tolerance kNear{1.0, 0.03};   // max distance from the predicted outline
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
@@ -42,7 +40,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        polarity_of(circle.is_bright_outside),
                                        kGradientOfStep * min_contrast,
                                        kSamples);
-  if (!edge || edge->support < kMinSupport) return std::nullopt;
+  if (!edge || edge->support < kMajority) return std::nullopt;
   return FittedEllipse{edge->ellipse, edge->uncertainty};
 }
 
@@ -82,11 +80,8 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                              : std::numeric_limits<double>::infinity();
   std::optional<FittedEllipse> exact;
   if (refinement == Refinement::kPhotometric && !view.lens.is_distorted()) {
-    exact = refined_photometrically(luma,
-                                    *outer,
-                                    polarity_of(circle.is_bright_outside),
-                                    ring_px - kReachOfNextEdgePx,
-                                    min_contrast);
+    exact = refined_photometrically(
+        luma, *outer, polarity_of(circle.is_bright_outside), ring_px, min_contrast);
   }
   if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast);
   if (!exact) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/ellipse.hpp"
 
@@ -11,26 +12,18 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kRadii = 240;             // of the radial profile,
-constexpr double kFirstRadius = 0.1;    // from here [radii]
-constexpr double kRadiusStep = 0.005;   // in steps of this [radii]
-constexpr int kAngles = 128;            // per radius
-constexpr int kMinVisible = 12;         // of these
-constexpr int kOuterSlack = 14;         // search range to each side of radius 1 [steps]
-constexpr double kMinContrast = 6.0;    // of the outer circle [grey levels]
-constexpr double kOuterContrast = 0.6;  // min share of the strongest step near radius 1
-constexpr double kInnerContrast = 0.5;  // min share of the outer circle's contrast
-constexpr int kApart = 5;               // min distance between circles [steps]
-constexpr std::size_t kMaxCircles = 5;
-constexpr double kMinAgreement = 0.7;  // min share of angles that show a circle's step
-constexpr double kUnknown = -1.0;      // level outside the image
+constexpr double kRadiusStep = 0.005;  // of the radial profile [radii]
+constexpr int kRadii = 250;            // of the profile
+constexpr int kAngles = 128;           // per radius
+constexpr int kApart = 5;              // min distance between circles [steps]
+constexpr int kOuterSlack = 15;        // search range to each side of radius 1 [steps]
 
 double radius_at(int i) {
-  return kFirstRadius + i * kRadiusStep;
+  return i * kRadiusStep;
 }
 
 int index_of(double radius) {
-  return static_cast<int>(std::lround((radius - kFirstRadius) / kRadiusStep));
+  return static_cast<int>(std::lround(radius / kRadiusStep));
 }
 
 // Median brightness along concentric circles.
@@ -38,9 +31,6 @@ class RadialProfile {
  public:
   // Both are borrowed.
   RadialProfile(const ImageView& luma, const PadView& view) : luma_(luma), view_(view) {
-    const double size_px =
-        std::max(1.0, std::floor(view.ideal_from_pad.topLeftCorner<2, 2>().norm()));
-    half_width_ = static_cast<int>(std::clamp(2.5 / (kRadiusStep * size_px), 2.0, 8.0));
     for (std::size_t k = 0; k < kAngles; ++k) {
       const double angle = kTwoPi * static_cast<double>(k) / kAngles;
       directions_[k] = {std::cos(angle), std::sin(angle)};
@@ -48,18 +38,17 @@ class RadialProfile {
     for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
   }
 
-  // Median brightness outside minus inside; 0 if too few angles are visible.
+  // Median brightness outside minus inside; 0 if it is unknown.
   [[nodiscard]] double strength(int i) const { return std::abs(step(i)); }
   [[nodiscard]] double step(int i) const {
     double sum = 0.0;
-    for (int j = 1; j <= half_width_; ++j) {
+    for (int j = 1; j <= kApart; ++j) {
       if (i - j < 0 || i + j >= kRadii) return 0.0;
       const double outside = *(medians_.begin() + i + j);
       const double inside = *(medians_.begin() + i - j);
-      if (outside == kUnknown || inside == kUnknown) return 0.0;
       sum += outside - inside;
     }
-    return sum / half_width_;
+    return std::isnan(sum) ? 0.0 : sum / kApart;
   }
 
   // Share of the visible angles with a step of the same sign and at least half the size.
@@ -68,44 +57,36 @@ class RadialProfile {
     int visible = 0;
     int agreed = 0;
     for (int k = 0; k < kAngles; ++k) {
-      const float outside = level(std::min(i + half_width_, kRadii - 1), k);
-      const float inside = level(std::max(i - half_width_, 0), k);
-      if (outside < 0.0F || inside < 0.0F) continue;
+      const auto outside = level(std::min(i + kApart, kRadii - 1), k);
+      const auto inside = level(std::max(i - kApart, 0), k);
+      if (!outside || !inside) continue;
       ++visible;
-      agreed += (outside - inside) * whole > 0.5 * whole * whole ? 1 : 0;
+      agreed += (*outside - *inside) * whole > kMajority * whole * whole ? 1 : 0;
     }
     return visible > 0 ? static_cast<double>(agreed) / visible : 0.0;
   }
 
  private:
-  [[nodiscard]] float level(int i, int k) const {
-    const double radius = radius_at(i);
-    const auto projected = view_.at(radius * *(directions_.begin() + k));
-    if (!projected) return static_cast<float>(kUnknown);
-    const double x = projected->point.x();
-    const double y = projected->point.y();
-    if (!(x >= 0.0 && y >= 0.0 && x < luma_.width - 1 && y < luma_.height - 1)) {
-      return static_cast<float>(kUnknown);
-    }
-    return luma_.at(static_cast<float>(x), static_cast<float>(y));
+  [[nodiscard]] std::optional<float> level(int i, int k) const {
+    return view_.level_at(luma_, radius_at(i) * *(directions_.begin() + k));
   }
 
+  // NaN if no angle is visible.
   [[nodiscard]] double median(int i) const {
     std::array<float, kAngles> levels;
     auto end = levels.begin();
     for (int k = 0; k < kAngles; ++k) {
-      const float here = level(i, k);
-      if (here >= 0.0F) *end++ = here;
+      const auto here = level(i, k);
+      if (here) *end++ = *here;
     }
-    const auto count = end - levels.begin();
-    if (count < kMinVisible) return kUnknown;
-    std::nth_element(levels.begin(), levels.begin() + count / 2, end);
-    return levels[static_cast<std::size_t>(count / 2)];
+    if (end == levels.begin()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = levels.begin() + (end - levels.begin()) / 2;
+    std::nth_element(levels.begin(), middle, end);
+    return *middle;
   }
 
   const ImageView& luma_;
   const PadView& view_;
-  int half_width_ = 2;
   std::array<Eigen::Vector2d, kAngles> directions_;
   std::array<double, kRadii> medians_;
 };
@@ -128,7 +109,7 @@ std::optional<int> outer_circle(const RadialProfile& profile) {
   }
   if (strongest < kMinContrast) return std::nullopt;
   const auto is_outer = [&](int i) {
-    return profile.strength(i) >= kOuterContrast * strongest && is_peak(profile, i);
+    return profile.strength(i) >= kMajority * strongest && is_peak(profile, i);
   };
   for (int off = 0; off <= kOuterSlack; ++off) {
     if (is_outer(one + off)) return one + off;
@@ -158,8 +139,8 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
   }
   const int last = index_of(model.circles.back().radius * radius_at(outer));
   for (int i = last - kApart; i >= kApart && model.circles.size() < kMaxCircles; --i) {
-    const bool is_strong = profile.strength(i) >= kInnerContrast * profile.strength(outer);
-    if (is_strong && is_peak(profile, i) && profile.agreement(i) >= kMinAgreement) add(i);
+    const bool is_strong = profile.strength(i) >= kMajority * profile.strength(outer);
+    if (is_strong && is_peak(profile, i) && profile.agreement(i) >= kMinCoverage) add(i);
   }
   return model;
 }

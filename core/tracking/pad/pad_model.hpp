@@ -12,6 +12,17 @@ namespace ellipse {
 /// Min contrast of a pad edge, as a share of the expected contrast.
 inline constexpr double kMinContrastShare = 0.25;
 
+/// Min contrast of any pad edge [grey levels].
+inline constexpr double kMinContrast = 4.0;
+
+/// Min share of a pad's edges, or of the angles of a circle, that match.
+inline constexpr double kMinCoverage = 0.65;
+
+/// Most of an outline, of its samples, or of frames: at least this share.
+inline constexpr double kMajority = 0.5;
+
+inline constexpr std::size_t kMaxCircles = 5;  ///< Of a pad.
+
 /// A circular edge around the pad's centre.
 struct PadCircle {
   double radius = 1.0;  ///< [radii of the outer circle]
@@ -26,8 +37,8 @@ struct PadLine {
   Eigen::Vector2d to;
   Eigen::Vector2d to_bright;  ///< Unit normal.
   double contrast = 0.0;      ///< [grey levels]
-  int visible = 0;            ///< Frames with at least two visible samples.
-  int matched = 0;            ///< Of these, frames with at least half of them matched.
+  int visible = 0;            ///< Visible samples in all frames.
+  int matched = 0;            ///< Of these, matched ones.
 };
 
 /// The edges by which a pad is tracked.

@@ -40,9 +40,8 @@ struct EdgeTrack {
 /// Tracks a pad by its edges: predicts its view, searches each edge along its normal, and solves
 /// for the change of the view that explains the matches best, given a motion prior.
 ///
-/// Searches near the prediction; if that fails, farther away, with several hypotheses; then in a
-/// coarse image of the surroundings. One object tracks one pad, on one thread. Deterministic.
-/// Allocates only in lock().
+/// Searches near the prediction; if that fails, as far as an unknown motion may have moved the pad.
+/// One object tracks one pad, on one thread. Deterministic. Allocates only in lock().
 class PadTracker {
  public:
   /// Learns a pad from its outer edge.
@@ -86,28 +85,17 @@ class PadTracker {
   };
 
   [[nodiscard]] HomographyFilter predicted(double frames, double looseness) const;
-  [[nodiscard]] std::optional<Attempt> search_near(const LumaWindow& window,
+  [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
                                                    const Eigen::Matrix3d& start,
                                                    const HomographyCovariance& covariance);
-  [[nodiscard]] std::optional<Attempt> search_wide(const LumaWindow& window,
-                                                   const Eigen::Matrix3d& start,
-                                                   const HomographyCovariance& covariance);
-  [[nodiscard]] static HomographyChange best_hypothesis(std::span<const EdgeSample> samples,
-                                                        const HomographyPrior& prior,
-                                                        double reach_px,
-                                                        double fit_px);
-  [[nodiscard]] std::optional<Attempt> search_coarse(const LumaWindow& window,
-                                                     const Eigen::Matrix3d& prediction,
-                                                     HomographyFilter& before);
-  [[nodiscard]] std::optional<Attempt> finish(const LumaWindow& window,
-                                              const Eigen::Matrix3d& start,
-                                              const HomographyPrior& prior,
-                                              const HomographyChange& change,
-                                              double reach_px);
+  [[nodiscard]] static bool is_good(const std::optional<Attempt>& attempt);
   [[nodiscard]] Attempt attempt_of(const Eigen::Matrix3d& view,
                                    const HomographyEstimate& estimate,
                                    const HomographyChange& last) const;
-  void accept(const Attempt& attempt, const HomographyFilter& before, double frames);
+  void accept(const Attempt& attempt,
+              const HomographyFilter& before,
+              double looseness,
+              double frames);
   void refine(const LumaWindow& window, double visible);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);

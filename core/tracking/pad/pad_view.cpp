@@ -24,6 +24,15 @@ std::optional<ProjectedPoint> PadView::at(const Vector2d& pad_point) const {
   return ProjectedPoint{shown->picture_px, shown->slope * result.slope};
 }
 
+std::optional<float> PadView::level_at(const ImageView& luma, const Vector2d& pad_point) const {
+  const auto projected = at(pad_point);
+  if (!projected) return std::nullopt;
+  const double x = projected->point.x();
+  const double y = projected->point.y();
+  if (!(x >= 0.0 && y >= 0.0 && x < luma.width - 1 && y < luma.height - 1)) return std::nullopt;
+  return luma.at(static_cast<float>(x), static_cast<float>(y));
+}
+
 double PadView::radius_px() const {
   const double ideal_px = std::sqrt(std::abs(ideal_from_pad.topLeftCorner<2, 2>().determinant()));
   if (!lens.is_distorted()) return ideal_px;

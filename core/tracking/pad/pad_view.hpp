@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
+#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -24,6 +25,10 @@ struct PadView {
 
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
   [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& pad_point) const;
+
+  /// Level of the image at a pad point; nullopt outside the image.
+  [[nodiscard]] std::optional<float> level_at(const ImageView& luma,
+                                              const Eigen::Vector2d& pad_point) const;
 
   /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;

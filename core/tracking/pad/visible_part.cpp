@@ -9,9 +9,7 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kMarginPx = 3.0;  // from the border
-constexpr double kFarPx = 1e6;     // beyond any image
-constexpr int kBorderSteps = 8;    // samples per image side to undistort the border
-constexpr int kHalvings = 6;       // bisection steps for the visible end of a line
+constexpr int kSteps = 8;          // per side of the undistorted border; bisections of a line
 
 // A rectangle of the ideal plane.
 struct IdealRect {
@@ -26,8 +24,8 @@ struct IdealRect {
 IdealRect inner_rect(const LensView& lens, double right, double bottom) {
   if (!lens.is_distorted()) return {kMarginPx, kMarginPx, right, bottom};
   IdealRect rect{-kFarPx, -kFarPx, kFarPx, kFarPx};
-  for (int i = 0; i <= kBorderSteps; ++i) {
-    const double at = static_cast<double>(i) / kBorderSteps;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double at = static_cast<double>(i) / kSteps;
     const double x = std::lerp(kMarginPx, right, at);
     const double y = std::lerp(kMarginPx, bottom, at);
     // Points without an inverse are NaN, which std::max and std::min ignore as second argument.
@@ -76,7 +74,7 @@ double VisiblePart::farthest(const Eigen::Vector2d& from,
                              double inside,
                              double end) const {
   if (inside == end || has(from + end * (to - from))) return end;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kSteps; ++i) {
     const double middle = 0.5 * (inside + end);
     (has(from + middle * (to - from)) ? inside : end) = middle;
   }

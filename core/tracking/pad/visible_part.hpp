@@ -21,7 +21,7 @@ class VisiblePart {
   }
 
   /// The visible part of a line, parameterized from 0 to 1; empty if end <= begin. With distortion
-  /// accurate to 1/64 of the line, and empty for a line outside the undistorted inner rectangle.
+  /// accurate to 1/256 of the line, and empty for a line outside the undistorted inner rectangle.
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:

@@ -53,10 +53,10 @@ double errors_over_sigma(double blur_px, double noise) {
 TEST(EdgeMeasurer, TellsItsStandardDeviation) {
   for (const double noise : {1.0, 2.0, 4.0, 8.0, 14.0}) {
     for (const double blur : {0.6, 1.0, 1.5}) {
-      EXPECT_NEAR(errors_over_sigma(blur, noise), 1.01, 0.11) << blur << ' ' << noise;
+      EXPECT_NEAR(errors_over_sigma(blur, noise), 1.025, 0.12) << blur << ' ' << noise;
     }
     // Edges so soft that noise splits one maximum into several.
-    EXPECT_NEAR(errors_over_sigma(2.5, noise), noise < 8.0 ? 1.0 : 1.2, 0.12) << noise;
+    EXPECT_NEAR(errors_over_sigma(2.5, noise), noise < 8.0 ? 1.08 : 1.28, 0.12) << noise;
   }
 }
 

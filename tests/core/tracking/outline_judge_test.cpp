@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -11,8 +10,6 @@
 
 namespace ellipse {
 namespace {
-
-constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
 // Returns the same odds for every outline.
 class CountingDetector final : public Detector {
@@ -61,15 +58,15 @@ class OutlineJudgeTest : public testing::Test {
 
 TEST_F(OutlineJudgeTest, AsksInEveryFrameUntilItIsSure) {
   detector_.answer = 0.0;
-  judge_.start(0.0, kNever_s);
+  judge_.start(0.0, false);
   EXPECT_EQ(calls_in_a_second(), 30);
   detector_.answer = 5.0;
-  judge_.start(5.0, kNever_s);
+  judge_.start(5.0, false);
   EXPECT_LT(calls_in_a_second(), 8);
 }
 
 TEST_F(OutlineJudgeTest, AsksAtOnceWhereLessIsMatched) {
-  judge_.start(5.0, kNever_s);
+  judge_.start(5.0, false);
   judge_.judge(detector_, window_, target_, {});
   judge_.advance(1.0);
   judge_.judge(detector_, window_, target_, {});
@@ -82,16 +79,16 @@ TEST_F(OutlineJudgeTest, AsksAtOnceWhereLessIsMatched) {
 }
 
 TEST_F(OutlineJudgeTest, AShortArcOfWhatWasSeenWholeTellsNothing) {
-  judge_.start(0.0, kNever_s);
+  judge_.start(0.0, false);
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 0);
-  judge_.start(0.0, kNever_s);  // a new target, of which no more has been visible
+  judge_.start(0.0, false);  // a new target, of which no more has been visible
   EXPECT_GT(calls_in_a_second(), 0);
 }
 
 TEST_F(OutlineJudgeTest, ShowsTheOutlineWithItsSurroundingsAlone) {
-  judge_.start(0.0, kNever_s);
+  judge_.start(0.0, false);
   judge_.judge(detector_, window_, target_, {});
   // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).
   EXPECT_EQ(detector_.size.width, 84);
@@ -99,7 +96,7 @@ TEST_F(OutlineJudgeTest, ShowsTheOutlineWithItsSurroundingsAlone) {
 }
 
 TEST_F(OutlineJudgeTest, OddsFallWithTheEvidence) {
-  judge_.start(5.0, kNever_s);
+  judge_.start(5.0, false);
   detector_.answer = -5.0;
   (void)calls_in_a_second();
   EXPECT_EQ(judge_.log_odds(), -TargetOdds::kMax);

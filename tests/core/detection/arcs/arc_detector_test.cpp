@@ -54,6 +54,37 @@ TEST(ArcDetector, FindsRingsOfEitherPolarity) {
   EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
 }
 
+// The slope of the ground is no noise, although its gradient exceeds that of the noise.
+TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
+  const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
+  Scene scene = disc();
+  scene.pad.paint_level = 60.0;
+  scene.ground.level = 80.0;
+  scene.sensor.blur_px = 4.0;
+  scene.sensor.read_noise = 1.0;
+  Picture picture = rendered(scene, truth);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      picture.at(x, y) = static_cast<std::uint8_t>(picture.at(x, y) + x / 2 - y / 8);
+    }
+  }
+  EXPECT_GT(best_iou(picture, truth, detecting()), 0.95);
+}
+
+// At the full size the noise hides the edge, which is no evidence against it.
+TEST(ArcDetector, FindsADiscThatOnlyReducedPicturesShow) {
+  const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
+  Scene scene = disc();
+  scene.pad.paint_level = 90.0;
+  scene.ground.level = 125.0;
+  scene.sensor.blur_px = 1.5;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    scene.seed = seed;
+    scene.sensor.read_noise = 25.0;
+    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.9) << seed;
+  }
+}
+
 TEST(ArcDetector, JudgesAnOutlineAtAnySizeWithoutALookElsewhere) {
   for (const double radius : {9.0, 30.0, 70.0, 100.0}) {
     SCOPED_TRACE(radius);

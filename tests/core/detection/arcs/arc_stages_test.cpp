@@ -97,9 +97,25 @@ TEST(GradientMap, MeasuresTheNoise) {
     GradientMap map;
     map.compute(picture.view());
     EXPECT_NEAR(map.noise() / (26.5 * noise), 1.0, 0.15) << noise;
-    EXPECT_NEAR(map.thresholds().low, std::max(3.0 * map.noise() / kGradientGain, 1.25), 1e-9);
+    EXPECT_NEAR(map.thresholds().low, 3.0 * map.noise() / kGradientGain, 1e-9);
     EXPECT_NEAR(map.thresholds().high, 2.0 * map.thresholds().low, 1e-9);
   }
+}
+
+// Rounding turns slow shading into steps of one grey level.
+TEST(GradientMap, HasNoSeedOnAStepOfOneGreyLevel) {
+  Picture picture(64, 64, 100);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 32; x < 64; ++x) picture.at(x, y) = 101;
+  }
+  GradientMap map;
+  map.compute(picture.view());
+  for (int i = 0; i < 64 * map.stride(); ++i) EXPECT_EQ(map.maxima()[i] & maximum::kSeed, 0);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 32; x < 64; ++x) picture.at(x, y) = 104;
+  }
+  map.compute(picture.view());
+  EXPECT_NE(map.maxima()[32 * map.stride() + 32] & maximum::kSeed, 0);
 }
 
 TEST(GradientMap, TakesThresholdsThatAreGiven) {

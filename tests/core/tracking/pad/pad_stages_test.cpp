@@ -10,7 +10,6 @@
 #include <numbers>
 #include <vector>
 
-#include "core/tracking/pad/coarse_search.hpp"
 #include "core/tracking/pad/edge_search.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
 #include "core/tracking/pad/line_learner.hpp"
@@ -322,7 +321,7 @@ TEST(EdgeSearch, PlacesInsideThePictureOnly) {
   EdgeSearch search;
   for (const double dx : {-160.0, -90.0, 120.0, 200.0}) {
     const Ellipse e = translated(kPad, dx, 40.0);
-    search.sample(model, image_from_pad(e), Picture(320, 240).view(), 96);
+    search.sample(model, image_from_pad(e), Picture(320, 240).view());
     EXPECT_FALSE(search.samples().empty()) << dx;
     for (const EdgeSample& sample : search.samples()) {
       EXPECT_GE(sample.view.point.minCoeff(), 2.99);
@@ -336,8 +335,8 @@ TEST(EdgeSearch, PlacesInsideThePictureOnly) {
 TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
   const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
   EdgeSearch search;
-  search.sample(model, image_from_pad(kPad), Picture(320, 240).view(), 90);
-  EXPECT_NEAR(static_cast<double>(search.samples().size()), 90.0, 14.0);
+  search.sample(model, image_from_pad(kPad), Picture(320, 240).view());
+  EXPECT_NEAR(static_cast<double>(search.samples().size()), EdgeSearch::kSamples, 14.0);
   std::vector<double> outer_angles;
   int inner = 0;
   int on_lines = 0;
@@ -360,13 +359,16 @@ TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
   }
 }
 
-TEST(EdgeSearch, HoldsAsManyPlacesAsItTells) {
-  EdgeSearch search;
-  const Ellipse large{1000.0, 1000.0, 900.0, 850.0, 0.2};
+TEST(EdgeSearch, PlacesAsManyAsItTells) {
   PadModel model = ring_model();
   for (const double radius : {0.6, 0.4, 0.2}) model.circles.push_back({radius, true, 100.0});
-  search.sample(model, image_from_pad(large), Picture(2000, 2000).view(), 100'000);
-  EXPECT_EQ(search.samples().size(), static_cast<std::size_t>(EdgeSearch::kMaxSamples));
+  const Picture picture(2000, 2000);
+  for (const double radius_px : {40.0, 900.0, 5000.0}) {
+    EdgeSearch search;
+    search.sample(
+        model, image_from_pad({1000.0, 900.0, radius_px, 0.9 * radius_px, 0.2}), picture.view());
+    EXPECT_NEAR(static_cast<double>(search.samples().size()), EdgeSearch::kSamples, 6.0);
+  }
 }
 
 TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
@@ -376,7 +378,7 @@ TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
     for (const Vector2d& shift : {Vector2d(2.0, 0.0), Vector2d(-2.0, 0.0), Vector2d(1.4, -1.4)}) {
       const Ellipse expected = translated(kPad, shift.x(), shift.y());
       EdgeSearch search;
-      search.sample(model, image_from_pad(expected), picture.view(), 64);
+      search.sample(model, image_from_pad(expected), picture.view());
       search.search(picture.view(), 1.0, 5.0);
       for (const EdgeSample& sample : search.samples()) {
         ASSERT_TRUE(sample.is_visible);
@@ -395,7 +397,7 @@ TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
   PadModel model = disc_model();
   EdgeSearch search;
   const auto matched_samples = [&] {
-    search.sample(model, image_from_pad(kPad), picture.view(), 64);
+    search.sample(model, image_from_pad(kPad), picture.view());
     search.search(picture.view(), 1.0, 6.0);
     return std::count_if(search.samples().begin(),
                          search.samples().end(),
@@ -413,7 +415,7 @@ TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
   faint.pad.paint_level = faint.ground.level - 20.0;
   const Picture picture = rendered(faint, kPad);
   EdgeSearch search;
-  search.sample(disc_model(), image_from_pad(kPad), picture.view(), 64);
+  search.sample(disc_model(), image_from_pad(kPad), picture.view());
   search.search(picture.view(), 1.0, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 0);
   search.search(picture.view(), 0.2, 6.0);
@@ -424,7 +426,7 @@ TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
   const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
   const Ellipse expected = translated(kPad, 7.0, 0.0);
   EdgeSearch search;
-  search.sample(disc_model(), image_from_pad(expected), picture.view(), 64);
+  search.sample(disc_model(), image_from_pad(expected), picture.view());
   const auto matched_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
     search.search(picture.view(), 1.0, 3.0, &covariance, max_px);
     int matched = 0;
@@ -458,7 +460,7 @@ TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
   model.circles.clear();
   model.lines.push_back({{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, 10.0});
   EdgeSearch search;
-  search.sample(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view(), 5);
+  search.sample(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view());
   search.search(picture.view(), 1.0, 40.0);
   ASSERT_FALSE(search.samples().empty());
   for (const EdgeSample& sample : search.samples()) {
@@ -482,7 +484,7 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
   for (int i = 0; i < 200; ++i) {
     const double y = 11'970.0 + 0.1 * i;
     EdgeSearch search;
-    search.sample(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view(), 9);
+    search.sample(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view());
     search.search(picture.view(), 1.0, 20.0 + 0.2 * i);
     for (const EdgeSample& sample : search.samples()) {
       if (sample.count == 0) continue;
@@ -497,7 +499,7 @@ TEST(EdgeSearch, FindsNoPlaceInEmptyAndTinyPictures) {
   EdgeSearch search;
   for (const int size : {0, 1, 2, 6}) {
     const Picture picture(size, size, 90);
-    search.sample(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view(), 48);
+    search.sample(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view());
     search.search(picture.view(), 1.0, 4.0);
     EXPECT_TRUE(search.samples().empty()) << size;
     EXPECT_EQ(search.visible_fraction(), 0.0) << size;
@@ -516,7 +518,7 @@ HomographyPrior weak_prior() {
 struct SearchedRing {
   explicit SearchedRing(const HomographyChange& off, double reach_px = 10.0)
       : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
-    search.sample(ring_model(), start, picture.view(), 96);
+    search.sample(ring_model(), start, picture.view());
     search.search(picture.view(), 1.0, reach_px);
   }
   [[nodiscard]] double error_px(const HomographyChange& change) const {
@@ -531,8 +533,8 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
   for (const int i : {0, 1, 2, 3, 4}) {
     for (const double size : {-0.06, 0.06}) {
       const SearchedRing searched(size * HomographyChange::Unit(i));
-      const auto estimate = solve_homography(
-          searched.search.samples(), weak_prior(), HomographyChange::Zero(), 12.0, 0.6, 5);
+      const auto estimate =
+          solve_homography(searched.search.samples(), weak_prior(), 12.0, 12.0, 0.6);
       ASSERT_TRUE(estimate);
       EXPECT_GT(searched.error_px(HomographyChange::Zero()), 1.0) << i;
       // The rows are linearised: a few hundredths of the change remain.
@@ -545,8 +547,7 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
 TEST(SolvePose, TellsHowWellItKnows) {
   const SearchedRing searched(HomographyChange::Zero());
   const auto at = [&](double sigma_px) {
-    return solve_homography(
-               searched.search.samples(), weak_prior(), HomographyChange::Zero(), 6.0, sigma_px, 2)
+    return solve_homography(searched.search.samples(), weak_prior(), 6.0, 6.0, sigma_px)
         ->information;
   };
   const HomographyCovariance fine = at(0.5) - weak_prior().information;
@@ -561,8 +562,7 @@ TEST(SolvePose, RespectsAStrongPrior) {
   HomographyPrior prior = weak_prior();
   prior.information(0, 0) = 1e12;
   prior.mean(0) = 0.01;
-  const auto estimate =
-      solve_homography(searched.search.samples(), prior, HomographyChange::Zero(), 12.0, 0.6, 4);
+  const auto estimate = solve_homography(searched.search.samples(), prior, 12.0, 12.0, 0.6);
   ASSERT_TRUE(estimate);
   EXPECT_NEAR(estimate->change(0), 0.01, 1e-4);
   EXPECT_NEAR(estimate->change(1), 0.04, 0.005);
@@ -570,19 +570,17 @@ TEST(SolvePose, RespectsAStrongPrior) {
 
 TEST(SolvePose, LeavesOutWhatIsOutOfReach) {
   const SearchedRing searched(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
-  const auto estimate = solve_homography(
-      searched.search.samples(), weak_prior(), HomographyChange::Zero(), 2.0, 0.6, 3);
+  const auto estimate = solve_homography(searched.search.samples(), weak_prior(), 2.0, 2.0, 0.6);
   ASSERT_TRUE(estimate);
   EXPECT_LT(estimate->change.norm(), 1e-6);
 }
 
 TEST(SolvePose, FailsWhereNothingIsKnown) {
-  EXPECT_FALSE(solve_homography({}, {}, HomographyChange::Zero(), 5.0, 0.6, 2));
+  EXPECT_FALSE(solve_homography({}, {}, 5.0, 5.0, 0.6));
   const SearchedRing searched(HomographyChange::Zero());
   HomographyPrior broken = weak_prior();
   broken.mean(3) = std::nan("");
-  EXPECT_FALSE(
-      solve_homography(searched.search.samples(), broken, HomographyChange::Zero(), 5.0, 0.6, 2));
+  EXPECT_FALSE(solve_homography(searched.search.samples(), broken, 5.0, 5.0, 0.6));
 }
 
 TEST(NearestCandidate, IsNextToThePrediction) {
@@ -600,20 +598,16 @@ TEST(Support, FallsWithTheErrorOfTheView) {
   const SearchedRing searched(HomographyChange::Zero());
   const auto samples = searched.search.samples();
   double coverage = 2.0;
-  double weight = static_cast<double>(samples.size()) + 1.0;
   for (const double off : {0.0, 0.03, 0.06, 0.2}) {
     const HomographyChange change = off * HomographyChange::Unit(0);
     const HomographySupport support = support_of(samples, change, 1.5, 2);
     EXPECT_EQ(support.visible, static_cast<int>(samples.size()));
     EXPECT_LT(support.coverage, coverage) << off;
-    EXPECT_LT(explained(samples, change, 5.0), weight) << off;
     coverage = support.coverage;
-    weight = explained(samples, change, 5.0);
     if (off > 0.0) continue;
     EXPECT_EQ(support.coverage, 1.0);
     EXPECT_EQ(support.weakest, 1.0);
     EXPECT_NEAR(support.gain, 0.75, 0.15);
-    EXPECT_GT(weight, 0.9 * static_cast<double>(samples.size()));
   }
   EXPECT_LT(coverage, 0.3);
 }
@@ -623,10 +617,10 @@ TEST(Support, TellsTheCircleThatIsMissing) {
   PadModel model = ring_model();
   model.circles.push_back({0.4, true, 145.0});
   EdgeSearch search;
-  search.sample(model, image_from_pad(kPad), picture.view(), 96);
+  search.sample(model, image_from_pad(kPad), picture.view());
   search.search(picture.view(), 1.0, 4.0);
   const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
-  EXPECT_EQ(support.weakest, 0.0);
+  EXPECT_LT(support.weakest, 0.1);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
 }
 
@@ -637,7 +631,7 @@ TEST(Support, TellsTheLight) {
     scene.sensor.gain = gain;
     const Picture picture = rendered(scene, kPad);
     EdgeSearch search;
-    search.sample(model, image_from_pad(kPad), picture.view(), 64);
+    search.sample(model, image_from_pad(kPad), picture.view());
     search.search(picture.view(), gain, 4.0);
     const HomographySupport support =
         support_of(search.samples(), HomographyChange::Zero(), 1.5, 2);
@@ -645,55 +639,6 @@ TEST(Support, TellsTheLight) {
     EXPECT_NEAR(support.gain / gain, 1.0, 0.2) << gain;
   }
   EXPECT_EQ(support_of({}, HomographyChange::Zero(), 1.5, 1).coverage, 0.0);
-}
-
-// -- coarse_search
-
-TEST(CoarseSearch, FindsAPadThatIsARadiusAwayAndOfAnotherSize) {
-  const Ellipse e{320.0, 180.0, 60.0, 45.0, 0.3};
-  for (const Pattern pattern : {Pattern::kRing, Pattern::kDisc}) {
-    Scene scene = scene_of(pattern);
-    scene.sensor.read_noise = 5.0;
-    Vector2d sum = Vector2d::Zero();
-    for (const double angle : {0.2, 1.7, 2.9, 4.3, 5.6}) {
-      for (const double size : {0.9, 1.0, 1.1}) {
-        const double away = 60.0;
-        const Ellipse truth =
-            resized(translated(e, away * std::cos(angle), 0.75 * away * std::sin(angle)), size);
-        const Picture picture = rendered(scene, truth, 640, 360);
-        const auto view = coarse_search(picture.view(),
-                                        pattern == Pattern::kRing ? ring_model() : disc_model(),
-                                        image_from_pad(e));
-        ASSERT_TRUE(view) << angle << ' ' << size;
-        const auto found = project_circle(*view, 1.0);
-        ASSERT_TRUE(found);
-        EXPECT_LT((found->center() - truth.center()).norm(), 0.1 * truth.semi_major)
-            << angle << ' ' << size;
-        sum += found->center() - truth.center();
-        EXPECT_NEAR(found->semi_major / truth.semi_major, 1.0, 0.12) << angle << ' ' << size;
-      }
-    }
-    // The error is up to half a cell, without bias.
-    EXPECT_LT((sum / 15.0).norm(), 0.03 * e.semi_major);
-  }
-}
-
-TEST(CoarseSearch, FindsAPadThatIsHalfOutside) {
-  const Ellipse truth{20.0, 120.0, 60.0, 45.0, 0.3};
-  const Picture picture = rendered(scene_of(Pattern::kRing), truth);
-  const auto view =
-      coarse_search(picture.view(), ring_model(), image_from_pad(translated(truth, 25.0, 15.0)));
-  ASSERT_TRUE(view);
-  EXPECT_LT((view->col(2).head<2>() / (*view)(2, 2) - truth.center()).norm(), 9.0);
-}
-
-TEST(CoarseSearch, FindsNothingWhereThereIsNothing) {
-  const Matrix3d view = image_from_pad(kPad);
-  EXPECT_FALSE(coarse_search(flat_picture().view(), ring_model(), view));
-  EXPECT_FALSE(coarse_search(ImageView{}, ring_model(), view));
-  EXPECT_FALSE(coarse_search(Picture(1, 1, 90).view(), ring_model(), view));
-  const Picture bright = rendered(scene_of(Pattern::kDisc, true), kPad);
-  EXPECT_FALSE(coarse_search(bright.view(), disc_model(), view));
 }
 
 }  // namespace
