@@ -33,10 +33,10 @@ struct Source {
 
 constexpr Source kSources[] = {
     {"airlab-mbzirc", {630, 1}, {630, 1}},
-    {"airlab-deformed", {173, 0}, {174, 0}},
-    {"airlab-gascola", {454, 0}, {453, 1}},
-    {"pupil-infrared", {1099, 12}, {1031, 2}},
-    {"pupil-blinks", {261, 4}, {258, 0}},
+    {"airlab-deformed", {172, 1}, {173, 1}},
+    {"airlab-gascola", {454, 0}, {454, 0}},
+    {"pupil-infrared", {1033, 19}, {1021, 2}},
+    {"pupil-blinks", {256, 4}, {256, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
     {"octagon-negative", {140, 1}, {139, 2}},
