@@ -2,6 +2,7 @@
 #include "core/tracking/frame_clock.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ellipse {
 namespace {
@@ -16,7 +17,8 @@ double FrameClock::advance_to(std::int64_t pts_ns) {
     return interval_;
   }
   const auto pts = static_cast<double>(pts_ns);
-  const double elapsed = (pts - now_ns_) / (1e9 * kFrame_s);
+  // In whole microseconds, so that sources that round time stamps differently give the same result.
+  const double elapsed = std::round((pts - now_ns_) * 1e-3) / (1e6 * kFrame_s);
   now_ns_ = pts;
   interval_ = elapsed > 0.0 ? std::min(elapsed, kLongestGap) : 1.0;
   return interval_;

@@ -36,7 +36,7 @@ constexpr Source kSources[] = {
     {"airlab-deformed", {172, 1}, {173, 1}},
     {"airlab-gascola", {454, 0}, {454, 0}},
     {"pupil-infrared", {1033, 19}, {1021, 2}},
-    {"pupil-blinks", {256, 4}, {256, 0}},
+    {"pupil-blinks", {255, 4}, {256, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
     {"octagon-negative", {140, 1}, {139, 2}},
