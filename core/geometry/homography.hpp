@@ -47,9 +47,9 @@ struct RingUncertainty {
   RingMatrix information = RingMatrix::Zero();
 };
 
-/// Covariance of an ellipse's parameters: x and y of its centre, semi-major and semi-minor axis [px],
-/// angle [rad], in this order; to first order. The angle's variance is at most pi^2 / 12, that of an
-/// unknown angle, as for a circle.
+/// Covariance of an ellipse's parameters: x and y of its centre, semi-major and semi-minor axis
+/// [px], angle [rad], in this order; to first order. The angle's variance is at most pi^2 / 12,
+/// that of an unknown angle, as for a circle.
 /// @param edge  Uncertainty of this ellipse as the image of an outer circle.
 [[nodiscard]] RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge);
 

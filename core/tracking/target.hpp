@@ -28,14 +28,14 @@ struct Target {
   /// Probability of being an ellipse: with edge tracking, from all frames so far; else from the
   /// detector in this frame, 1 if it gives none.
   double probability = 1.0;
-  double visible_fraction = 0.0;                    ///< Share of the perimeter inside the frame.
-  int scale = 1;                                    ///< Frame scale of the detection.
-  Rect search_region;                               ///< Region that was searched [px].
-  std::int64_t pts_ns = 0;                          ///< Time stamp of the frame.
-  RingUncertainty uncertainty = {};                 ///< Of the ellipse.
+  double visible_fraction = 0.0;     ///< Share of the perimeter inside the frame.
+  int scale = 1;                     ///< Frame scale of the detection.
+  Rect search_region;                ///< Region that was searched [px].
+  std::int64_t pts_ns = 0;           ///< Time stamp of the frame.
+  RingUncertainty uncertainty = {};  ///< Of the ellipse.
   /// Of centre x and y, semi-major and semi-minor axis [px], angle [rad]: parameter_covariance().
   RingMatrix covariance = RingMatrix::Zero();
-  std::optional<TargetPose> pose = {};              ///< Only if a camera is known.
+  std::optional<TargetPose> pose = {};  ///< Only if a camera is known.
 };
 
 }  // namespace ellipse
