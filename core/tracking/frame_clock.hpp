@@ -15,13 +15,14 @@ inline constexpr double kMaxAbsence_s = 0.4;
 class FrameClock {
  public:
   /// @param pts_ns  Time stamp of a frame; negative if it has none.
-  /// @return Time since the previous frame [1/30 s], at most 30; 1 if unknown: at the first frame,
-  ///         in a stream without time stamps, and where time stamps do not increase.
+  /// @return Time since the previous frame [1/30 s], at most 30, a whole number of microseconds; 1
+  ///         frame if unknown: at the first frame, in a stream without time stamps, and where time
+  ///         stamps do not increase.
   double advance_to(std::int64_t pts_ns);
 
  private:
   double now_ns_ = std::numeric_limits<double>::quiet_NaN();
-  double interval_ = 1.0;
+  double interval_ns_ = 1e9 * kFrame_s;
 };
 
 }  // namespace ellipse

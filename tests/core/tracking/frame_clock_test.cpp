@@ -12,38 +12,49 @@ using ellipse::FrameClock;
 
 constexpr std::int64_t kNone = -1;
 constexpr std::int64_t kMs = 1'000'000;
+constexpr double kMicrosecond = 3.1e-5;  // [1/30 s], the clock's resolution
 
 TEST(FrameClock, CountsInThirtiethsOfASecond) {
   FrameClock clock;
-  EXPECT_EQ(clock.advance_to(500 * kMs), 1.0) << "the first frame comes after none";
-  EXPECT_DOUBLE_EQ(clock.advance_to(600 * kMs), 3.0);
-  EXPECT_DOUBLE_EQ(clock.advance_to(620 * kMs), 0.6);
+  EXPECT_NEAR(clock.advance_to(500 * kMs), 1.0, kMicrosecond) << "the first frame comes after none";
+  EXPECT_NEAR(clock.advance_to(600 * kMs), 3.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(620 * kMs), 0.6, kMicrosecond);
 }
 
 TEST(FrameClock, TakesAFrameWithoutATimeStampForTheNextOfAnEvenStream) {
   FrameClock clock;
   (void)clock.advance_to(0);
-  EXPECT_DOUBLE_EQ(clock.advance_to(100 * kMs), 3.0);
-  EXPECT_DOUBLE_EQ(clock.advance_to(kNone), 3.0);
-  EXPECT_DOUBLE_EQ(clock.advance_to(kNone), 3.0);
-  EXPECT_DOUBLE_EQ(clock.advance_to(400 * kMs), 3.0);
+  EXPECT_NEAR(clock.advance_to(100 * kMs), 3.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(kNone), 3.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(kNone), 3.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(400 * kMs), 3.0, kMicrosecond);
 }
 
 TEST(FrameClock, TakesAStreamWithoutTimeStampsForAnEvenOne) {
   FrameClock clock;
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(clock.advance_to(kNone), 1.0);
-  EXPECT_EQ(clock.advance_to(700 * kMs), 1.0);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(clock.advance_to(kNone), 1.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(700 * kMs), 1.0, kMicrosecond);
 }
 
 TEST(FrameClock, KnowsNothingAcrossJumps) {
   FrameClock clock;
   (void)clock.advance_to(900 * kMs);
-  EXPECT_EQ(clock.advance_to(100 * kMs), 1.0) << "back";
-  EXPECT_EQ(clock.advance_to(100 * kMs), 1.0) << "the same again";
-  EXPECT_EQ(clock.advance_to(60'000 * kMs), 30.0) << "a minute";
-  EXPECT_EQ(clock.advance_to(std::numeric_limits<std::int64_t>::max()), 30.0);
-  EXPECT_EQ(clock.advance_to(kNone), 30.0);
-  EXPECT_EQ(clock.advance_to(0), 1.0);
+  EXPECT_NEAR(clock.advance_to(100 * kMs), 1.0, kMicrosecond) << "back";
+  EXPECT_NEAR(clock.advance_to(100 * kMs), 1.0, kMicrosecond) << "the same again";
+  EXPECT_NEAR(clock.advance_to(60'000 * kMs), 30.0, kMicrosecond) << "a minute";
+  EXPECT_NEAR(clock.advance_to(std::numeric_limits<std::int64_t>::max()), 30.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(kNone), 30.0, kMicrosecond);
+  EXPECT_NEAR(clock.advance_to(0), 1.0, kMicrosecond);
+}
+
+// A rate of 30/1 gives intervals of 33,333,333 and 33,333,334 ns.
+TEST(FrameClock, MeasuresTheSameWithAndWithoutATimeStamp) {
+  FrameClock whole;
+  FrameClock partial;
+  for (std::int64_t i = 0; i < 100; ++i) {
+    const std::int64_t pts = i * 1000 * kMs / 30;
+    EXPECT_EQ(partial.advance_to(i % 7 == 3 ? kNone : pts), whole.advance_to(pts)) << i;
+  }
 }
 
 }  // namespace
