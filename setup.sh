@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what gst-ellipse is built, tested and run with. Debian 12 and its relatives; elsewhere it
-# prints the list and stops. Touches no network when everything is there.
-#   ./setup.sh                   all of it
-#   ./setup.sh --without-tests   only what building and running takes
-#   ./setup.sh --packaging       that, and what Debian packages are built with
+# Installs the packages that gst-ellipse needs, on Debian 12 and later and on derived distributions.
+# On other systems it prints the list and stops. Does not use the network if nothing is missing.
+#   ./setup.sh                   all packages
+#   ./setup.sh --without-tests   those needed to build and run
+#   ./setup.sh --packaging       the same, and those needed to build Debian packages
 set -euo pipefail
 
 packages=(
   # build
   g++ meson ninja-build pkg-config
   help2man  # the programs' manual pages
-  dpkg-dev  # tells meson where Debian keeps libraries
+  dpkg-dev  # gives meson Debian's library folder
   libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
   libgstreamer-plugins-bad1.0-dev  # GStreamer's analytics metadata, from 1.24 on
   libopencv-dev libeigen3-dev
@@ -20,26 +20,26 @@ packages=(
   libcli11-dev libjson-glib-dev libopencv-contrib-dev gnuplot-nox
   libapriltag-dev  # a peer of ellipse-landing; optional
   python3-gi gir1.2-gstreamer-1.0
-  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live: its page, its RTSP; and the cook-book's
-  # to run pipelines with cameras and files
+  libsoup-3.0-dev libgstrtspserver-1.0-dev gstreamer1.0-plugins-ugly  # ellipse-live and the cookbook
+  # pipelines with cameras and files
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-libav
 )
 tests=(
   libgtest-dev libbenchmark-dev
-  # what the metadata is sent through, and what carries the JSON lines
+  # elements that pass the metadata on, and transports of the JSON lines
   gstreamer1.0-plugins-bad gstreamer1.0-x
-  mosquitto mosquitto-clients  # where services are started, a broker on the loopback from here on
+  mosquitto mosquitto-clients  # installing it may start a broker on the loopback interface
   locales  # numbers with a comma
   valgrind gcovr clang clang-tidy codespell
-  abigail-tools  # compares libgstellipse-1.0 with its earlier version
+  abigail-tools  # compares libgstellipse-1.0 with an earlier version
   python3-matplotlib  # 04_live_plot.py: 83 MB to download, 500 MB on disk
   gi-docgen
-  python3-yaml  # reads what 06_ros_yaml.py writes
+  python3-yaml  # reads the output of 06_ros_yaml.py
   opencv-doc  # pictures: 96 MB to download, 281 MB on disk
   chromium  # the page of ellipse-live: 81 MB to download, 290 MB on disk
 )
-# For examples/mavlink and the page's tests. Where Node came from elsewhere it has its own npm, and
-# excludes Debian's.
+# For examples/mavlink and the tests of the page. A Node from another source has its own npm and
+# conflicts with Debian's.
 command -v npm > /dev/null || tests+=(nodejs npm)
 
 case "${1:-}" in
@@ -53,7 +53,7 @@ case "${1:-}" in
 esac
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
-  echo "setup.sh: this is no Debian system. Install what corresponds to:" >&2
+  echo "setup.sh: this is not a Debian system. Install the equivalents of:" >&2
   printf '  %s\n' "${packages[@]}" >&2
   exit 1
 fi

@@ -5,7 +5,7 @@
   ./03_probe.py                            a rendered landing
   ./03_probe.py "v4l2src ! videoconvert"   a camera, or any source in gst-launch-1.0 syntax
 
-To use an uninstalled build, run it in `meson devenv -C build`.
+To use an uninstalled build, run it in `meson devenv -C build -w .`.
 """
 import signal
 import sys

@@ -6,7 +6,7 @@
   ./04_live_plot.py "v4l2src ! videoconvert"   a camera, or any source in gst-launch-1.0 syntax
   ./04_live_plot.py --save centre.png          no window; runs at full speed, saves the plot
 
-To use an uninstalled build, run it in `meson devenv -C build`.
+To use an uninstalled build, run it in `meson devenv -C build -w .`.
 """
 import argparse
 import math

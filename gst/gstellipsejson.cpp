@@ -4,7 +4,7 @@
  * SECTION:element-ellipsejson
  * @title: ellipsejson
  *
- * Writes the ellipses on video buffers as text: one JSON object on one line per frame, also if
+ * Writes the ellipses on video buffers as text: one JSON object on one line per frame, even if
  * nothing was found. Works with any sink: filesink, fdsink, udpsink, tcpserversink.
  *
  * |[

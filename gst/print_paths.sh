@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs at the end of `meson install`. Prints what has to be set for programs to find what was
-# installed; nothing where all of it lies in folders that are searched anyway.
+# Runs at the end of `meson install`. Prints the variables that programs need to find the installed
+# files; prints nothing if all folders are searched by default.
 #   print_paths.sh LIBRARIES [VARIABLE INSTALLED SEARCHED]...
-# LIBRARIES and INSTALLED are folders, SEARCHED is a list with colons. The folders are those of the
-# prefix, also where DESTDIR puts the files elsewhere for now.
+# LIBRARIES and INSTALLED are folders below the prefix, even if DESTDIR moves the files. SEARCHED is a
+# list separated by colons.
 
 contains() {
   case ":$1:" in *":$2:"*) true ;; *) false ;; esac
@@ -20,7 +20,7 @@ add_line() {
   lines="$lines  $1
 "
 }
-# add_variable NAME FOLDER: where the variable does not have the folder already.
+# add_variable NAME FOLDER: unless the variable contains the folder already.
 add_variable() {
   eval "current=\${$1:-}"
   contains "$current" "$2" || add_line "export $1=$2\${$1:+:\$$1}"
@@ -32,7 +32,7 @@ if ! contains "$(linker_folders)" "$libraries"; then
   add_variable LD_LIBRARY_PATH "$libraries"
 else
   case "$libraries" in
-    /lib* | /usr/lib*) ;;  # searched even where the cache does not have them
+    /lib* | /usr/lib*) ;;  # searched even if they are not in the cache
     *) add_line "sudo ldconfig" ;;
   esac
 fi
@@ -42,8 +42,8 @@ while [ $# -ge 3 ]; do
 done
 [ -n "$lines" ] && [ -z "${MESON_INSTALL_QUIET:-}" ] || exit 0
 
-# Meson 1.0 drops what install scripts write: this goes to where meson itself writes. Not into a
-# file, in which meson would write over it.
+# Meson 1.0 discards the output of install scripts, so this writes to meson's own output; not if that
+# is a file, because meson would overwrite the text.
 out=/dev/stdout
 if [ -n "${MESON_BUILD_ROOT:-}" ] && [ -w "/proc/$PPID/fd/1" ]; then
   out=/proc/$PPID/fd/1

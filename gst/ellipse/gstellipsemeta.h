@@ -102,7 +102,7 @@ GType gst_ellipse_state_get_type(void);
  *   by rows, beginning with cx cx, cx cy. Valid if @sigma_px is not 0. Since: 0.2
  *
  * One ellipse on a video buffer; a buffer may have several. Copying the buffer keeps it. Scaling
- * transforms it, also if the scale differs in x and y.
+ * transforms it, even if the scale differs in x and y.
  *
  * The buffer owns it, in every language: read its fields while you hold the buffer, or keep the
  * result of [method@GstEllipse.EllipseMeta.to_structure].

@@ -36,7 +36,7 @@ GType gst_ellipse_tracker_state_get_type(void);
  * @processing_time: processing time of the frame, in ns
  * @tracker_state: state of the tracker. Since: 0.2
  *
- * Marks a frame as searched for a target, also if none was found. An element that keeps
+ * Marks a frame as searched for a target, even if none was found. An element that keeps
  * #GstEllipseMeta also keeps this.
  *
  * Since: 0.1

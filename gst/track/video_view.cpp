@@ -78,7 +78,7 @@ void report_unsupported_caps(GstBaseTransform* element, GstCaps* caps) {
   GstPad* sink = GST_BASE_TRANSFORM_SINK_PAD(element);
   GstPad* peer = gst_pad_get_peer(sink);
   if (peer == nullptr) return;
-  // The current caps of the peer are those of its stream, also before it has sent them.
+  // The current caps of the peer are those of its stream, even before it has sent them.
   GstCaps* begun = gst_pad_get_current_caps(peer);
   gst_object_unref(peer);
   const bool is_stream = begun != nullptr && gst_caps_is_equal(begun, caps) != FALSE;

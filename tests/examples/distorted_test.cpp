@@ -97,7 +97,7 @@ TEST(DistortedFrame, LeadsThereAndBack) {
       const auto shown = frame.to_picture(ideal);
       ASSERT_TRUE(shown) << lens;
       EXPECT_GT(max_difference_px(*shown, ideal), 0.5) << lens;
-      // Not exactly equal: a distorted ellipse is no ellipse.
+      // Not exactly equal: a distorted ellipse is not an ellipse.
       EXPECT_LT(max_difference_px(frame.to_ideal(*shown), ideal), 0.5) << lens;
     }
   }

@@ -120,7 +120,7 @@ TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
   EXPECT_EQ(m.ranges[1].right, 1);
   EXPECT_EQ(m.ranges[1].none, 1);
   EXPECT_EQ(m.wrong(), 1);         // a wrong answer counts from the first frame on
-  EXPECT_TRUE(m.returns.empty());  // the first detection is no return
+  EXPECT_TRUE(m.returns.empty());  // the first detection is not a return
 }
 
 TEST(Tracking, BeginsAnewAfterTheTargetWasOutOfView) {

@@ -175,7 +175,7 @@ TEST(EllipseTrackFrames, OtherFormatsEndWithTheListOfThoseServed) {
   }
 }
 
-// A query about formats is no stream error.
+// A query about formats is not a stream error.
 TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
   const auto harness = tracker();
   BusTap bus(element_of(harness));

@@ -54,7 +54,7 @@ TEST(ArcDetector, FindsRingsOfEitherPolarity) {
   EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
 }
 
-// The slope of the ground is no noise, although its gradient exceeds that of the noise.
+// The slope of the ground is not noise, although its gradient exceeds that of the noise.
 TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
   Scene scene = disc();
