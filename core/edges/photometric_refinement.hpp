@@ -19,9 +19,8 @@ inline constexpr double kPhotometricBandPx = 3.8;
 /// to the offsets with Tukey's weights, which reject outliers. Within 1.6 times the Cramer-Rao
 /// bound of the centre for edges in focus, from 12 px on.
 ///
-/// @param inside_px     Distance to the target's next edge inside the perimeter; nothing is found
-/// if
-///                      the two blurred edges overlap.
+/// @param inside_px     Distance to the target's next edge inside the perimeter; nothing is
+///                      found if the two blurred edges overlap.
 /// @param min_contrast  Smallest difference of the two levels [grey levels].
 /// @return nullopt if fewer than 8 or than half of the sectors inside the picture show the step, or
 ///         the band is too narrow. Allocates nothing; O(perimeter), up to a few hundred pixels.
