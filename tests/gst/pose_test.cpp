@@ -203,8 +203,8 @@ TEST_F(PoseElement, TellsItInMessagesAndStructures) {
   EXPECT_EQ(gst_value_array_get_size(gst_structure_get_value(fields, "position_covariance")), 6U);
 }
 
-// The scene has no lens, so its undistorted outline is not an ellipse. The reported outline must lie on
-// the edge in the picture nevertheless.
+// The scene has no lens, so its undistorted outline is not an ellipse. The reported outline must
+// lie on the edge in the picture nevertheless.
 TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
