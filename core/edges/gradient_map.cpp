@@ -19,7 +19,6 @@ constexpr int kPadLeft = 16;   // padding of rows before the first pixel,
 constexpr int kPadRight = 64;  // and after the last one, so that blocks may overrun
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kNoiseRows = 16;  // approximate number of sampled rows
 constexpr double kLowOverNoise = 3.0;
 constexpr double kHighOverLow = 2.0;      // [Canny1986]: two to three
 constexpr int kHistogramBins = 1536;      // of magnitudes
@@ -174,18 +173,6 @@ const Kernels& kernels_of(Simd simd) {
   return simd == Simd::kAvx2 ? kAvx2 : kBaseline;
 }
 
-bool is_saturated(std::uint8_t level) {
-  return level < 2 || level > 253;
-}
-
-// Along both axes: zero on any plane and on straight edges along an axis.
-int second_difference(const ImageView& luma, int x, int y) {
-  const auto along_row = [x](const std::uint8_t* row) {
-    return row[x - 1] - 2 * row[x] + row[x + 1];
-  };
-  return along_row(luma.row(y - 1)) - 2 * along_row(luma.row(y)) + along_row(luma.row(y + 1));
-}
-
 // Never shrinks, since pictures of two sizes may alternate.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
@@ -266,27 +253,22 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
 void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
   int samples = 0;
-  std::int64_t second_differences = 0;
   const int step = std::max(1, height_ / kNoiseRows);
   for (int y = kBorder; y < height_ - kBorder; y += step) {
     compute_row(luma, y);
     const Int* m = row_of(magnitude_, y);
     const std::uint8_t* levels = luma.row(y);
     for (int x = 2; x < width_ - 2; x += 2) {
-      if (is_saturated(levels[x])) continue;  // clipping hides the noise
+      if (is_saturated(levels[x])) continue;
       ++histogram_[static_cast<std::size_t>(std::min(m[x] >> kHistogramShift, kHistogramBins - 1))];
-      second_differences += std::abs(second_difference(luma, x, y));
       ++samples;
     }
   }
   const double rounding = kGradientOfNoise / std::sqrt(12.0);  // of pixels to grey levels
   const double quantile =
       (static_cast<double>(noise_bin(histogram_, samples)) + 0.5) * (1 << kHistogramShift);
-  // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6 [Immerkaer1996].
-  const double of_pixels = std::sqrt(0.5 * std::numbers::pi) / 6.0 *
-                           static_cast<double>(second_differences) / std::max(1, samples);
   texture_ = std::max(rounding, noise_of(quantile));
-  noise_ = std::sqrt(texture_ * std::max(rounding, kGradientOfNoise * of_pixels));
+  noise_ = std::sqrt(texture_ * kGradientOfNoise * pixel_noise(luma));
 }
 
 void GradientMap::compute(const Picture& picture, const EdgeThresholds& thresholds) {

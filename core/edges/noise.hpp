@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+
+#include "core/image/image_view.hpp"
 
 namespace ellipse {
 
@@ -25,5 +28,18 @@ inline constexpr double kNoiseQuantile = 0.3;
 [[nodiscard]] inline double noise_of(double quantile) {
   return quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile));
 }
+
+/// Approximate number of rows that estimates of noise sample.
+inline constexpr int kNoiseRows = 16;
+
+/// Whether clipping hides the noise of a pixel.
+[[nodiscard]] inline bool is_saturated(std::uint8_t level) {
+  return level < 2 || level > 253;
+}
+
+/// Standard deviation of the pixels' noise [grey levels], from second differences
+/// [Immerkaer1996]: zero on planes and on straight edges along an axis. At least that of rounding
+/// to grey levels. O(pixels / height).
+[[nodiscard]] double pixel_noise(const ImageView& luma);
 
 }  // namespace ellipse

@@ -17,8 +17,7 @@ constexpr int kScales[] = {2, 4, 1};  // in order of the search
 constexpr int kMaxPairs = 50;         // tried at each scale
 constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
-constexpr Tolerance kSameOutline{2.0, 0.1};  // between a judged outline and its fit
-constexpr double kEnoughToJudgePx = 48.0;    // semi-minor axis above which half the size suffices
+constexpr double kSameInside = 0.8;   // IoU inside the picture of an ellipse before and after a fit
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -32,6 +31,11 @@ bool are_same(const Ellipse& a, const Ellipse& b, double px) {
   return is_same(a, b, {px, kSame});
 }
 
+// Of an ellipse that is cut, the part outside the picture differs between scales.
+bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) {
+  return iou_inside(a, b, map.width(), map.height()) >= kSameInside;
+}
+
 // Whether b lies on the inner side of a's tangents, as arcs of one convex curve do.
 bool is_inside_of(const Arc& b, const Arc& a) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -42,6 +46,10 @@ bool is_inside_of(const Arc& b, const Arc& a) {
     }
   }
   return true;
+}
+
+bool is_certain(double probability) {
+  return log_odds(probability) >= kCertainLogOdds;
 }
 
 // Whether the map has edges of this gradient, rather than noise that hides them.
@@ -63,25 +71,47 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
   return detections_;
 }
 
-// At the coarsest scale that resolves the outline, for the better polarity; may be -infinity.
+// At the scales of detect(), in the same order; may be -infinity.
 std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
-  int scale = 1;
-  while (scale < kCoarsestScale && e.semi_minor >= scale * kEnoughToJudgePx) scale *= 2;
+  Thresholds limits = kNoLimits;
+  limits.edge_low = thresholds.edge_low;
+  limits.edge_high = thresholds.edge_high;
+  limits.contour_overlap = thresholds.contour_overlap;
+  limits.ellipse_overlap = thresholds.ellipse_overlap;
+  std::optional<Found> best;
+  for (const int scale : kScales) {
+    find_edges(picture, scale, limits);
+    const auto measured = judged_at(scale, e, limits);
+    if (!measured) continue;
+    if (is_certain(measured->probability)) return log_odds(measured->probability);
+    if (!best || measured->probability > best->measured.probability) best = {*measured, scale};
+  }
+  return best ? confirmed_log_odds(*best, limits) : -std::numeric_limits<double>::infinity();
+}
+
+void ArcDetector::find_edges(const Picture& picture, int scale, const Thresholds& thresholds) {
   GradientMap& map = map_at(scale);
   map.compute(reduced(picture, scale), {thresholds.edge_low, thresholds.edge_high});
   chains_.trace(map);
-  Thresholds overlaps = kNoLimits;
-  overlaps.contour_overlap = thresholds.contour_overlap;
-  overlaps.ellipse_overlap = thresholds.ellipse_overlap;
+}
+
+// The outline at its better polarity, if the edges of this scale keep it in place [px of the
+// frame].
+std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
+                                                      const Ellipse& e,
+                                                      const Thresholds& thresholds) {
+  const GradientMap& map = map_at(scale);
   const Ellipse guess = to_region(e, {}, scale);
-  double best = -std::numeric_limits<double>::infinity();
+  std::optional<MeasuredEllipse> best;
   for (const Polarity polarity : {Polarity::kDarkInside, Polarity::kBrightInside}) {
     MeasuredEllipse measured;
-    const Verdict verdict = verifier_.verify(map, guess, polarity, overlaps, evidence_, measured);
-    if (!verdict.is_accepted() || !is_same(measured.ellipse, guess, kSameOutline)) continue;
-    best = std::max(best, log_odds(measured.probability));
+    const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
+    if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) continue;
+    if (best && best->probability >= measured.probability) continue;
+    measured.ellipse = to_frame(measured.ellipse, {}, scale);
+    best = measured;
   }
   return best;
 }
@@ -93,7 +123,7 @@ Picture ArcDetector::reduced(const Picture& picture, int scale) {
 void ArcDetector::search_scales(const Picture& picture, const Thresholds& thresholds) {
   for (const int scale : kScales) {
     search(reduced(picture, scale), thresholds, scale);
-    if (!thresholds.wants_all && is_certain()) return;
+    if (!thresholds.wants_all && has_certain_target()) return;
   }
   confirm_at_finer_scales(thresholds);
 }
@@ -233,39 +263,40 @@ void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
 }
 
 // Whether the best target is certain enough to skip the remaining scales.
-bool ArcDetector::is_certain() {
+bool ArcDetector::has_certain_target() {
   report();
   const auto target = select_target(detections_);
-  return target && log_odds(target->probability) >= kCertainLogOdds;
+  return target && is_certain(target->probability);
 }
 
-// Averages the log odds of ellipses from reduced pictures with those at the finer scales: reduction
-// hides the corners of a polygon, which show again at the finer scales. Skips a scale whose noise
-// may hide the outline, since blur reduces the gradient by up to the ratio of the scales.
+// Averages the log odds at the ellipse's scale with those at the finer scales: reduction hides the
+// corners of a polygon, which show again at the finer scales. Skips a scale whose noise may hide
+// the outline, since blur reduces the gradient by up to the ratio of the scales.
+double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thresholds) {
+  const MeasuredEllipse& measured = found.measured;
+  double sum = log_odds(measured.probability);
+  int scales = 1;
+  for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
+    const GradientMap& map = map_at(scale);
+    if (!would_show(map, measured.gradient * scale / found.scale)) continue;
+    const Ellipse guess = to_region(measured.ellipse, {}, scale);
+    MeasuredEllipse finer;
+    const Verdict verdict = verifier_.verify(
+        map, guess, measured.polarity, thresholds.at_scale(scale), evidence_, finer);
+    const bool holds = verdict.is_accepted() && is_same_inside(finer.ellipse, guess, map);
+    sum += holds ? log_odds(finer.probability) : -kCertainLogOdds;
+    ++scales;
+  }
+  return sum / scales;
+}
+
 void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   Thresholds thresholds = full;
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   thresholds.min_contour_size = 0;
   thresholds.min_probability = probability_of(-kCertainLogOdds);
   std::erase_if(found_, [&](Found& found) {
-    double sum = log_odds(found.measured.probability);
-    int scales = 1;
-    for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
-      if (!would_show(map_at(scale), found.measured.gradient * scale / found.scale)) continue;
-      const Ellipse guess = to_region(found.measured.ellipse, {}, scale);
-      MeasuredEllipse finer;
-      const Verdict verdict = verifier_.verify(map_at(scale),
-                                               guess,
-                                               found.measured.polarity,
-                                               thresholds.at_scale(scale),
-                                               evidence_,
-                                               finer);
-      const bool holds = verdict.is_accepted() &&
-                         are_same(finer.ellipse, guess, static_cast<double>(found.scale) / scale);
-      sum += holds ? log_odds(finer.probability) : -kCertainLogOdds;
-      ++scales;
-    }
-    found.measured.probability = probability_of(sum / scales);
+    found.measured.probability = probability_of(confirmed_log_odds(found, thresholds));
     const Verdict verdict =
         at_least(Reason::kUnlikely, found.measured.probability, full.min_probability);
     if (!verdict.is_accepted()) reject(found.measured.candidate, verdict);

@@ -75,7 +75,12 @@ class ArcDetector final : public Detector {
   [[nodiscard]] Verdict check_duplicate(const Guess& guess) const;
   void add(const MeasuredEllipse& measured);
   void use_arcs_on(const Ellipse& e, Polarity polarity);
-  [[nodiscard]] bool is_certain();
+  [[nodiscard]] bool has_certain_target();
+  void find_edges(const Picture& picture, int scale, const Thresholds& thresholds);
+  [[nodiscard]] std::optional<MeasuredEllipse> judged_at(int scale,
+                                                         const Ellipse& e,
+                                                         const Thresholds& thresholds);
+  [[nodiscard]] double confirmed_log_odds(const Found& found, const Thresholds& thresholds);
   void confirm_at_finer_scales(const Thresholds& full);
   void refine_at_full_size(const Picture& picture, const Thresholds& thresholds);
   void report();

@@ -85,6 +85,23 @@ TEST(ArcDetector, FindsADiscThatOnlyReducedPicturesShow) {
   }
 }
 
+TEST(ArcDetector, JudgesAnOutlineThatOnlyReducedPicturesShow) {
+  const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
+  Scene scene = disc();
+  scene.pad.paint_level = 90.0;
+  scene.ground.level = 125.0;
+  scene.sensor.blur_px = 1.5;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    scene.seed = seed;
+    scene.sensor.read_noise = 25.0;
+    ArcDetector detector;
+    const Picture picture = rendered(scene, truth);
+    EXPECT_GT(detector.log_odds_of(picture.view(), truth, {}).value(), 0.0) << seed;
+    const Ellipse beside = translated(truth, 30.0, 0.0);
+    EXPECT_LT(detector.log_odds_of(picture.view(), beside, {}).value(), -1.0) << seed;
+  }
+}
+
 TEST(ArcDetector, JudgesAnOutlineAtAnySizeWithoutALookElsewhere) {
   for (const double radius : {9.0, 30.0, 70.0, 100.0}) {
     SCOPED_TRACE(radius);
