@@ -8,26 +8,25 @@ namespace ellipse {
 namespace {
 
 // Measured or chosen in docs/provenance.md, "Evidence over time".
-constexpr double kMemory_s = 0.3;    // correlation time of the evidence
-constexpr double kPrior = -0.4;      // log odds of a new target
-constexpr double kMaxOfFrame = 5.0;  // log odds: single frames are not calibrated beyond
+constexpr double kMemory_s = 0.3;  // correlation time of the evidence
+constexpr double kPrior = -0.4;    // log odds of a new target
 
-double of_frame(double log_odds) {
-  return std::clamp(log_odds, -kMaxOfFrame, kMaxOfFrame);
+double bounded(double log_odds) {
+  return std::clamp(log_odds, -TargetOdds::kMax, TargetOdds::kMax);
 }
 
 }  // namespace
 
 void TargetOdds::start(double log_odds, bool is_known) {
-  last_ = of_frame(log_odds);
-  sum_ = std::clamp(last_ + (is_known ? 0.0 : kPrior), -kMax, kMax);
+  last_ = bounded(log_odds);
+  sum_ = bounded(last_ + (is_known ? 0.0 : kPrior));
 }
 
 void TargetOdds::add(double log_odds, double elapsed_s) {
   const double correlation = std::exp(-elapsed_s / kMemory_s);
-  const double now = of_frame(log_odds);
+  const double now = bounded(log_odds);
   const double news = (now - correlation * last_) / (1.0 + correlation);
-  sum_ = std::clamp(sum_ + news, -kMax, kMax);
+  sum_ = bounded(sum_ + news);
   last_ = now;
 }
 

@@ -12,8 +12,9 @@ namespace ellipse {
 /// Deterministic; allocates nothing; one thread at a time.
 class TargetOdds {
  public:
-  /// Bound of the sum's magnitude: limits how long a target that has left is still reported.
-  static constexpr double kMax = 4.0;
+  /// Bound of the magnitudes: single frames are not calibrated beyond. That of the sum limits how
+  /// long a target that has left is still reported.
+  static constexpr double kMax = 5.0;
 
   /// Starts a new hypothesis.
   /// @param log_odds  From its first frame; may be infinite.

@@ -16,6 +16,8 @@ namespace {
 constexpr double kMinPredicted = 0.4;     // min matched share of a reported prediction
 constexpr double kDetectedSigmaPx = 0.3;  // edge sigma of an ellipse that is not tracked
 
+constexpr Tolerance kSameOutline{2.0, 0.1};  // between a detection and the followed outline
+
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
 }
@@ -176,8 +178,9 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
+  const bool is_likely = is_visible && judge_->log_odds() >= required_log_odds();
   const auto is_rival = [&](const std::optional<Target>& candidate) {
-    return candidate && (!is_visible || is_better(*candidate, *followed));
+    return candidate && (!is_likely || is_better(*candidate, *followed));
   };
   since_detection_s_ = 0.0;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
@@ -186,7 +189,11 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
     if (!is_rival(detect(reduced))) return followed;
   }
   const std::optional<Target> chosen = detect(frame);
-  return is_rival(chosen) ? acquire(frame, *chosen) : followed;
+  if (is_rival(chosen)) return acquire(frame, *chosen);
+  if (chosen && is_same(chosen->ellipse, followed->ellipse, kSameOutline)) {
+    judge_->confirm(log_odds(chosen->probability));
+  }
+  return followed;
 }
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {
@@ -203,7 +210,7 @@ bool Tracker::is_too_large(const Ellipse& e) const {
 // Replaces or confirms the hypothesis by a detection. Locks only if most of the perimeter is
 // visible.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
-  if (hypothesis_ && is_near(*hypothesis_, target.ellipse)) {
+  if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameOutline)) {
     judge_->confirm(log_odds(target.probability));
   } else {
     const bool is_back = absence_s_ < kMaxAbsence_s && is_near(last_ellipse_, target.ellipse);

@@ -32,14 +32,14 @@ struct Source {
 };
 
 constexpr Source kSources[] = {
-    {"airlab-mbzirc", {630, 1}, {630, 1}},
+    {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {172, 1}, {173, 1}},
     {"airlab-gascola", {454, 0}, {454, 0}},
-    {"pupil-infrared", {1033, 19}, {1021, 2}},
-    {"pupil-blinks", {255, 4}, {256, 0}},
+    {"pupil-infrared", {1042, 12}, {1021, 1}},
+    {"pupil-blinks", {258, 0}, {256, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {140, 1}, {139, 2}},
+    {"octagon-negative", {140, 1}, {140, 1}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/tracking/pad/visible_part.hpp"
 
@@ -106,6 +107,7 @@ struct EdgeSearch::Placement {
 void EdgeSearch::sample(const PadModel& model, const PadView& view, const ImageView& luma) {
   samples_.clear();
   samples_.reserve(kMaxSamples);
+  pixel_noise_ = pixel_noise(luma);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
   std::array<VisibleSteps, kMaxCircles> visible;
   double total_px = 0.0;
@@ -275,7 +277,8 @@ void EdgeSearch::search_along(const ImageView& luma,
   profile.step_px = static_cast<float>(step_px);
   profile.middle_px = static_cast<float>(slope * (middle - crossing));
   profile.read(pixel, stride);
-  const double min_contrast = std::max(kMinContrast, kMinContrastShare * gain * sample.contrast);
+  const double noise = pixel_noise_ * std::sqrt(2.0 / box);  // of a difference of boxes
+  const double min_contrast = std::max(kMinOverNoise * noise, kMajority * gain * sample.contrast);
   keep_edges(profile, static_cast<float>(min_contrast), reach_px, sample);
 }
 

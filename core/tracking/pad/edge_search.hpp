@@ -76,7 +76,8 @@ class EdgeSearch {
 
   std::vector<EdgeSample> samples_;
   double visible_fraction_ = 0.0;
-  double narrowest_ = 0.0;  // min gap between neighbouring circles [radii of the outer one]
+  double pixel_noise_ = 0.0;  // [grey levels]
+  double narrowest_ = 0.0;    // min gap between neighbouring circles [radii of the outer one]
 };
 
 }  // namespace ellipse

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
@@ -101,13 +102,13 @@ bool is_peak(const RadialProfile& profile, int i) {
 }
 
 // The step nearest to the detected edge: the other edge of a thin ring may be as strong.
-std::optional<int> outer_circle(const RadialProfile& profile) {
+std::optional<int> outer_circle(const RadialProfile& profile, double noise) {
   const int one = index_of(1.0);
   double strongest = 0.0;
   for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
     strongest = std::max(strongest, profile.strength(i));
   }
-  if (strongest < kMinContrast) return std::nullopt;
+  if (strongest < kMinOverNoise * noise) return std::nullopt;
   const auto is_outer = [&](int i) {
     return profile.strength(i) >= kMajority * strongest && is_peak(profile, i);
   };
@@ -124,7 +125,7 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
                                       const PadView& view,
                                       double ring_ratio) {
   const RadialProfile profile(luma, view);
-  const std::optional<int> found = outer_circle(profile);
+  const std::optional<int> found = outer_circle(profile, pixel_noise(luma));
   if (!found) return std::nullopt;
   const int outer = *found;
   PadModel model;

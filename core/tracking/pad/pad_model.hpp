@@ -12,8 +12,8 @@ namespace ellipse {
 /// Min contrast of a pad edge, as a share of the expected contrast.
 inline constexpr double kMinContrastShare = 0.25;
 
-/// Min contrast of any pad edge [grey levels].
-inline constexpr double kMinContrast = 4.0;
+/// Min contrast of an edge over its noise, which exceeds it at 2 % of all positions.
+inline constexpr double kMinOverNoise = 2.0;
 
 /// Min share of a pad's edges, or of the angles of a circle, that match.
 inline constexpr double kMinCoverage = 0.65;

@@ -198,6 +198,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
     coast(prediction, before, frames);
     return is_locked_ ? make_track(nullptr) : std::nullopt;
   }
+  if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
   const Eigen::Matrix3d last_view = view_;
   accept(*attempt, before, looseness, frames);
   refine(window, attempt->visible);
@@ -205,6 +206,28 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
   learn_lines(window, *attempt);
   return make_track(&*attempt);
+}
+
+// A camera sees a circle of angular radius r with a relative change of depth across it of at most
+// r.
+bool PadTracker::is_possible(const Eigen::Matrix3d& view) const {
+  const auto outer = project_circle(view, 1.0);
+  if (!outer) return false;
+  const double angular_radius = outer->semi_major / std::max(camera_.fx, camera_.fy);
+  return view.row(2).head<2>().norm() <= angular_radius * std::abs(view(2, 2));
+}
+
+// Lines that lead to an impossible view are not on the pad. Keeps the outer edge, without
+// perspective.
+void PadTracker::forget_lines(Attempt& attempt) {
+  model_.lines.clear();
+  const auto outer = project_circle(attempt.view, 1.0);
+  if (!outer) return;
+  const Eigen::Vector2d centre = attempt.view.topRightCorner<2, 1>();
+  Eigen::Matrix3d affine = attempt.view;
+  affine.topLeftCorner<2, 2>() -= centre * attempt.view.row(2).head<2>();
+  affine.row(2) = Eigen::RowVector3d(0.0, 0.0, 1.0);
+  attempt.view = with_outer_edge(affine, *outer).value_or(attempt.view);
 }
 
 void PadTracker::accept(const Attempt& attempt,

@@ -92,6 +92,8 @@ class PadTracker {
   [[nodiscard]] Attempt attempt_of(const Eigen::Matrix3d& view,
                                    const HomographyEstimate& estimate,
                                    const HomographyChange& last) const;
+  [[nodiscard]] bool is_possible(const Eigen::Matrix3d& view) const;
+  void forget_lines(Attempt& attempt);
   void accept(const Attempt& attempt,
               const HomographyFilter& before,
               double looseness,

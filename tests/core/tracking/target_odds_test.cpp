@@ -59,11 +59,13 @@ TEST(TargetOdds, GrowAlikeAtAnyRateOfFrames) {
   EXPECT_GT(after_a_second(30), 1.0);
 }
 
-TEST(TargetOdds, FallBelowZeroByOneFrameThatShowsSomethingElse) {
+TEST(TargetOdds, FallToZeroByOneFrameThatShowsSomethingElse) {
   TargetOdds odds;
   odds.start(kInfinity, false);
   for (int i = 0; i < 300; ++i) odds.add(kInfinity, 1.0 / 30.0);
   EXPECT_EQ(odds.value(), TargetOdds::kMax);
+  odds.add(-kInfinity, 1.0 / 30.0);
+  EXPECT_NEAR(odds.value(), 0.0, 1e-9);
   odds.add(-kInfinity, 1.0 / 30.0);
   EXPECT_LT(odds.value(), 0.0);
   for (int i = 0; i < 30; ++i) odds.add(-kInfinity, 1.0 / 30.0);

@@ -418,8 +418,28 @@ TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
   search.sample(disc_model(), image_from_pad(kPad), picture.view());
   search.search(picture.view(), 1.0, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 0);
-  search.search(picture.view(), 0.2, 6.0);
+  search.search(picture.view(), 0.1, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 1);
+}
+
+// Of a disc as faint as the noise, chance matches are few.
+TEST(EdgeSearch, PassesByNoise) {
+  Scene flat = scene_of(Pattern::kDisc);
+  flat.pad.paint_level = flat.ground.level;
+  PadModel model = disc_model();
+  model.circles[0].contrast = 8.0;
+  for (const double noise : {4.0, 8.0, 16.0}) {
+    flat.sensor.read_noise = noise;
+    const Picture picture = rendered(flat, kPad);
+    EdgeSearch search;
+    search.sample(model, image_from_pad(kPad), picture.view());
+    search.search(picture.view(), 1.0, 2.0);
+    const auto matched = std::count_if(search.samples().begin(),
+                                       search.samples().end(),
+                                       [](const EdgeSample& sample) { return sample.count > 0; });
+    EXPECT_LT(static_cast<double>(matched), 0.2 * static_cast<double>(search.samples().size()))
+        << noise;
+  }
 }
 
 TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {

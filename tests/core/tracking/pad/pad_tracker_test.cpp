@@ -236,6 +236,26 @@ TEST(PadTracker, ForgetsLinesThatAreNotThePads) {
   EXPECT_GT(coverage, 0.97);
 }
 
+// Bars that stay where they are while the pad moves behind them, as lids do in front of a pupil.
+TEST(PadTracker, IsNotMisledByLinesThatDoNotMoveWithThePad) {
+  Scene scene = pad_scene();
+  scene.pad.pattern = Pattern::kDisc;
+  for (const double y : {130.0, 215.0}) {
+    scene.bars.push_back(support::bar_px({0.0, y}, {640.0, y + 15.0}, 10.0, 90.0, kWidth, kHeight));
+  }
+  const auto truth_at = [](std::uint64_t i) {
+    const double time = 0.15 * static_cast<double>(i);
+    return translated(kPad, 12.0 * std::sin(time), 18.0 * std::sin(0.7 * time));
+  };
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0), scene)), truth_at(0)));
+  for (std::uint64_t i = 1; i <= 120; ++i) {
+    const auto track = tracker.track(whole(frame_of(truth_at(i), scene, i)), 1.0);
+    ASSERT_TRUE(track && track->is_visible) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 1.5) << i;
+  }
+}
+
 TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
   PadTracker tracker;
   const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
