@@ -69,7 +69,7 @@ TEST_F(Allocations, AreCounted) {
   EXPECT_TRUE(bench::counts_allocations());
 }
 
-TEST_F(Allocations, PeakIsTheMostAtATime) {
+TEST_F(Allocations, PeakIsTheMaximumAtOneTime) {
   const bench::HeapMeter meter;
   for (int i = 0; i < 3; ++i) {
     void* volatile block = std::malloc(100'000);  // volatile: keeps the call
@@ -179,7 +179,7 @@ class OpenCvCalls {
   std::vector<std::vector<cv::Point>> contours_;
 };
 
-TEST_F(Allocations, OfContourDetectorAreThoseOfOpenCv) {
+TEST_F(Allocations, OfContourDetectorEqualThoseOfOpenCv) {
   for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
     ContourDetector detector;
     const auto of_detector =
@@ -254,7 +254,7 @@ TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
   }
 }
 
-TEST_F(Allocations, NoneWhereEdgesAreNotMet) {
+TEST_F(Allocations, NoneWhereEdgesAreNotMatched) {
   const Picture ring = ring_picture();
   const Picture ground(320, 240, 90);
   PadTracker tracker;
@@ -311,7 +311,7 @@ TEST_F(Allocations, NoneThroughALens) {
   }
 }
 
-TEST_F(Allocations, OfTrackerDoNotPileUp) {
+TEST_F(Allocations, OfTrackerDoNotAccumulate) {
   const Picture picture = ring_picture();
   Tracker tracker;
   const bench::HeapMeter meter;

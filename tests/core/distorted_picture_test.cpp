@@ -61,7 +61,7 @@ TEST_P(DistortedPicture, IsFoundInTheIdealPlane) {
 }
 
 // Without a lens model, the detected ellipse differs from that in the ideal plane.
-TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
+TEST_P(DistortedPicture, GivesAnotherEllipseWithoutTheLens) {
   ArcDetector detector;
   const Shot frame = shot(1.0);
   const auto target = select_target(detector.detect(frame.picture.view(), {}));
@@ -69,7 +69,7 @@ TEST_P(DistortedPicture, IsAnotherOneWithoutTheLens) {
   EXPECT_FALSE(is_same);
 }
 
-TEST_P(DistortedPicture, ContoursAreTakenToTheIdealPlane) {
+TEST_P(DistortedPicture, ContoursAreMappedToTheIdealPlane) {
   ContourDetector detector;
   scene_.flight.lowest *= 4.0;  // so small that its distorted image is nearly an ellipse
   const Shot frame = shot(1.0);
@@ -91,7 +91,7 @@ TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
   EXPECT_LT(max_difference_px(e, *frame.truth.outer_edge), 0.1);
 }
 
-TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
+TEST_P(DistortedPicture, IsTrackedWhileItFillsTheView) {
   scene_ = through_lens("touchdown");
   TrackerSettings settings;
   settings.camera = camera_of(scene_, kWidth, kHeight);
@@ -118,7 +118,7 @@ TEST_P(DistortedPicture, IsFollowedWhereItFillsTheView) {
   EXPECT_GE(right, 0.99 * shown);
 }
 
-TEST_P(DistortedPicture, IsFollowedByTheirDetectionsToo) {
+TEST_P(DistortedPicture, IsTrackedByRedetection) {
   TrackerSettings settings;
   settings.camera = lens_.camera();
   settings.tracking = TrackingMode::kRedetect;

@@ -62,7 +62,7 @@ TEST(EllipseOverlap, CountsThePerimeterInsideThePictureOnly) {
   EXPECT_EQ(perimeter_support(outside, edges.view()).ellipse_overlap(), 0.0);
 }
 
-TEST(Thresholds, HaveThePapersDefaults) {
+TEST(Thresholds, DefaultsAreThoseOfThePaper) {
   const Thresholds t;
   EXPECT_EQ(t.contour_overlap, 0.95);
   EXPECT_EQ(t.ellipse_overlap, 0.95);
@@ -73,7 +73,7 @@ TEST(Thresholds, HaveThePapersDefaults) {
   EXPECT_NO_THROW(t.validate());
 }
 
-TEST(Thresholds, NameTheFieldThatIsWrong) {
+TEST(Thresholds, ErrorNamesTheInvalidField) {
   Thresholds t;
   t.max_axis_px = 3.0;
   EXPECT_NE(message_of([&] { t.validate(); }).find("max_axis_px"), std::string::npos);
@@ -86,7 +86,7 @@ TEST(Thresholds, NameTheFieldThatIsWrong) {
   EXPECT_NE(message_of([&] { t.validate(); }).find("edge_low"), std::string::npos);
 }
 
-TEST(Thresholds, ShrinkWithThePicture) {
+TEST(Thresholds, ScaleWithThePicture) {
   const Thresholds at_four = Thresholds{}.at_scale(4);
   EXPECT_EQ(at_four.max_axis_px, kAxisRangePx.max / 4.0);
   EXPECT_EQ(at_four.min_axis_px, 1.25);
@@ -94,7 +94,7 @@ TEST(Thresholds, ShrinkWithThePicture) {
   EXPECT_EQ(at_four.contour_overlap, 0.95);
 }
 
-TEST(TrackerSettings, EachNumberIsSetByItsName) {
+TEST(TrackerSettings, NumbersAreSetByName) {
   for (const SettingInfo& info : setting_infos()) {
     TrackerSettings settings;
     const double value = info.is_integer ? 100.0 : 0.5 * info.range.max;
@@ -103,7 +103,7 @@ TEST(TrackerSettings, EachNumberIsSetByItsName) {
   }
 }
 
-TEST(TrackerSettings, EachChoiceIsSetByItsNick) {
+TEST(TrackerSettings, ChoicesAreSetByNick) {
   TrackerSettings s;
   const auto set_each = [&](const char* name, std::span<const char* const> nicks, auto& field) {
     for (std::size_t i = 0; i < nicks.size(); ++i) {
@@ -116,7 +116,7 @@ TEST(TrackerSettings, EachChoiceIsSetByItsNick) {
   set_each("refine", refinement_nicks(), s.refine);
 }
 
-TEST(TrackerSettings, AreSetInWholeNumbersWhereTheyAre) {
+TEST(TrackerSettings, IntegerSettingsRejectFractions) {
   TrackerSettings s;
   EXPECT_NE(message_of([&] { set_by_name(s, "min-contour-size", "60.5"); }).find("whole number"),
             std::string::npos);
@@ -125,7 +125,7 @@ TEST(TrackerSettings, AreSetInWholeNumbersWhereTheyAre) {
   EXPECT_EQ(s.limits.min_axis_px, 60.5);
 }
 
-TEST(Detectors, HaveTheOverlapsOfTheDocumentation) {
+TEST(Detectors, HaveTheDocumentedOverlaps) {
   const auto contours = make_detector(DetectorKind::kContours);
   EXPECT_EQ(contours->detecting_overlaps(), (Overlaps{0.95, 0.95}));  // [Keipour2021] Table I
   EXPECT_EQ(contours->tracking_overlaps(), (Overlaps{0.7, 0.3}));
@@ -134,7 +134,7 @@ TEST(Detectors, HaveTheOverlapsOfTheDocumentation) {
   EXPECT_EQ(arcs->tracking_overlaps(), Overlaps{});
 }
 
-TEST(TrackerSettings, RefuseWhatTheyDoNotKnow) {
+TEST(TrackerSettings, RejectUnknownNamesAndInvalidValues) {
   TrackerSettings s;
   const auto set = [&](const char* name, const char* value) {
     return message_of([&] { set_by_name(s, name, value); });
@@ -149,13 +149,13 @@ TEST(TrackerSettings, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(s, TrackerSettings{});
 }
 
-TEST(TrackerSettings, RefusePairsTheWrongWayRound) {
+TEST(TrackerSettings, RejectInvertedPairs) {
   TrackerSettings s;
   s.min_target_size_px = 500.0;
   EXPECT_NE(message_of([&] { s.validate(); }).find("max-target-size"), std::string::npos);
 }
 
-TEST(Scaler, AveragesBlocksAndCutsTheRest) {
+TEST(Scaler, AveragesBlocksAndDropsTheRemainder) {
   support::Picture picture(5, 4, 10);
   picture.at(0, 0) = 50;
   Scaler scaler;

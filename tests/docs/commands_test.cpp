@@ -238,7 +238,7 @@ class Commands : public testing::TestWithParam<std::pair<const Document*, const 
   const support::TemporaryFolder folder_;
 };
 
-TEST_P(Commands, LeaveWhatTheyPromise) {
+TEST_P(Commands, ProduceTheirDocumentedResults) {
   if (recipe().is_left_out) GTEST_SKIP() << "left out, as the document says: " << recipe().text;
   if (std::getenv("ELLIPSE_PYTHON") == nullptr &&
       recipe().text.find("python3") != std::string::npos) {
@@ -295,7 +295,7 @@ std::string name_of(const testing::TestParamInfo<Commands::ParamType>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(all_commands()), name_of);
 
-TEST(Documents, HaveNobodyWaitForWhatNeverComes) {
+TEST(Documents, PairEachWaitingCommandWithAPartner) {
   for (const Recipe& waiting : cookbook().recipes) {
     if (!waiting.waits_for_ctrl_c) continue;
     const auto is_partner = [&](const Recipe& other) {
@@ -306,7 +306,7 @@ TEST(Documents, HaveNobodyWaitForWhatNeverComes) {
   }
 }
 
-TEST(Documents, AreReadWhole) {
+TEST(Documents, AreParsedCompletely) {
   // Fewer means that a document was not found or not parsed.
   EXPECT_GE(cookbook().recipes.size(), 20U);
   EXPECT_EQ(cookbook().files.size(), 4U);

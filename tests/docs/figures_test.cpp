@@ -40,7 +40,7 @@ std::vector<Command> commands() {
 class Figures : public testing::TestWithParam<Command> {};
 
 // Compilers differ in the last bits, which decide about a target near a limit.
-TEST_P(Figures, AreAsTheDocumentSays) {
+TEST_P(Figures, MatchTheDocument) {
   const std::string& text = GetParam().recipe.text;
   const support::TemporaryFolder folder;
   support::ShellJob job(text, folder.file(""), "job");

@@ -29,7 +29,7 @@ ellipse::Ellipse moved(ellipse::Ellipse e, double dx) {
   return e;
 }
 
-TEST(SeveralEllipses, AnAnswerThatMatchesAnyIsRight) {
+TEST(SeveralEllipses, AnswersThatMatchAnyEllipseAreRight) {
   EXPECT_EQ(judge(kLeft, both(), kFrame, Rule::kIou), Outcome::kTruePositive);
   EXPECT_EQ(judge(kRight, both(), kFrame, Rule::kIou), Outcome::kTruePositive);
   EXPECT_EQ(judge(kElsewhere, both(), kFrame, Rule::kIou), Outcome::kWrong);
@@ -37,7 +37,7 @@ TEST(SeveralEllipses, AnAnswerThatMatchesAnyIsRight) {
   EXPECT_EQ(matched_ellipse(moved(kRight, 2.0), both(), kFrame, Rule::kIou), kRight);
 }
 
-TEST(SeveralEllipses, AreMissedUnlessAllAreHardlyVisible) {
+TEST(SeveralEllipses, CountAsMissedUnlessAllAreHardlyVisible) {
   Truth truth = both();
   truth.visible_fraction = 0.1;
   EXPECT_EQ(judge(std::nullopt, truth, kFrame, Rule::kIou), Outcome::kFalseNegative);
@@ -45,13 +45,13 @@ TEST(SeveralEllipses, AreMissedUnlessAllAreHardlyVisible) {
   EXPECT_EQ(judge(std::nullopt, truth, kFrame, Rule::kIou), Outcome::kTrueNegative);
 }
 
-TEST(Matching, GivesUpAHeavyPairForTwoLighterOnes) {
+TEST(Matching, PrefersTwoLighterPairsToOneHeavyPair) {
   // Greedy matching takes 0-0 and leaves 1 without a partner.
   const auto matches = match_one_to_one(2, 2, {{0, 0, 0.95}, {0, 1, 0.81}, {1, 0, 0.82}});
   EXPECT_EQ(matches, (std::vector<std::optional<std::size_t>>{1, 0}));
 }
 
-TEST(Matching, TakesTheHeaviestOfThoseWithTheMostPairs) {
+TEST(Matching, MaximizesTheWeightAmongTheLargestMatchings) {
   const auto matches =
       match_one_to_one(2, 2, {{0, 0, 0.8}, {0, 1, 0.9}, {1, 0, 0.9}, {1, 1, 0.85}});
   EXPECT_EQ(matches, (std::vector<std::optional<std::size_t>>{1, 0}));
@@ -79,7 +79,7 @@ TEST(AllEllipses, AreMatchedOneToOne) {
   EXPECT_EQ(result.centre_errors_px, std::vector<double>{0.0});  // of the better match
 }
 
-TEST(AllEllipses, HaveErrorsOfCentreAndAxes) {
+TEST(AllEllipses, ErrorsAreOfCentreAndAxes) {
   ellipse::Ellipse off = moved(kRight, 1.5);
   off.semi_major += 0.5;
   off.semi_minor -= 2.0;
@@ -88,7 +88,7 @@ TEST(AllEllipses, HaveErrorsOfCentreAndAxes) {
   EXPECT_DOUBLE_EQ(result.axis_errors_px.at(0), 2.0);
 }
 
-TEST(AllEllipses, ThatAreHardlyVisibleDoNotCount) {
+TEST(AllEllipses, HardlyVisibleOnesDoNotCount) {
   Truth truth = both();
   truth.others[0].visible_fraction = 0.2;
   EXPECT_EQ(compare_all({}, truth, kFrame).counts.missed, 1);

@@ -54,7 +54,7 @@ class EachBoxPeer : public testing::TestWithParam<const char*> {
   ellipse::Random random_{7};
 };
 
-TEST_P(EachBoxPeer, IsToldItsTargetOnceAndFollowsIt) {
+TEST_P(EachBoxPeer, IsInitializedOnceAndThenTracks) {
   const Answer first = see(kStart);
   EXPECT_TRUE(first.is_given);
   EXPECT_EQ(first.target, kStart);
@@ -72,7 +72,7 @@ TEST_P(EachBoxPeer, IsToldItsTargetOnceAndFollowsIt) {
   }
 }
 
-TEST_P(EachBoxPeer, IsToldNothingThatIsHardlyVisible) {
+TEST_P(EachBoxPeer, IsNotInitializedWithHardlyVisibleTargets) {
   ellipse::Ellipse leaving = kStart;
   leaving.cx = -10.0;
   EXPECT_LT(ellipse::visible_fraction(leaving, kSize.width, kSize.height), kMinToStart);
@@ -83,7 +83,7 @@ TEST_P(EachBoxPeer, IsToldNothingThatIsHardlyVisible) {
   EXPECT_TRUE(see(kStart).is_given);
 }
 
-TEST_P(EachBoxPeer, FollowsFromAcrossTheBorder) {
+TEST_P(EachBoxPeer, TracksTargetsCutByTheBorder) {
   ellipse::Ellipse pad = kStart;
   pad.cx = 12.0;
   ASSERT_TRUE(see(pad).is_given);
@@ -95,7 +95,7 @@ TEST_P(EachBoxPeer, FollowsFromAcrossTheBorder) {
   }
 }
 
-TEST_P(EachBoxPeer, SurvivesATargetThatLeaves) {
+TEST_P(EachBoxPeer, SurvivesTargetsThatLeaveTheFrame) {
   ellipse::Ellipse pad = kStart;
   (void)see(pad);
   for (int i = 0; i < 25; ++i) {
@@ -107,14 +107,14 @@ TEST_P(EachBoxPeer, SurvivesATargetThatLeaves) {
   }
 }
 
-TEST_P(EachBoxPeer, StartsAfreshWithEachSequence) {
+TEST_P(EachBoxPeer, IsInitializedAgainInEachSequence) {
   EXPECT_TRUE(see(kStart).is_given);
   EXPECT_FALSE(see(kStart).is_given);
   method_->start(nullptr);
   EXPECT_TRUE(see(kStart).is_given);
 }
 
-TEST_P(EachBoxPeer, IsToldAgainAfterItReportedALoss) {
+TEST_P(EachBoxPeer, IsInitializedAgainAfterALoss) {
   ASSERT_TRUE(see(kStart).is_given);
   ASSERT_TRUE(see(kStart).target);  // KCF's first update does not search
   ASSERT_FALSE(see_noise().target);
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(BoxPeers,
                          testing::ValuesIn(box_peer_names().begin(), box_peer_names().end()),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(BoxPeers, CsrtCarriesTheEllipseToALargerBox) {
+TEST(BoxPeers, CsrtScalesTheEllipseWithItsBox) {
   const auto csrt = make_method("csrt", {});
   csrt->start(nullptr);
   ellipse::Ellipse pad{160.0, 120.0, 40.0, 30.0, 0.4};
@@ -147,7 +147,7 @@ TEST(BoxPeers, CsrtCarriesTheEllipseToALargerBox) {
   EXPECT_EQ(last->angle_rad, 0.4);
 }
 
-TEST(BoxPeers, AnUnknownOneIsNamed) {
+TEST(BoxPeers, ErrorNamesUnknownPeers) {
   try {
     (void)make_box_peer("goturn");
     FAIL();

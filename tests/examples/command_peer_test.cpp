@@ -66,7 +66,7 @@ TEST_F(CommandPeer, AnswersLineByLine) {
 }
 
 // Exceeds the capacity of a pipe in both directions.
-TEST_F(CommandPeer, AnswersThousandsAtOnceOrAfterReadingAll) {
+TEST_F(CommandPeer, HandlesThousandsOfAnswersStreamedOrAtTheEnd) {
   std::vector<fs::path> images;
   for (int i = 0; i < 5000; ++i) {
     images.emplace_back("/a/long/folder/for/many/pictures/frame" + std::to_string(i) + ".png");
@@ -75,7 +75,7 @@ TEST_F(CommandPeer, AnswersThousandsAtOnceOrAfterReadingAll) {
   EXPECT_EQ(run("all=$(cat)\nprintf '%s\\n' \"$all\" | " + kAnswerEach, images).size(), 5000U);
 }
 
-TEST_F(CommandPeer, MayLeaveOutAnImageAndFindNothingInAnother) {
+TEST_F(CommandPeer, MayOmitImagesAndReportNoEllipses) {
   const auto answers =
       run("cat > /dev/null; echo; echo '{\"image\":\"b.png\",\"ms\":1,\"ellipses\":[]}'",
           {"a.png", "b.png"});
@@ -85,7 +85,7 @@ TEST_F(CommandPeer, MayLeaveOutAnImageAndFindNothingInAnother) {
   EXPECT_TRUE(run("cat", {}).empty());
 }
 
-TEST_F(CommandPeer, ABrokenAnswerIsNamedByItsLine) {
+TEST_F(CommandPeer, ErrorNamesTheLineOfAMalformedAnswer) {
   expect_error("cat > /dev/null; echo; echo Segmentation", "line 2 of its answer is not a JSON");
   const auto answers = [](const std::string& line) {
     return "cat > /dev/null; echo '" + line + "'";
@@ -105,19 +105,19 @@ TEST_F(CommandPeer, ABrokenAnswerIsNamedByItsLine) {
   expect_error(answers(twice + "\n" + twice), "an image twice");
 }
 
-TEST_F(CommandPeer, AFailureIsNamedByItsStatus) {
+TEST_F(CommandPeer, ErrorNamesTheExitStatus) {
   expect_error("cat > /dev/null; exit 3", "exited with status 3");
   expect_error(kAnswerEach + "exit 4", "exited with status 4");
   expect_error("kill -9 $$", "signal 9");
 }
 
-TEST_F(CommandPeer, AProgramMayStopReading) {
+TEST_F(CommandPeer, ProgramsThatStopReadingAreAnError) {
   const std::vector<fs::path> images = {std::string(300'000, 'x'), "a.png"};
   EXPECT_THROW((void)run("exit 5", images), std::runtime_error);
   EXPECT_THROW((void)run("exit 0", images), std::runtime_error);
 }
 
-TEST_F(CommandPeer, OneThatCannotBeStartedIsNamed) {
+TEST_F(CommandPeer, ErrorNamesCommandsThatCannotStart) {
   const std::vector<fs::path> images = {"a.png"};
   for (const std::string bad : {"/no/such/program -x", "", "'unbalanced"}) {
     try {

@@ -85,7 +85,7 @@ TEST_F(DatasetFiles, ReadsCsvInNaturalOrderBySequence) {
   EXPECT_FALSE(sequences[0].frames[0].truth.visible_fraction);
 }
 
-TEST_F(DatasetFiles, ReadsThePublishedForm) {
+TEST_F(DatasetFiles, ReadsThePublishedFormat) {
   write("one/ground_truth.txt",
         "Filename\tHasTarget\tTargetCenterX\tTargetCenterY\tTargetWidth\tTargetHeight\t"
         "TargetAngle\n"
@@ -118,7 +118,7 @@ TEST_F(DatasetFiles, KeepsFoldersOfTheSameNameApart) {
   EXPECT_EQ(sequences[2].name, "two/img");
 }
 
-TEST_F(DatasetFiles, NamesFileAndLineOfWhatIsBroken) {
+TEST_F(DatasetFiles, ProblemsNameFileAndLineOfMalformedRows) {
   touch({"a.jpg", "b.jpg", "c.jpg", "d.jpg"});
   write("gt.csv",
         "image,cx,cy,semi_major,semi_minor,angle_rad\n"
@@ -136,7 +136,7 @@ TEST_F(DatasetFiles, NamesFileAndLineOfWhatIsBroken) {
   EXPECT_EQ(dataset.sequences[0].frames.size(), 1U);
 }
 
-TEST_F(DatasetFiles, NamesImagesAndLinesThatMissEachOther) {
+TEST_F(DatasetFiles, ReportsImagesWithoutRowsAndRowsWithoutImages) {
   touch({"a.jpg", "c.jpg"});
   write("gt.csv", "image,cx,cy,semi_major,semi_minor,angle_rad\na.jpg,,,,,\nb.jpg,,,,,\n");
   const Dataset dataset = read_dataset(folder_);
@@ -146,7 +146,7 @@ TEST_F(DatasetFiles, NamesImagesAndLinesThatMissEachOther) {
   EXPECT_EQ(dataset.missing_frames, 1U);
 }
 
-TEST_F(DatasetFiles, RefusesHalfATruthAndASecondLine) {
+TEST_F(DatasetFiles, RejectsIncompleteAndDuplicateRows) {
   touch({"a.jpg", "b.jpg", "c.jpg"});
   write("gt.csv",
         "image,cx,cy,semi_major,semi_minor,angle_rad,visible_fraction\n"
@@ -162,7 +162,7 @@ TEST_F(DatasetFiles, RefusesHalfATruthAndASecondLine) {
   EXPECT_EQ(dataset.sequences[0].frames.size(), 1U);
 }
 
-TEST_F(DatasetFiles, RefusesWhatIsNoTable) {
+TEST_F(DatasetFiles, RejectsMissingEmptyAndIncompleteTables) {
   EXPECT_NE(error().find("neither gt.csv nor ground_truth.txt"), std::string::npos);
   write("gt.csv", "");
   EXPECT_NE(error().find("is empty"), std::string::npos);
@@ -171,7 +171,7 @@ TEST_F(DatasetFiles, RefusesWhatIsNoTable) {
   EXPECT_NE(error().find("no column \"cy\""), std::string::npos) << error();
 }
 
-TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
+TEST_F(DatasetFiles, ReadInvertsWrite) {
   std::vector<Sequence> twin = make_twin();
   twin = {twin.front(), twin.back()};  // of two data sets
   for (Sequence& sequence : twin) sequence.frames.resize(3);
@@ -194,7 +194,7 @@ TEST_F(DatasetFiles, WhatIsWrittenIsReadAgain) {
   }
 }
 
-TEST(Twin, HasTheSizeOfThePapersDataSet) {
+TEST(Twin, HasTheFrameCountsOfThePapersDataSet) {
   std::map<std::string, std::pair<int, int>> counts;  // frames, frames with the target
   for (const Sequence& sequence : make_twin()) {
     for (const Frame& frame : sequence.frames) {
@@ -206,7 +206,7 @@ TEST(Twin, HasTheSizeOfThePapersDataSet) {
   EXPECT_EQ(counts["thin"], std::pair(456, 456));
 }
 
-TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
+TEST(Twin, TruthMatchesTheRenderedFrame) {
   // The picture has its contrast along the target's outline.
   const Sequence sequence = make_twin()[0];
   const Frame& frame = sequence.frames[70];
@@ -224,7 +224,7 @@ TEST(Twin, TruthIsOfTheFrameThatIsRendered) {
   EXPECT_GT(contrast, 100.0);
 }
 
-TEST(Scenes, AreNamedBySeedsRangesAndLists) {
+TEST(Scenes, SeedsAreParsedAsNumbersRangesAndLists) {
   using Seeds = std::vector<std::uint64_t>;
   EXPECT_EQ(scene_seeds("scenes:7"), Seeds{7});
   EXPECT_EQ(scene_seeds("scenes:901-903,7"), (Seeds{901, 902, 903, 7}));
@@ -235,7 +235,7 @@ TEST(Scenes, AreNamedBySeedsRangesAndLists) {
   }
 }
 
-TEST(Scenes, AreWholeSequencesOfTheCatalog) {
+TEST(Scenes, MakesOneSequencePerCatalogSceneAndSeed) {
   const std::vector<Sequence> scenes = make_scenes({5, 6}, {2.0, 15.0});
   ASSERT_EQ(scenes.size(), 2 * ellipse::scene_catalog().size());
   EXPECT_EQ(scenes[0].name, "approach-5");
@@ -254,7 +254,7 @@ TEST(Scenes, AreWholeSequencesOfTheCatalog) {
   EXPECT_THROW((void)make_scenes({5}, {0.01, 15.0}), std::invalid_argument);
 }
 
-TEST(Scenes, KeepTheTruthOfAPadThatIsLargerThanThePicture) {
+TEST(Scenes, PadsLargerThanThePictureKeepTheirTruth) {
   int inside_only = 0;
   int empty = 0;
   for (const Sequence& sequence : make_scenes({5}, {16.0, 10.0})) {
@@ -269,7 +269,7 @@ TEST(Scenes, KeepTheTruthOfAPadThatIsLargerThanThePicture) {
   EXPECT_GT(empty, 160);  // all of "negative", some of "reenter"
 }
 
-TEST(PictureReader, NamesWhatItCannotRead) {
+TEST(PictureReader, ErrorNamesUnreadableFiles) {
   gst_init(nullptr, nullptr);
   const support::TemporaryFolder folder;
   const fs::path bad = folder.file("bad.jpg");

@@ -31,7 +31,7 @@ Sequence distorted(const std::string& name, const ScenePace& pace) {
   throw std::invalid_argument(name);
 }
 
-TEST(Distorted, AreTheScenesThroughEachLens) {
+TEST(Distorted, RendersAllScenesThroughEachLens) {
   const std::vector<Sequence> sequences = make_distorted({5, 6}, {1.0, 10.0});
   ASSERT_EQ(sequences.size(), 2 * ellipse::scene_catalog().size() * ellipse::lens_catalog().size());
   EXPECT_EQ(sequences[0].name, "approach-barrel-5");
@@ -46,7 +46,7 @@ TEST(Distorted, AreTheScenesThroughEachLens) {
   EXPECT_EQ(lenses.size(), ellipse::lens_catalog().size());  // shared: each has a pixel table
 }
 
-TEST(Distorted, AreNamedBySeeds) {
+TEST(Distorted, SequencesAreNamedBySeeds) {
   using Seeds = std::vector<std::uint64_t>;
   EXPECT_EQ(scene_seeds("distorted:7,9-10", "distorted"), (Seeds{7, 9, 10}));
   EXPECT_FALSE(scene_seeds("distorted:7"));
@@ -55,7 +55,7 @@ TEST(Distorted, AreNamedBySeeds) {
 }
 
 // The pad leaves the picture; frames with half of it in view also have a truth.
-TEST(Distorted, TruthsAreOfTheIdealPlaneInFramesAndMissingFromEmptyOnes) {
+TEST(Distorted, PartlyVisibleTargetsHaveATruth) {
   for (const char* name : {"reenter-barrel-7", "reenter-fisheye-7"}) {
     int in_part = 0;
     int empty = 0;
@@ -69,7 +69,7 @@ TEST(Distorted, TruthsAreOfTheIdealPlaneInFramesAndMissingFromEmptyOnes) {
   }
 }
 
-TEST(DistortedFrame, CountsAsARectangleWhereTheLensHardlyBends) {
+TEST(DistortedFrame, IouEqualsThatOfTheRectangleForAWeakLens) {
   ellipse::Camera camera = ellipse::Camera::with_hfov(1.012, 640, 360);
   camera.distortion[0] = 1e-9;
   const DistortedFrame frame(camera);
@@ -81,7 +81,7 @@ TEST(DistortedFrame, CountsAsARectangleWhereTheLensHardlyBends) {
   EXPECT_EQ(frame.iou({-500.0, 0.0, 9.0, 9.0, 0.0}, {-500.0, 0.0, 9.0, 9.0, 0.0}), 0.0);
 }
 
-TEST(DistortedFrame, SeesWhatTheIdealPlanesRectangleDoesNotHold) {
+TEST(DistortedFrame, ContainsEllipsesOutsideTheIdealPlanesRectangle) {
   const DistortedFrame frame(camera_with("fisheye"));
   // Near the picture's right border, far out in the ideal plane.
   const ellipse::Ellipse far_out{780.0, 180.0, 60.0, 40.0, 0.0};
@@ -89,7 +89,7 @@ TEST(DistortedFrame, SeesWhatTheIdealPlanesRectangleDoesNotHold) {
   EXPECT_EQ(frame.iou(far_out, far_out), 1.0);
 }
 
-TEST(DistortedFrame, LeadsThereAndBack) {
+TEST(DistortedFrame, ConvertsToThePictureAndBack) {
   for (const char* lens : {"barrel", "fisheye"}) {
     const DistortedFrame frame(camera_with(lens));
     for (const ellipse::Ellipse& ideal : {ellipse::Ellipse{120.0, 90.0, 60.0, 50.0, 0.3},
@@ -123,7 +123,7 @@ class Truthful : public Method {
   const DistortedFrame* distortion_ = nullptr;
 };
 
-TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {
+TEST(Distorted, AnswersInThePictureAreJudgedInTheIdealPlane) {
   std::vector<Sequence> sequences;
   sequences.push_back(distorted("reenter-fisheye-7", {1.0, 10.0}));
   std::vector<std::unique_ptr<Method>> methods;
@@ -149,7 +149,7 @@ TEST(Distorted, AnswersOfThePictureAreJudgedInTheIdealPlane) {
 }
 
 // Our methods know the lens; box trackers are initialised in the picture.
-TEST(Distorted, MethodsFollowThroughALens) {
+TEST(Distorted, MethodsTrackThroughALens) {
   std::vector<Sequence> sequences;
   sequences.push_back(distorted("hover-fisheye-7", {0.5, 10.0}));
   std::vector<std::unique_ptr<Method>> methods;

@@ -54,7 +54,7 @@ TEST(Measures, JudgesEachOutcome) {
   EXPECT_EQ(of(std::optional(kTarget), Truth{{}, {}, false}), Outcome::kNotJudged);
 }
 
-TEST(Measures, ATargetLargerThanTheFrameIsNotJudged) {
+TEST(Measures, TargetsLargerThanTheFrameAreNotJudged) {
   const ellipse::Ellipse around{160.0, 120.0, 400.0, 350.0, 0.3};
   const Truth inside = truth_of(around, 0.0);
   EXPECT_TRUE(is_in_view(inside, kFrame));
@@ -67,7 +67,7 @@ TEST(Measures, ATargetLargerThanTheFrameIsNotJudged) {
   EXPECT_EQ(judge(aside, truth_of(aside, 0.0), kFrame, Rule::kIou), Outcome::kFalsePositive);
 }
 
-TEST(Measures, RulesDifferAtTheirLimits) {
+TEST(Measures, RulesApplyTheirOwnLimits) {
   ellipse::Ellipse shifted = kTarget;
   shifted.cx += 7.9;  // 10 % of the smaller full axis is 8 px
   EXPECT_TRUE(is_right(shifted, kTarget, kFrame, Rule::kPublished));
@@ -79,7 +79,7 @@ TEST(Measures, RulesDifferAtTheirLimits) {
   EXPECT_FALSE(is_right(grown, kTarget, kFrame, Rule::kPublished));
 }
 
-TEST(Measures, AreThePapers) {
+TEST(Measures, AgreeWithThePapersDefinitions) {
   Measures m;
   const auto add = [&](Outcome outcome, int times) {
     for (int i = 0; i < times; ++i) m.add({outcome, 1.0, 1.0, 0.5, 2, {}});
@@ -164,7 +164,7 @@ class HandMade : public testing::Test {
   std::vector<std::unique_ptr<Method>> methods_;
 };
 
-TEST_F(HandMade, CountsAreKnownByTheRuleOfOverlap) {
+TEST_F(HandMade, CountsMatchByTheOverlapRule) {
   const Measures m = measures(run(Rule::kIou));
   EXPECT_EQ(m.count(Outcome::kTruePositive), 2);  // the target, the grown one
   EXPECT_EQ(m.count(Outcome::kWrong), 2);         // the shifted one, another one
@@ -173,13 +173,13 @@ TEST_F(HandMade, CountsAreKnownByTheRuleOfOverlap) {
   EXPECT_DOUBLE_EQ(m.f1(), 2.0 * 2.0 / (2.0 * 2.0 + 1.0 + 2.0 * 2.0));
 }
 
-TEST_F(HandMade, CountsAreKnownByThePublishedRule) {
+TEST_F(HandMade, CountsMatchByThePublishedRule) {
   const Measures m = measures(run(Rule::kPublished));
   EXPECT_EQ(m.count(Outcome::kTruePositive), 2);  // the target, the shifted one
   EXPECT_EQ(m.count(Outcome::kWrong), 2);         // the grown one, another one
 }
 
-TEST_F(HandMade, InterruptedItKeepsWhatItHas) {
+TEST_F(HandMade, InterruptionKeepsTheResultsSoFar) {
   const Evaluation evaluation = run(Rule::kIou, 3);
   EXPECT_TRUE(evaluation.is_interrupted);
   EXPECT_EQ(evaluation.frames.size(), 3U);
@@ -187,7 +187,7 @@ TEST_F(HandMade, InterruptedItKeepsWhatItHas) {
   EXPECT_EQ(measures(evaluation).judged(), 3);
 }
 
-TEST_F(HandMade, UnreadableFramesAreCountedAndNamed) {
+TEST_F(HandMade, UnreadableFramesAreCountedAndReported) {
   sequence_.frames[2].name = "bad";
   const Evaluation evaluation = run(Rule::kIou);
   EXPECT_EQ(evaluation.missing_frames, 1U);
@@ -196,7 +196,7 @@ TEST_F(HandMade, UnreadableFramesAreCountedAndNamed) {
   EXPECT_NE(evaluation.problems[0].find("bad"), std::string::npos);
 }
 
-TEST_F(HandMade, MethodsStartAfreshWithEachSequence) {
+TEST_F(HandMade, MethodsAreRestartedForEachSequence) {
   std::vector<Sequence> twice = {sequence_, sequence_};
   (void)evaluate(twice, methods_, Rule::kIou, [](const Frame&) { return true; });
   EXPECT_EQ(static_cast<const Scripted&>(*methods_[0]).starts, 2);
@@ -235,7 +235,7 @@ TEST_F(HandMade, ReportHoldsTablesPlotsAndPictures) {
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // loads nothing remote
 }
 
-TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
+TEST_F(HandMade, UnansweredFramesHaveNoTime) {
   class Silent : public Method {
    public:
     Silent() : Method("silent") {}
@@ -250,7 +250,7 @@ TEST_F(HandMade, WhatIsNotAnsweredHasNoTime) {
   EXPECT_TRUE(m.all_times_ms().empty());
 }
 
-TEST_F(HandMade, WhatIsToldIsNotJudged) {
+TEST_F(HandMade, GivenTargetsAreNotJudged) {
   class GivenTruth : public Method {
    public:
     GivenTruth() : Method("told") {}
@@ -266,7 +266,7 @@ TEST_F(HandMade, WhatIsToldIsNotJudged) {
   EXPECT_NE(lines.str().find("\"visible\":1,\"ms\":[null]"), std::string::npos) << lines.str();
 }
 
-TEST_F(HandMade, BreakdownLeavesOutWhatIsHardlyVisible) {
+TEST_F(HandMade, BreakdownOmitsHardlyVisibleTargets) {
   for (Frame& frame : sequence_.frames) frame.truth = truth_of(kTarget, 0.2);
   sequence_.frames[1].truth = truth_of(kTarget, 0.4);
   sequence_.frames[3].truth = truth_of(kTarget, 0.8);
@@ -279,7 +279,7 @@ TEST_F(HandMade, BreakdownLeavesOutWhatIsHardlyVisible) {
   EXPECT_EQ(by_visible->curves[0].y[2], 0.0);  // frame 3 alone
 }
 
-TEST(Sweep, IsRangesAndLists) {
+TEST(Sweep, ParsesRangesAndLists) {
   const Sweep range = parse_sweep("detect-contour-overlap=0.3:0.5:0.05");
   EXPECT_EQ(range.property, "detect-contour-overlap");
   EXPECT_EQ(range.values, (std::vector<std::string>{"0.3", "0.35", "0.4", "0.45", "0.5"}));
@@ -289,7 +289,7 @@ TEST(Sweep, IsRangesAndLists) {
   }
 }
 
-TEST(Sweep, NamesWhatIsNoProperty) {
+TEST(Sweep, ErrorNamesInvalidProperties) {
   for (const char* bad :
        {"no-such=1:2:1", "detect-contour-overlap=0.5,7", "max-axis=", "tracking=none,best"}) {
     try {
@@ -302,7 +302,7 @@ TEST(Sweep, NamesWhatIsNoProperty) {
   }
 }
 
-TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
+TEST(Methods, AreMadeByNameAndListedDefaultFirst) {
   EXPECT_EQ(method_names().front(), "arcs+edges");
   for (const std::string& name : method_names()) EXPECT_EQ(make_method(name, {})->name(), name);
   EXPECT_THROW((void)make_method("magic", {}), std::invalid_argument);
@@ -310,7 +310,7 @@ TEST(Methods, AreFoundByTheirNamesTheDefaultFirst) {
   EXPECT_EQ(method_names().size(), unaided_method_names().size() + box_peer_names().size());
 }
 
-TEST(Quantile, IsAnElementOfTheValues) {
+TEST(Quantile, ReturnsOneOfTheValues) {
   EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
   EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 1.0), 3.0);
   EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.0), 1.0);

@@ -64,7 +64,7 @@ Answers answers_on(const std::vector<Sequence>& sequences,
   return answers;
 }
 
-TEST(EvidenceFit, TellsEllipsesFromClutterThatItHasNotSeen) {
+TEST(EvidenceFit, SeparatesEllipsesFromUnseenClutter) {
   EvidenceFitter fitter({}, frames_to_fit(), go_on);
   const ellipse::EvidenceTable table = fitter.fit_all();
   EXPECT_TRUE(fitter.problems().empty());
@@ -76,7 +76,7 @@ TEST(EvidenceFit, TellsEllipsesFromClutterThatItHasNotSeen) {
   EXPECT_LE(answers_on(make_clutter({7}, {4.0, 1.0}), settings).targets, 10);  // of 24
 }
 
-TEST(EvidenceFit, UsesNoSourceButThoseThatItIsGiven) {
+TEST(EvidenceFit, UsesOnlyTheGivenSources) {
   EvidenceFitter both({}, frames_to_fit(), go_on);
   std::vector<Sequence> with_more = frames_to_fit();
   for (Sequence sequence : wild_frames("wild-frames:50-60")) {
@@ -95,7 +95,7 @@ std::vector<Sequence> behind_wide_bars(std::uint64_t seed) {
   return {make_rendered("mine", "bars", scene, {0.0, 40, 1, 2.0})};
 }
 
-TEST(EvidenceFit, HelpsOnFootageThatTheBuiltInTableFindsHard) {
+TEST(EvidenceFit, ImprovesOnFootageThatIsHardForTheBuiltInTable) {
   std::vector<Sequence> sequences = frames_to_fit();
   sequences.push_back(behind_wide_bars(1).front());
   ellipse::TrackerSettings settings;
@@ -108,7 +108,7 @@ TEST(EvidenceFit, HelpsOnFootageThatTheBuiltInTableFindsHard) {
   EXPECT_GE(after, before + 5);
 }
 
-TEST(EvidenceFit, TellsWhetherProbabilitiesAreWhatTheySayOnSourcesThatItHasNotSeen) {
+TEST(EvidenceFit, MeasuresTheCalibrationOnLeftOutSources) {
   std::vector<Sequence> sequences = frames_to_fit();
   for (Sequence sequence : wild_frames("wild-frames:50-70")) {
     sequence.dataset = "eyes and pads";
@@ -129,7 +129,7 @@ TEST(EvidenceFit, TellsWhetherProbabilitiesAreWhatTheySayOnSourcesThatItHasNotSe
   EXPECT_EQ(calibration_table(calibration).rows.size(), 10U);
 }
 
-TEST(EvidenceFit, WantsBothKinds) {
+TEST(EvidenceFit, RequiresFramesWithAndWithoutEllipses) {
   const EvidenceFitter none({}, make_clutter({1}, {1.0, 1.0}), go_on);
   EXPECT_THROW((void)none.fit_all(), std::invalid_argument);
 }

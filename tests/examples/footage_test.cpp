@@ -50,7 +50,7 @@ class Footage : public testing::Test {
   support::TemporaryFolder folder_;
 };
 
-TEST_F(Footage, RowsOfOneImageAreItsEllipses) {
+TEST_F(Footage, SeveralRowsGiveSeveralEllipsesOfOneImage) {
   write("gt.csv", std::string(kHeader) + "a.png,10,20,5,4,0\nb.png,,,,,\na.png,30,20,6,3,0\n");
   write("a.png", "");
   write("b.png", "");
@@ -65,7 +65,7 @@ TEST_F(Footage, RowsOfOneImageAreItsEllipses) {
   EXPECT_TRUE(ellipses_of(frames[1].truth).empty());
 }
 
-TEST_F(Footage, AnImageCannotBothHaveAnEllipseAndNone) {
+TEST_F(Footage, ImagesBothWithAndWithoutAnEllipseAreReported) {
   write("gt.csv", std::string(kHeader) + "a.png,,,,,\na.png,30,20,6,3,0\n");
   write("a.png", "");
   const Dataset dataset = read();
@@ -73,7 +73,7 @@ TEST_F(Footage, AnImageCannotBothHaveAnEllipseAndNone) {
   EXPECT_NE(dataset.problems[0].find("gt.csv:3: "), std::string::npos) << dataset.problems[0];
 }
 
-TEST_F(Footage, TheInnerEdgeOfARingIsAnEllipseOfItsOwn) {
+TEST_F(Footage, InnerEdgesOfRingsAreSeparateEllipses) {
   write("gt.csv",
         "image,cx,cy,semi_major,semi_minor,angle_rad,visible,inner_semi_major\n"
         "a.png,10,20,8,4,0.5,0.7,6\nb.png,10,20,8,4,0.5,,9\n");
@@ -88,7 +88,7 @@ TEST_F(Footage, TheInnerEdgeOfARingIsAnEllipseOfItsOwn) {
   EXPECT_NE(dataset.problems[0].find("gt.csv:3: inner_semi_major"), std::string::npos);
 }
 
-TEST_F(Footage, IgnoredImagesStayInTheirSequence) {
+TEST_F(Footage, IgnoredImagesStayInTheSequenceUnlabelled) {
   write("gt.csv", std::string(kHeader) + "1.png,,,,,\n2.png,9,9,5,4,0\n");
   write("ignore.txt", "# hidden by the lid\n2.png\r\n3.png\n4.png\n");
   for (const char* name : {"1.png", "2.png", "3.png"}) write(name, "");
@@ -102,7 +102,7 @@ TEST_F(Footage, IgnoredImagesStayInTheirSequence) {
   EXPECT_NE(dataset.problems[0].find("ignore.txt:4: image"), std::string::npos);
 }
 
-TEST_F(Footage, FramesOfAVideoAreNamedByTheirNumber) {
+TEST_F(Footage, VideoFramesAreNamedByTheirNumber) {
   write_video("eye.avi", 5);
   write("gt.csv",
         std::string(kHeader) + "images/eye/frame_0003.png,,,,,\nimages/eye/frame_0001.png,,,,,\n");
@@ -124,7 +124,7 @@ TEST_F(Footage, FramesOfAVideoAreNamedByTheirNumber) {
   EXPECT_EQ(cv::norm(first, eye.pictures->picture(eye.frames[0]), cv::NORM_INF), 0.0);
 }
 
-TEST_F(Footage, RowsWithoutTheirFrameOfAVideoAreMissing) {
+TEST_F(Footage, RowsWithoutAVideoFrameAreReported) {
   write_video("eye.avi", 2);
   write("gt.csv",
         std::string(kHeader) +
@@ -137,7 +137,7 @@ TEST_F(Footage, RowsWithoutTheirFrameOfAVideoAreMissing) {
   EXPECT_EQ(dataset.missing_frames, 1U);
 }
 
-TEST_F(Footage, AVideoThatIsNoneIsNamed) {
+TEST_F(Footage, InvalidVideosAreReportedByName) {
   write("eye.mp4", "this is no video\n");
   write("gt.csv", std::string(kHeader) + "images/eye/frame_0000.png,,,,,\n");
   const Dataset dataset = read();
@@ -145,7 +145,7 @@ TEST_F(Footage, AVideoThatIsNoneIsNamed) {
   EXPECT_NE(dataset.problems.at(0).find("eye.mp4: "), std::string::npos) << dataset.problems[0];
 }
 
-TEST_F(Footage, VideosOfTheSameNameGiveFilesOfTheirOwn) {
+TEST_F(Footage, VideosOfTheSameNameGiveSeparateFiles) {
   for (const char* name : {"a", "b"}) {
     fs::create_directories(file(name));
     write_video(std::string(name) + "/eye.avi", 1);
@@ -163,14 +163,14 @@ TEST_F(Footage, VideosOfTheSameNameGiveFilesOfTheirOwn) {
   }
 }
 
-TEST_F(Footage, AFolderOfDataSetsIsEachOfThem) {
+TEST_F(Footage, FoldersOfDataSetsAreExpanded) {
   for (const char* name : {"b/gt.csv", "a/gt.csv", "other/readme.txt"}) write(name, "");
   EXPECT_EQ(dataset_folders(folder_.path()), (std::vector<fs::path>{file("a"), file("b")}));
   EXPECT_EQ(dataset_folders(file("a")), std::vector<fs::path>{file("a")});
   EXPECT_EQ(dataset_folders("scenes:7"), std::vector<fs::path>{"scenes:7"});
 }
 
-TEST_F(Footage, PicturesWithoutATimeFollowAtTheGivenRate) {
+TEST_F(Footage, PicturesWithoutTimesGetTheGivenRate) {
   write("gt.csv", std::string(kHeader) + "1.png,,,,,\n2.png,,,,,\n");
   write("1.png", "");
   write("2.png", "");

@@ -71,7 +71,7 @@ struct Hover {
   }
 };
 
-TEST(LandingPeers, FindTheirPadsWithinThreePercent) {
+TEST(LandingPeers, LocateTheirPadsWithinThreePercent) {
   for (const std::string& method : built_in_peers()) {
     for (const char* condition : {"approach", "dusk", "noise"}) {
       for (const double height : {2.5, 5.0, 9.0}) {
@@ -109,7 +109,7 @@ TEST(LandingPeers, LandOnTheMovingPad) {
 }
 
 // The renderer casts no shadows on sheets; the tag's pad must have the same light as the others.
-TEST(LandingPeers, SeeTheTagInTheShadowsOfTheOtherPads) {
+TEST(LandingPeers, DetectTheTagInTheShadowsOfTheOtherPads) {
   if (!landing::has_apriltag()) GTEST_SKIP() << "built without apriltag";
   const auto picture_of = [](ellipse::Scene scene) {
     scene.sensor.read_noise = 0.0;
@@ -138,7 +138,7 @@ TEST(LandingPeers, SeeTheTagInTheShadowsOfTheOtherPads) {
   EXPECT_GT(changed, 500);  // the tag itself
 }
 
-TEST(LandingPeers, SayWhichMethodThereIsNot) {
+TEST(LandingPeers, UnknownMethodsAreRejected) {
   EXPECT_NO_THROW(landing::check_method("contours+redetect"));
   EXPECT_NO_THROW(landing::check_method("whycon"));
   EXPECT_THROW(landing::check_method("aruco"), std::invalid_argument);

@@ -45,7 +45,7 @@ VehicleModel in_still_air() {
   return model;
 }
 
-TEST(Vehicle, TakesOnItsCommandedVelocityAndTiltsForIt) {
+TEST(Vehicle, TiltsToReachTheCommandedVelocity) {
   Vehicle vehicle(in_still_air(), {0.0, 0.0, 5.0}, 0.0, 1);
   const Command command{{3.0, 0.0, 0.0}, 0.0};
   for (int i = 0; i < 60; ++i) vehicle.step(command, kStep_s);
@@ -56,7 +56,7 @@ TEST(Vehicle, TakesOnItsCommandedVelocityAndTiltsForIt) {
   EXPECT_NEAR(vehicle.truth().position.z(), 5.0, 0.3);
 }
 
-TEST(Vehicle, HoldsItsPlaceInGustsWithinTheirReach) {
+TEST(Vehicle, HoldsItsPositionInGusts) {
   VehicleModel model = in_still_air();
   model.gust = 3.0;
   Vehicle vehicle(model, {0.0, 0.0, 5.0}, 0.0, 7);
@@ -82,7 +82,7 @@ TEST(Vehicle, IsTheSameForTheSameSeed) {
   EXPECT_NE(one.truth().position, other.truth().position);
 }
 
-TEST(Platform, DrivesAtItsSpeedAlongItsHeading) {
+TEST(Platform, MovesAtItsSpeedAlongItsHeading) {
   for (const Course course : {Course::kStraight, Course::kCircle, Course::kFigureOfEight}) {
     Platform platform(course, 4.2, 0.3);
     double way = 0.0;
@@ -100,7 +100,7 @@ TEST(Platform, DrivesAtItsSpeedAlongItsHeading) {
   EXPECT_EQ(still.velocity().norm(), 0.0);
 }
 
-TEST(CameraView, PutsThePadWhereTheVehicleSeesIt) {
+TEST(CameraView, ProjectsThePadAsTheVehicleSeesIt) {
   const Rig rig;
   Motion vehicle;
   vehicle.position = {-1.0, 0.5, 6.0};  // the pad is ahead of it, and to its right
@@ -114,7 +114,7 @@ TEST(CameraView, PutsThePadWhereTheVehicleSeesIt) {
   EXPECT_NEAR(outline->semi_major, rig.camera.fx * rig.pad_radius / height, 1e-6);
 }
 
-TEST(CameraView, FindsTheWayBackToThePad) {
+TEST(CameraView, RecoversThePositionOfThePad) {
   Rig rig;
   rig.pitch_rad = 0.3;
   Motion vehicle;
@@ -135,7 +135,7 @@ TEST(CameraView, FindsTheWayBackToThePad) {
               1e-12);
 }
 
-TEST(TargetFilter, LearnsAVelocityAndRefusesWhatCannotBe) {
+TEST(TargetFilter, EstimatesVelocityAndRejectsOutliers) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
   for (int i = 0; i <= 60; ++i) {
     const double time_s = i / 30.0;
@@ -147,7 +147,7 @@ TEST(TargetFilter, LearnsAVelocityAndRefusesWhatCannotBe) {
   EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
 }
 
-TEST(TargetFilter, BelievesTheRadioWhereWhatWasSeenIsFarFromIt) {
+TEST(TargetFilter, PrefersTheRadioWhereTheVisualEstimateIsFarFromIt) {
   TargetFilter filter(0.0, {20.0, 0.0, 0.0}, Vector2d::Zero(), 1.0, 0.5);
   filter.hear(1.0, {0.0, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
   EXPECT_NEAR(filter.at(1.0).position.x(), 0.0, 1e-9);
@@ -159,7 +159,7 @@ TEST(TargetFilter, BelievesTheRadioWhereWhatWasSeenIsFarFromIt) {
 
 // A few frames show a climbing pad, then it is lost. A minute later the filter accepts the pad at
 // its true position, although dead reckoning has risen by some metres.
-TEST(TargetFilter, DoesNotBelieveAClimbForLong) {
+TEST(TargetFilter, DampsTheVerticalVelocityAfterALoss) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1);
   for (int i = 0; i < 15; ++i) {
     const double time_s = i / 30.0;
@@ -214,7 +214,7 @@ class Hover {
   int frame_ = 0;
 };
 
-TEST(Controller, GoesThroughItsPhasesAndDown) {
+TEST(Controller, PassesThroughAllPhasesToTouchDown) {
   Hover hover({4.0, -3.0, 8.0});
   EXPECT_EQ(hover.phase(), Phase::kSearch);
   hover.fly_for(0.5, true);
@@ -227,7 +227,7 @@ TEST(Controller, GoesThroughItsPhasesAndDown) {
   EXPECT_EQ(hover.climbs(), 0);
 }
 
-TEST(Controller, DoesNotBeginWithAGlimpse) {
+TEST(Controller, StartsOnlyOnSufficientlyVisibleTargets) {
   Hover hover({4.0, -3.0, 8.0});
   hover.fly_for(0.5, true, 0.4);
   EXPECT_EQ(hover.phase(), Phase::kSearch);
@@ -248,12 +248,12 @@ double led_astray(double error) {
   return hover.position().x() - before;
 }
 
-TEST(Controller, WeighsAPositionByItsStatedError) {
+TEST(Controller, WeighsPositionsByTheirStatedError) {
   EXPECT_GT(led_astray(0.0), 0.02);
   EXPECT_LT(led_astray(0.1), 0.5 * led_astray(0.0));
 }
 
-TEST(Controller, ClimbsWhereItLosesSightOnItsWayDown) {
+TEST(Controller, ClimbsAfterLosingTheTargetInDescent) {
   Hover hover({0.2, 0.0, 8.0});
   for (int i = 0; i < 100 && hover.position().z() > 3.0; ++i) hover.fly_for(0.1, true);
   ASSERT_EQ(hover.phase(), Phase::kDescend);
@@ -276,7 +276,7 @@ Flight short_flight() {
   return flight;
 }
 
-TEST(Landing, EndsOnTheMovingPadAndAgainTheSame) {
+TEST(Landing, EndsOnTheMovingPadAndIsDeterministic) {
   const Outcome outcome = landing::fly(short_flight());
   ASSERT_TRUE(outcome.has_touched_down);
   EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
@@ -290,7 +290,7 @@ TEST(Landing, EndsOnTheMovingPadAndAgainTheSame) {
   EXPECT_EQ(again.moments.size(), outcome.moments.size());
 }
 
-TEST(Landing, BreaksOffWhereThePadIsHiddenAndTriesAgain) {
+TEST(Landing, AbortsAndRetriesWhenThePadIsHidden) {
   Flight flight = short_flight();
   flight.hidden_below = 2.5;
   flight.hidden_s = 3.0;
@@ -308,7 +308,7 @@ TEST(Landing, BreaksOffWhereThePadIsHiddenAndTriesAgain) {
   EXPECT_GT(highest, 3.5);
 }
 
-TEST(Landing, SaysWhichMethodThereIsNot) {
+TEST(Landing, UnknownMethodsAreRejected) {
   Flight flight = short_flight();
   flight.method = "arcs";
   EXPECT_THROW((void)landing::fly(flight), std::invalid_argument);
@@ -333,12 +333,12 @@ TEST(Report, CountsLandingsByMethodAndSpeed) {
 }
 
 // A pipeline that cannot start leaves no thread waiting.
-TEST(LandingPipeline, SaysWhatCannotStart) {
+TEST(LandingPipeline, ThrowsIfItCannotStart) {
   landing::Pipeline pipeline("videotestsrc ! filesink location=/no/such/folder/file");
   EXPECT_THROW(pipeline.play(), std::runtime_error);
 }
 
-TEST(LandingEye, SaysWhatHasStoppedIt) {
+TEST(LandingEye, ThrowsOnAPipelineError) {
   landing::PipelineEye eye({64, 48, 30}, "! identity error-after=3");
   const auto look = [&] {
     return eye.look(Vector3d::UnitZ(), [](const ellipse::MutableImage& picture) {
@@ -350,7 +350,7 @@ TEST(LandingEye, SaysWhatHasStoppedIt) {
   EXPECT_THROW((void)look(), std::runtime_error);
 }
 
-TEST(LandingPipeline, SaysWhatHasStoppedItWhileItIsFed) {
+TEST(LandingPipeline, ThrowsOnAnErrorWhileFed) {
   landing::Pipeline pipeline(
       "appsrc name=source ! filesink buffer-mode=unbuffered location=/dev/full");
   const landing::Element source = pipeline.element("source");

@@ -46,7 +46,7 @@ class Watched : public Chooser {
   std::vector<std::vector<std::string>> shown;
 };
 
-TEST(LeaveOneOut, ShowsTheChooserNoneOfTheGroupThatItIsJudgedOn) {
+TEST(LeaveOneOut, HidesTheJudgedGroupFromTheChooser) {
   const auto sequences = sources({"airlab-a", "airlab-b", "eye"});
   Watched chooser;
   const auto results = leave_one_out(sequences, SourceGroups(), chooser, {}, Rule::kIou, go_on);
@@ -60,7 +60,7 @@ TEST(LeaveOneOut, ShowsTheChooserNoneOfTheGroupThatItIsJudgedOn) {
   EXPECT_EQ(results[1].in_sample.name, "of 3");
 }
 
-TEST(LeaveOneOut, JudgesBothChoicesAndNoChoice) {
+TEST(LeaveOneOut, JudgesLeftOutAndInSampleChoicesAndTheDefaults) {
   Watched chooser;
   const auto results =
       leave_one_out(sources({"a", "b", "c"}), SourceGroups(), chooser, {}, Rule::kIou, go_on);
@@ -71,7 +71,7 @@ TEST(LeaveOneOut, JudgesBothChoicesAndNoChoice) {
   EXPECT_NE(in_sample_table("m", results).title.find("In sample"), std::string::npos);
 }
 
-TEST(LeaveOneOut, RefusesSourcesOfOneGroup) {
+TEST(LeaveOneOut, RejectsSourcesOfASingleGroup) {
   Watched chooser;
   EXPECT_THROW(
       (void)leave_one_out(
@@ -79,7 +79,7 @@ TEST(LeaveOneOut, RefusesSourcesOfOneGroup) {
       std::invalid_argument);
 }
 
-TEST(LeaveOneOut, GridTakesTheBestPointOfTheGivenSources) {
+TEST(LeaveOneOut, GridChoosesTheBestPointOnTheGivenSources) {
   const auto sequences = sources({"a", "b"});
   GridChooser chooser({{"min-axis", {"600", "5", "6"}}, {"max-axis-ratio", {"1.001", "5"}}},
                       {},
@@ -105,7 +105,7 @@ TEST(LeaveOneOut, GridNamesTheFramesThatCannotBeRead) {
   EXPECT_EQ(chooser.problems()[0], sequences[0].frames[0].name);
 }
 
-TEST(LeaveOneOut, PropertiesHaveValuesOrRanges) {
+TEST(LeaveOneOut, PropertiesAreParsedAsValuesOrRanges) {
   using Values = std::vector<std::string>;
   EXPECT_EQ(parse_property("x=0.8:0.85:0.9").values, (Values{"0.8", "0.85", "0.9"}));
   EXPECT_EQ(parse_property("x=0.8:0.9:0.05").values, (Values{"0.8", "0.85", "0.9"}));
@@ -131,7 +131,7 @@ TEST(SourceGroups, AreReadFromAFile) {
   EXPECT_EQ(SourceGroups().group_of("twin"), SourceGroups().group_of("scenes"));
 }
 
-TEST(SourceGroups, NameTheLineThatIsNone) {
+TEST(SourceGroups, ErrorNamesInvalidLines) {
   const support::TemporaryFolder folder;
   const std::string file = folder.file("groups.txt");
   std::ofstream(file) << "a: b\njust words\n";

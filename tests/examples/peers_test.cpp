@@ -72,7 +72,7 @@ TEST_P(EachPeer, FindsADisc) {
   EXPECT_EQ(target_found->contour_overlap, 0.0);
 }
 
-TEST_P(EachPeer, ForgetsThePictureBefore) {
+TEST_P(EachPeer, KeepsNoStateBetweenPictures) {
   const auto detector = make_peer(GetParam());
   const support::Picture with = support::rendered(disc(), target());
   ASSERT_FALSE(detector->detect(with.view(), kLimits).empty());
@@ -80,7 +80,7 @@ TEST_P(EachPeer, ForgetsThePictureBefore) {
   EXPECT_TRUE(detector->detect(without.view(), kLimits).empty());
 }
 
-TEST_P(EachPeer, ServesTheTrackerInSingleFrames) {
+TEST_P(EachPeer, WorksAsTheTrackersDetector) {
   ellipse::TrackerSettings settings;
   settings.tracking = ellipse::TrackingMode::kNone;
   ellipse::Tracker tracker(settings, make_peer(GetParam()));
@@ -173,7 +173,7 @@ TEST(Peers, AgreeOnTheDirectionOfTheMajorAxis) {
   }
 }
 
-TEST(Peers, AnUnknownOneIsNamed) {
+TEST(Peers, ErrorNamesUnknownPeers) {
   try {
     (void)make_peer("yolo");
     FAIL();
@@ -192,7 +192,7 @@ TEST(EdgeDrawing, FindsCirclesAndEllipses) {
   }
 }
 
-TEST(EdgeDrawing, FollowsAChangeOfTheSize) {
+TEST(EdgeDrawing, AdaptsToChangesOfTheFrameSize) {
   const auto detector = make_peer("edge-drawing");
   for (const int width : {320, 640, 330}) {
     const support::Picture picture = support::rendered(disc(), kEllipse, width);
@@ -211,7 +211,7 @@ std::vector<EdgePixel> pixels_along(const ellipse::Ellipse& e) {
   return pixels;
 }
 
-TEST(RandomizedHough, FindsAnEllipseAmongClutterTheSameWayTwice) {
+TEST(RandomizedHough, FindsAnEllipseAmongClutterDeterministically) {
   std::vector<EdgePixel> pixels = pixels_along(kEllipse);
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {
@@ -233,7 +233,7 @@ TEST(RandomizedHough, FindsAnEllipseAmongClutterTheSameWayTwice) {
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(again[i].ellipse, first[i].ellipse);
 }
 
-TEST(RandomizedHough, TakesAnyPixels) {
+TEST(RandomizedHough, AcceptsEmptyAndDegenerateInput) {
   RandomizedHough hough;
   EXPECT_TRUE(hough.find({}, kLimits).empty());
   EXPECT_TRUE(hough.find(std::vector<EdgePixel>(100), kLimits).empty());

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Examples,
                          testing::Values("03_probe.py", kPlot, "05_probe"),
                          test_name);
 
-TEST_P(Reader, SaysInOneLineWhatItCannotPlay) {
+TEST_P(Reader, ReportsUnplayableFilesInOneLine) {
   const Outcome element = run("nosuchsource");
   EXPECT_EQ(element.status, 1);
   EXPECT_EQ(element.text, "no element \"nosuchsource\"\n");
@@ -79,7 +79,7 @@ TEST_P(Reader, SaysInOneLineWhatItCannotPlay) {
   EXPECT_EQ(std::count(file.text.begin(), file.text.end(), '\n'), 1) << file.text;
 }
 
-TEST_P(Reader, SaysThatThePluginIsMissing) {
+TEST_P(Reader, ReportsThatThePluginIsMissing) {
   const Outcome outcome =
       programs::run("GST_PLUGIN_PATH= GST_PLUGIN_SYSTEM_PATH= GST_REGISTRY=" +
                     (folder_ / "registry.bin").string() + " " + command(GetParam(), "fakesrc"));
@@ -89,7 +89,7 @@ TEST_P(Reader, SaysThatThePluginIsMissing) {
 }
 
 // Modules of these names that fail to import come before the real ones in the path.
-TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
+TEST_P(Reader, ReportsMissingModulesInOneLine) {
   if (!is_script(GetParam())) GTEST_SKIP() << "no Python";
   for (const std::string module : {"gi", "matplotlib"}) {
     const fs::path modules = folder_ / ("without-" + module);
@@ -108,7 +108,7 @@ TEST_P(Reader, SaysInOneLineWhichModuleIsMissing) {
   }
 }
 
-TEST_P(Reader, EndsWellAtAnInterrupt) {
+TEST_P(Reader, ExitsCleanlyOnInterrupt) {
   // It runs once its first frame has been written.
   const std::string trace = (folder_ / "trace").string();
   const std::string start =
@@ -187,13 +187,13 @@ TEST_P(Probe, PrintsTheEllipsesOfEachFrame) {
   }
 }
 
-TEST_P(Probe, SaysWhereThereIsNothing) {
+TEST_P(Probe, ReportsFramesWithoutEllipses) {
   const Outcome outcome = run("videotestsrc pattern=black num-buffers=2");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.text, "frame    0  nothing\nframe    1  nothing\n");
 }
 
-TEST_P(Probe, PrintsWhatItsTwinPrints) {
+TEST_P(Probe, PrintsTheSameInCAndPython) {
   if (std::getenv("ELLIPSE_PYTHON") == nullptr) GTEST_SKIP() << "no Python with gi";
   const std::string source = "ellipsetestsrc scene=reenter num-buffers=60";
   const std::string twin = is_script(GetParam()) ? "05_probe" : "03_probe.py";
@@ -229,7 +229,7 @@ TEST_P(LivePlot, DrawsTheTargetOverTheTruth) {
   EXPECT_GT(green_pixels(), 1000);
 }
 
-TEST_P(LivePlot, HasNoLineWhereNothingWasFound) {
+TEST_P(LivePlot, DrawsNoLineWithoutATarget) {
   const Outcome outcome = run("videotestsrc pattern=black num-buffers=2");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_EQ(outcome.text, "2 frames, target in 0\n");

@@ -74,7 +74,7 @@ TEST_F(Programs, DemoReadsH264WithSoundFromMp4) {
 }
 
 // A range check alone accepts "nan".
-TEST_F(Programs, NumbersThatAreNotFiniteAreRefusedByName) {
+TEST_F(Programs, NonFiniteNumbersAreRejectedByName) {
   const std::string evaluate = "ellipse-evaluate scenes:1 ";
   const std::pair<std::string, std::string> commands[] = {{"ellipse-landing ", "--speed"},
                                                           {"ellipse-landing ", "--gust"},
@@ -94,7 +94,7 @@ TEST_F(Programs, NumbersThatAreNotFiniteAreRefusedByName) {
   EXPECT_NE(second.text.find("--speed"), std::string::npos) << second.text;
 }
 
-TEST_F(Programs, DemoSaysInOneLineWhatIsWrong) {
+TEST_F(Programs, DemoReportsBadInputsInOneLine) {
   const fs::path text_file = folder_ / "text.mp4";
   std::ofstream(text_file) << "this is no video\n";
   for (const std::string& input : {std::string("no-such-file.mp4"),
@@ -108,7 +108,7 @@ TEST_F(Programs, DemoSaysInOneLineWhatIsWrong) {
   }
 }
 
-TEST_F(Programs, EvaluateNamesWhatItCannotUse) {
+TEST_F(Programs, EvaluateNamesUnusableFoldersAndSettings) {
   const Outcome folder = run("ellipse-evaluate", folder_.string());
   EXPECT_EQ(folder.status, 1);
   EXPECT_NE(folder.text.find(folder_.string()), std::string::npos) << folder.text;
@@ -140,7 +140,7 @@ TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
 }
 
 // CSRT is slow, so the program still runs when the key is pressed.
-TEST_F(Programs, EvaluateInterruptedShowsWhatItHas) {
+TEST_F(Programs, EvaluateShowsPartialResultsWhenInterrupted) {
   const fs::path json = folder_ / "json";
   support::Terminal terminal({std::string(std::getenv("ELLIPSE_PROGRAMS")) + "/ellipse-evaluate",
                               "--methods",
@@ -187,7 +187,7 @@ TEST_F(Programs, EvaluateFailsBelowItsLimitsAndNamesThem) {
   EXPECT_NE(run("ellipse-evaluate", good + "--min-f1 95").status, 0);  // a fraction, not a percent
 }
 
-TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
+TEST_F(Programs, EvaluateSweepWritesTableAndPlots) {
   write_dataset(folder_ / "set", 3);
   const Outcome outcome =
       run("ellipse-evaluate",
@@ -203,7 +203,7 @@ TEST_F(Programs, EvaluateSweepLeavesTableAndPlots) {
   EXPECT_GT(fs::file_size(folder_ / "sweep/detect-contour-overlap.png"), 5000U);
 }
 
-TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
+TEST_F(Programs, EvaluateRunsAnotherProgramAsAPeer) {
   write_dataset(folder_ / "set", 2);
   const fs::path peer = write_wrong_peer(folder_);
   const Outcome outcome =
@@ -218,7 +218,7 @@ TEST_F(Programs, EvaluateTakesAnotherProgramAsAPeer) {
   EXPECT_NE(json.find("\"WD\":{\"frames\":2,\"avg_ms\":1.5", position), std::string::npos) << json;
 }
 
-TEST_F(Programs, EvaluateReadsAFolderOfDataSetsIntoOneTable) {
+TEST_F(Programs, EvaluateTabulatesAFolderOfDataSets) {
   write_dataset(folder_ / "sets/one", 3);
   write_dataset(folder_ / "sets/two", 2);
   const fs::path page = folder_ / "page";
@@ -244,7 +244,7 @@ TEST_F(Programs, EvaluateReadsAFolderOfDataSetsIntoOneTable) {
   EXPECT_NE(html.find("The worst frames of arcs+edges", second), std::string::npos);
 }
 
-TEST_F(Programs, EvaluateChoosesOnOtherSources) {
+TEST_F(Programs, EvaluateChoosesSettingsOnOtherSources) {
   for (const char* name : {"one", "two"}) write_dataset(folder_ / name, 2);
   const std::string sets = (folder_ / "one").string() + " " + (folder_ / "two").string();
   std::ofstream(folder_ / "apart.txt") << "first: twi?\n";
@@ -276,7 +276,7 @@ TEST_F(Programs, EvaluateChoosesOnOtherSources) {
   EXPECT_NE(nothing.text.find("--choose"), std::string::npos) << nothing.text;
 }
 
-TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
+TEST_F(Programs, EvaluateComparesTrackingOnScenesWithPeers) {
   const Outcome outcome =
       run("ellipse-evaluate",
           "scenes:7 --seconds 0.1 --fps 30 --methods arcs+edges,kcf,csrt --json " +
@@ -296,7 +296,7 @@ TEST_F(Programs, EvaluateFollowsThroughScenesBesidePeers) {
   EXPECT_EQ(run("ellipse-evaluate", "scenes:seven").status, 1);
 }
 
-TEST_F(Programs, EvaluateLooksThroughLenses) {
+TEST_F(Programs, EvaluateRunsOnDistortedScenes) {
   const fs::path frames = folder_ / "frames";
   const Outcome outcome = run("ellipse-evaluate",
                               "distorted:7 --seconds 0.1 --fps 10 --methods arcs+edges --frames " +
@@ -328,7 +328,7 @@ Outcome run_bounded(const std::string& arguments) {
                        arguments);
 }
 
-TEST_F(Programs, LandingSaysBeforeItFliesWhatItCannotWrite) {
+TEST_F(Programs, LandingReportsUnwritableOutputsBeforeTheFlight) {
   for (const std::string& output : {"--video " + (folder_ / "no/x.mkv").string(),
                                     "--video " + folder_.string(),
                                     std::string("--report /proc/x")}) {
@@ -338,7 +338,7 @@ TEST_F(Programs, LandingSaysBeforeItFliesWhatItCannotWrite) {
   }
 }
 
-TEST_F(Programs, LandingEndsWhereTheDiskIsFull) {
+TEST_F(Programs, LandingStopsWhenTheDiskIsFull) {
   const Outcome landing = run_bounded(std::string(kShortLanding) + "--video /dev/full");
   EXPECT_EQ(landing.status, 1) << landing.text;
   EXPECT_NE(landing.text.find("ellipse-landing: --video /dev/full: "), std::string::npos)

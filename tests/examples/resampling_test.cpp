@@ -32,26 +32,26 @@ std::vector<FrameCounts> missing_first(std::size_t missed, std::size_t frames = 
   return counts;
 }
 
-TEST(Resampling, GradesByF1OrByFramesWithoutAGhost) {
+TEST(Resampling, GradesByF1OrByTheShareWithoutFalseTargets) {
   EXPECT_DOUBLE_EQ(f1_of({10, 6, 2, 1}), 12.0 / 15.0);
   EXPECT_TRUE(std::isnan(f1_of({10, 0, 2, 0})));
   EXPECT_DOUBLE_EQ(grade_of({10, 0, 2, 0}), 0.8);
 }
 
-TEST(Resampling, DrawsSequencesWhereThereAreEnough) {
+TEST(Resampling, ResamplesSequencesIfThereAreEnough) {
   const SourceFrames five{{10, 10, 10, 10, 10}, 30.0};
   EXPECT_TRUE(scheme_for(five, missing_each(3, 50)).draws_sequences);
   EXPECT_FALSE(scheme_for(kVideo, missing_each(3)).draws_sequences);
 }
 
-TEST(Resampling, BlocksLastAsLongAsErrorsDo) {
+TEST(Resampling, BlocksAreAsLongAsRunsOfErrors) {
   EXPECT_EQ(scheme_for(kVideo, missing_each(7)).block_frames, 30U);      // a second
   EXPECT_GT(scheme_for(kVideo, missing_first(150)).block_frames, 60U);   // a run of errors
   EXPECT_EQ(scheme_for(kVideo, missing_first(300)).block_frames, 120U);  // a fifth at most
   EXPECT_EQ(scheme_for({{20}, 30.0}, missing_each(3, 20)).block_frames, 4U);
 }
 
-TEST(Resampling, IntervalsAreWiderWhereErrorsComeTogether) {
+TEST(Resampling, IntervalsAreWiderForClusteredErrors) {
   const auto spread = missing_each(11);  // 55 misses
   const auto together = missing_first(55);
   const Interval narrow = grade_interval(kVideo, scheme_for(kVideo, spread), spread);
@@ -64,12 +64,12 @@ TEST(Resampling, IntervalsAreWiderWhereErrorsComeTogether) {
   EXPECT_GT(wide.high - wide.low, 5.0 * (narrow.high - narrow.low));
 }
 
-TEST(Resampling, WithoutAnErrorThereIsNoInterval) {
+TEST(Resampling, ThereIsNoIntervalWithoutErrors) {
   const std::vector<FrameCounts> perfect(600, kRight);
   EXPECT_TRUE(std::isnan(grade_interval(kVideo, scheme_for(kVideo, perfect), perfect).low));
 }
 
-TEST(Resampling, IntervalsHoldTheTruthNineteenTimesInTwenty) {
+TEST(Resampling, IntervalsContainTheTruthInNinetyFivePercent) {
   // Sequences with different miss rates, whose frames are not independent draws.
   ellipse::Random random(3);
   constexpr int kSources = 200;
@@ -90,7 +90,7 @@ TEST(Resampling, IntervalsHoldTheTruthNineteenTimesInTwenty) {
   EXPECT_LE(held, 0.99 * kSources);
 }
 
-TEST(Resampling, ClaimsADifferenceThatLastsAndNoneOfOneMoment) {
+TEST(Resampling, FindsLastingDifferencesOnly) {
   const std::vector<FrameCounts> perfect(600, kRight);
   const auto claims = [&](const std::vector<FrameCounts>& other) {
     const Scheme scheme = scheme_for(kVideo, other);
@@ -101,7 +101,7 @@ TEST(Resampling, ClaimsADifferenceThatLastsAndNoneOfOneMoment) {
   EXPECT_TRUE(claims(missing_each(20)));
 }
 
-TEST(Resampling, ComparesByTheSameFrames) {
+TEST(Resampling, ComparesPairedByFrame) {
   // Both fail in the hard half, one in a few more frames. Unpaired, the intervals overlap.
   auto a = missing_first(300);
   auto b = a;

@@ -65,7 +65,7 @@ class SourceTables : public testing::Test {
   Evaluation evaluation_;
 };
 
-TEST_F(SourceTables, HaveARowForEachSourceAndTheBestPeerBeside) {
+TEST_F(SourceTables, ListEachSourceWithItsBestPeer) {
   const auto results = source_results(evaluation_);
   const Table table = source_table(evaluation_, results);
   ASSERT_EQ(table.rows.size(), 3U);  // and the mean
@@ -80,7 +80,7 @@ TEST_F(SourceTables, HaveARowForEachSourceAndTheBestPeerBeside) {
   EXPECT_EQ(table.rows[2][2], "0.987 ");
 }
 
-TEST_F(SourceTables, GiveAnIntervalForEachFigure) {
+TEST_F(SourceTables, ListAnIntervalForEachGrade) {
   const auto results = source_results(evaluation_);
   const Interval interval = results[0].methods[1].interval;
   EXPECT_LT(interval.low, results[0].methods[1].grade);
@@ -90,13 +90,13 @@ TEST_F(SourceTables, GiveAnIntervalForEachFigure) {
   EXPECT_NE(table.note.find("sequences: eye, road"), std::string::npos) << table.note;
 }
 
-TEST_F(SourceTables, AWrongTargetIsMistakenAndMissed) {
+TEST_F(SourceTables, WrongTargetsCountAsMistakenAndMissed) {
   EXPECT_EQ(counts_of(Outcome::kWrong).mistaken, 1);
   EXPECT_EQ(counts_of(Outcome::kWrong).missed, 1);
   EXPECT_EQ(counts_of(Outcome::kNotJudged).judged, 0);
 }
 
-TEST_F(SourceTables, OfAllEllipsesAreThereWhereAskedFor) {
+TEST_F(SourceTables, IncludeAllEllipsesOnRequest) {
   EXPECT_EQ(source_tables(evaluation_).size(), 2U);
   for (std::size_t i = 0; i < 2 * kFrames; ++i) {
     AllResult one;
@@ -112,7 +112,7 @@ TEST_F(SourceTables, OfAllEllipsesAreThereWhereAskedFor) {
   EXPECT_EQ(table.rows[1][7], "-");
 }
 
-TEST_F(SourceTables, AreThereForPrograms) {
+TEST_F(SourceTables, AreAlsoWrittenAsJson) {
   std::ostringstream out;
   write_json_sources(out, evaluation_);
   EXPECT_NE(out.str().find("{\"method\":\"arcs+edges\",\"dataset\":\"road\",\"grade\":1,"
@@ -122,7 +122,7 @@ TEST_F(SourceTables, AreThereForPrograms) {
       << out.str();
 }
 
-TEST(Methods, OfOursHaveOurDetectorOrOurTracker) {
+TEST(Methods, OursAreThoseWithOurDetectorOrOurTracker) {
   for (const char* ours : {"arcs+edges", "arcs+none", "arcs+redetect", "contours+edges"}) {
     EXPECT_TRUE(is_ours(ours)) << ours;
   }

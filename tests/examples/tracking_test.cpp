@@ -96,7 +96,7 @@ TEST(Tracking, SortsFramesByTheVisiblePart) {
   EXPECT_EQ(m.empty_frames, 0);
 }
 
-TEST(Tracking, CountsWhatAnAnswerIsWorth) {
+TEST(Tracking, CountsAnswersByTheirError) {
   const TrackingMeasures m = measured({{1.0, Says::kRight},
                                        {1.0, Says::kRight},
                                        {0.9, Says::kNear},
@@ -113,7 +113,7 @@ TEST(Tracking, CountsWhatAnAnswerIsWorth) {
   EXPECT_EQ(m.centre_errors_px, std::vector<double>(2, 0.0));  // of the right answers
 }
 
-TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
+TEST(Tracking, CountsFromTheFirstFrameWithHalfOfThePerimeterInView) {
   const TrackingMeasures m =
       measured({{0.4, Says::kWrong}, {0.49, Says::kNone}, {0.5, Says::kRight}, {0.4, Says::kNone}});
   EXPECT_EQ(m.ranges[1].frames, 2);
@@ -123,7 +123,7 @@ TEST(Tracking, BeginsWithHalfOfThePerimeterInView) {
   EXPECT_TRUE(m.returns.empty());  // the first detection is not a return
 }
 
-TEST(Tracking, BeginsAnewAfterTheTargetWasOutOfView) {
+TEST(Tracking, CountingRestartsAfterTheTargetWasOutOfView) {
   const TrackingMeasures m = measured({{1.0, Says::kRight},
                                        {0.2, Says::kRight},
                                        {kOut, Says::kNone},
@@ -137,7 +137,7 @@ TEST(Tracking, BeginsAnewAfterTheTargetWasOutOfView) {
   EXPECT_EQ(m.returns, std::vector<double>{1.0});
 }
 
-TEST(Tracking, LocksOnNothingCountFromTheFirstFrame) {
+TEST(Tracking, FalseLocksCountFromTheFirstFrame) {
   const TrackingMeasures m = measured({{kOut, Says::kWrong},
                                        {kOut, Says::kNone},
                                        {1.0, Says::kRight},
@@ -147,7 +147,7 @@ TEST(Tracking, LocksOnNothingCountFromTheFirstFrame) {
   EXPECT_EQ(m.locks_on_nothing, 2);
 }
 
-TEST(Tracking, CountsFramesUntilALostTargetIsRightAgain) {
+TEST(Tracking, CountsFramesUntilALostTargetIsFoundAgain) {
   const auto returns = [](const std::vector<Step>& after) {
     std::vector<Step> steps = {{1.0, Says::kRight}};
     steps.insert(steps.end(), after.begin(), after.end());
@@ -170,14 +170,14 @@ TEST(Tracking, CountsFramesUntilALostTargetIsRightAgain) {
   EXPECT_EQ(returns({gone, missed, {0.8, Says::kGiven}, found}), List{});
 }
 
-TEST(Tracking, WhatWasToldCountsAsGivenAlone) {
+TEST(Tracking, GivenTargetsCountOnlyAsGiven) {
   const TrackingMeasures m = measured({{1.0, Says::kGiven}, {1.0, Says::kRight}});
   EXPECT_EQ(m.given, 1);
   EXPECT_EQ(m.ranges[0].frames, 1);
   EXPECT_EQ(m.times_ms, std::vector<double>{2.0});
 }
 
-TEST(Tracking, EachSequenceBeginsAfresh) {
+TEST(Tracking, StateIsResetForEachSequence) {
   const PreparedAnswers two({{{1.0, Says::kRight}, {kOut, Says::kNone}},
                              {{0.2, Says::kWrong}, {0.8, Says::kNone}, {0.8, Says::kRight}}});
   const TrackingMeasures m = two.measures();
@@ -188,7 +188,7 @@ TEST(Tracking, EachSequenceBeginsAfresh) {
   EXPECT_EQ(tracking_measures_of(two.evaluation(), 0, "another").times_ms.size(), 0U);
 }
 
-TEST(Tracking, TablesShowSharesAndFrames) {
+TEST(Tracking, TablesShowSharesAndFrameCounts) {
   const PreparedAnswers answers({{{1.0, Says::kRight},
                                   {0.2, Says::kWrong},
                                   {0.8, Says::kNone},

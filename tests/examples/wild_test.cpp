@@ -15,7 +15,7 @@
 namespace evaluate {
 namespace {
 
-TEST(WildDataset, HasEachSeedInItsOwnSizeAndRate) {
+TEST(WildDataset, KeepsSizeAndRateOfEachSeed) {
   const auto sequences = wild_by_name("wild:9-11", 1.0);
   ASSERT_TRUE(sequences);
   ASSERT_EQ(sequences->size(), 3U);
@@ -50,7 +50,7 @@ TEST(WildDataset, FramesHaveAllTrueEllipses) {
   EXPECT_TRUE(ellipses_of(sequences->back().frames[0].truth).empty());
 }
 
-TEST(WildDataset, OtherNamesAreNotItsOwnAndBrokenOnesAreErrors) {
+TEST(WildDataset, IgnoresOtherNamesAndRejectsMalformedOnes) {
   EXPECT_FALSE(wild_by_name("scenes:1", 1.0));
   EXPECT_FALSE(wild_by_name("wilderness", 1.0));
   for (const char* bad : {"wild:", "wild:x", "wild:5-3", "wild-frames:1-200000"}) {

@@ -38,7 +38,7 @@ ellipse::Target target(std::uint64_t id, ellipse::TargetState state) {
   return target;
 }
 
-TEST(Sighting, EndsWithTheLastFrameInWhichTheTargetWasVisible) {
+TEST(Sighting, EndsWithTheLastFrameWithAVisibleTarget) {
   Sighting sighting;
   sighting.add(target(1, ellipse::TargetState::kDetected), 100);
   sighting.add(target(1, ellipse::TargetState::kTracked), 200);
@@ -54,7 +54,7 @@ TEST(Sighting, EndsWithTheLastFrameInWhichTheTargetWasVisible) {
 
 #ifndef ELLIPSE_HAS_ANALYTICS
 
-TEST(EllipseTrackAnalytics, AreRefusedWithTheVersionThatTheyNeed) {
+TEST(EllipseTrackAnalytics, WarningNamesTheRequiredVersion) {
   const auto harness = tracker();
   BusTap bus(element_of(harness));
   g_object_set(element_of(harness), "attach-analytics", TRUE, nullptr);
@@ -72,7 +72,7 @@ TEST(EllipseTrackAnalytics, AreRefusedWithTheVersionThatTheyNeed) {
   EXPECT_FALSE(is_on);
 }
 
-TEST(EllipseTrackAnalytics, FailTheStartOfALaunchLine) {
+TEST(EllipseTrackAnalytics, UnsupportedAnalyticsFailTheStart) {
   const std::string error =
       run_pipeline("ellipsetestsrc num-buffers=1 ! ellipsetrack attach-analytics=true ! fakesink");
   EXPECT_NE(error.find("attach-analytics needs a build with GStreamer 1.24"), std::string::npos)
@@ -150,7 +150,7 @@ TEST(EllipseTrackAnalytics, AreOffByDefault) {
   EXPECT_EQ(gst_buffer_get_analytics_relation_meta(out.get()), nullptr);
 }
 
-TEST(EllipseTrackAnalytics, ATargetIsAnObjectThatIsTracked) {
+TEST(EllipseTrackAnalytics, TargetsAreTrackedObjects) {
   const auto harness = tracker("attach-analytics=true");
   push(harness, frame_at(ring_picture(), 1000));
   const auto out = push(harness, frame_at(ring_picture(), 2000));
@@ -176,7 +176,7 @@ Picture drifting_pad(int frame, bool is_half_hidden) {
   return support::rendered(scene, pad, 320, 240, static_cast<std::uint64_t>(frame));
 }
 
-TEST(EllipseTrackAnalytics, APredictedTargetWasSeenBefore) {
+TEST(EllipseTrackAnalytics, PredictedTargetsWereSeenBefore) {
   // With the default min-probability, half a pad would be detected again.
   const auto harness = tracker("attach-analytics=true min-probability=0.99");
   const auto pts_of = [](int frame) { return static_cast<GstClockTime>(frame) * GST_SECOND / 30; };
@@ -200,7 +200,7 @@ TEST(EllipseTrackAnalytics, CandidatesAreObjectsWithoutATrack) {
   EXPECT_FALSE(track_of(out.get(), objects[1]));
 }
 
-TEST(EllipseTrackAnalytics, JoinThoseOfOtherElements) {
+TEST(EllipseTrackAnalytics, AreAddedToThoseOfOtherElements) {
   const auto harness = tracker("attach-analytics=true");
   auto buffer = gray_buffer_of(ring_picture());
   GstAnalyticsODMtd face;
@@ -258,7 +258,7 @@ TEST(AnalyticsObject, IsTheOrientedBoxAroundTheEllipse) {
 #endif
 
 // The metadata's axes are those of the ideal plane, not of the picture.
-TEST(AnalyticsObject, OfADistortedOutlineIsItsUprightBox) {
+TEST(AnalyticsObject, DistortedOutlinesGiveTheirUprightBox) {
   const Owned<GstBuffer> buffer(gst_buffer_new());
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_CANDIDATE);
   meta->semi_major = 30.0;
@@ -271,7 +271,7 @@ TEST(AnalyticsObject, OfADistortedOutlineIsItsUprightBox) {
   EXPECT_EQ(object.angle_rad, 0.0F);
 }
 
-TEST(AnalyticsObject, OutsideTheFrameIsNone) {
+TEST(AnalyticsObject, IsAbsentOutsideTheFrame) {
   const Owned<GstBuffer> buffer(gst_buffer_new());
   GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
   attach_object(buffer.get(), *meta, {0, 0, 0, 0}, {});

@@ -52,7 +52,7 @@ std::size_t frames_of(const std::string& pipeline) {
   return verdicts.all().size();
 }
 
-TEST(BrokenStream, PicturesOfTurnedOverBytesPass) {
+TEST(BrokenStream, CorruptedPicturesPass) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_pipeline(kSource + "jpegenc ! multifilesink location=" + folder.file("%03d.jpg")),
             "");
@@ -76,7 +76,7 @@ TEST(BrokenStream, PicturesOfTurnedOverBytesPass) {
             std::size_t{1});
 }
 
-TEST(BrokenStream, VideoOfTurnedOverBytesPasses) {
+TEST(BrokenStream, CorruptedVideoPasses) {
   const TemporaryFolder folder;
   const std::string made = run_pipeline(
       kSource +

@@ -87,7 +87,7 @@ TEST(ThreadSanitizer, DISABLED_CountsUnderAMutex) {
   g_mutex_clear(&mutex);
 }
 
-TEST(ThreadSanitizer, DISABLED_CountsUnderNone) {
+TEST(ThreadSanitizer, DISABLED_CountsWithoutAMutex) {
   EXPECT_GT(count_in_two_threads(nullptr), 0);
 }
 
@@ -96,7 +96,7 @@ TEST(ThreadSanitizer, KnowsGLibsMutexes) {
   const std::string log = folder.file("log");
   EXPECT_TRUE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderAMutex", log))
       << contents_of(log);
-  EXPECT_FALSE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsUnderNone", log));
+  EXPECT_FALSE(run_own_tests("", "ThreadSanitizer.DISABLED_CountsWithoutAMutex", log));
   EXPECT_NE(contents_of(log).find("data race"), std::string::npos) << contents_of(log);
 }
 

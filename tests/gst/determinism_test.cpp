@@ -92,7 +92,7 @@ int found_in(const std::vector<Verdict>& verdicts, std::set<std::uint64_t>& ids)
 
 class Determinism : public testing::TestWithParam<const char*> {};
 
-TEST_P(Determinism, RunAfterRun) {
+TEST_P(Determinism, RepeatedRunsGiveTheSame) {
   for (const char* scene : {"occluded", "noise", "shake"}) {
     const std::vector<Frame>& frames = film(scene);
     const std::vector<Verdict> first = shown(frames, GetParam());
@@ -102,14 +102,14 @@ TEST_P(Determinism, RunAfterRun) {
   }
 }
 
-TEST_P(Determinism, WhicheverThreadBringsABuffer) {
+TEST_P(Determinism, IsIndependentOfTheStreamingThread) {
   for (const char* scene : {"approach", "noise"}) {
     const std::vector<Frame>& frames = film(scene);
     EXPECT_EQ(shown(frames, GetParam(), kInThreadsOfTheirOwn), shown(frames, GetParam())) << scene;
   }
 }
 
-TEST_P(Determinism, AfterAResetByFlush) {
+TEST_P(Determinism, FlushRestoresTheInitialState) {
   const std::vector<Frame>& frames = film("shake");
   const auto harness = support::tracker(GetParam(), caps_of("GRAY8", kWidth, kHeight));
   std::vector<Verdict> rounds[2];
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Settings,
                                          "tracking=none detector=contours",
                                          "tracking=redetect detector=contours"));
 
-TEST(Gaps, EveryThirdFrameIsEnoughToKeepTheTarget) {
+TEST(Gaps, EveryThirdFrameSufficesToKeepTheTarget) {
   const std::vector<Verdict> verdicts = shown(film("approach"), "interval=3");
   std::set<std::uint64_t> ids;
   EXPECT_EQ(found_in(verdicts, ids), 20);
@@ -157,7 +157,7 @@ TEST(Gaps, FiveLostFramesDoNotLoseTheTarget) {
 }
 
 // Like decoders that omit some time stamps.
-TEST(Gaps, LostTimeStampsLoseNothing) {
+TEST(Gaps, MissingTimestampsLoseNoTarget) {
   for (const char* scene : {"approach", "touchdown", "dash"}) {
     std::vector<Frame> frames = film(scene, 150, [](int) { return false; });
     const std::vector<Verdict> whole = shown(frames);

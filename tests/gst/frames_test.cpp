@@ -67,7 +67,7 @@ TEST_P(EachFormat, PassesInTheSmallestAndTheThinnestFrames) {
   pass(kLargest, 3);
 }
 
-TEST_P(EachFormat, IsFoundInTheFarCornerOfTheLargestFrames) {
+TEST_P(EachFormat, FindsTargetsInTheFarCornerOfTheLargestFrames) {
   const GstVideoInfo info = info_of(GetParam(), kLargest, kLargest);
   auto buffer = black(info);
   const Picture ring = ring_picture();
@@ -83,7 +83,7 @@ TEST_P(EachFormat, IsFoundInTheFarCornerOfTheLargestFrames) {
   EXPECT_NEAR(meta->semi_major, kRing.semi_major, 0.3);
 }
 
-TEST_P(EachFormat, SharedPixelsStayTheSameMemory) {
+TEST_P(EachFormat, SharedPixelsAreNotCopied) {
   const auto harness = tracker("", caps_of(GetParam(), 320, 240));
   auto buffer = buffer_of(ring_picture(), info_of(GetParam(), 320, 240));
   const Owned<GstBuffer> shared(gst_buffer_ref(buffer.get()));  // as after a tee
@@ -98,7 +98,7 @@ TEST_P(EachFormat, SharedPixelsStayTheSameMemory) {
   EXPECT_EQ(support::bytes_of(out.get()), before);
 }
 
-TEST_P(EachFormat, RowsAndPlanesMayLieAnywhere) {
+TEST_P(EachFormat, AcceptsAnyStridesAndPlaneOffsets) {
   const Picture ring = ring_picture();
   const GstVideoInfo plain = info_of(GetParam(), ring.width, ring.height);
   GstVideoInfo info = plain;
@@ -149,7 +149,7 @@ TEST(EllipseTrackFrames, MayBeReadOnly) {
   EXPECT_EQ(gst_buffer_peek_memory(out.get(), 0), memory);
 }
 
-TEST(EllipseTrackFrames, InterlacedOnesAreWarnedOf) {
+TEST(EllipseTrackFrames, InterlacedFramesCauseAWarning) {
   for (const char* mode : {"progressive", "interleaved", "mixed", "fields"}) {
     Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));
     BusTap bus(element_of(harness));
@@ -159,7 +159,7 @@ TEST(EllipseTrackFrames, InterlacedOnesAreWarnedOf) {
   }
 }
 
-TEST(EllipseTrackFrames, OtherFormatsEndWithTheListOfThoseServed) {
+TEST(EllipseTrackFrames, UnsupportedFormatsFailWithTheListOfSupportedOnes) {
   for (const char* element : {"ellipsetrack", "ellipseoverlay"}) {
     support::Pipeline pipeline(
         std::string("filesrc location=/dev/zero num-buffers=100 ! rawvideoparse format=v210 "
@@ -176,7 +176,7 @@ TEST(EllipseTrackFrames, OtherFormatsEndWithTheListOfThoseServed) {
 }
 
 // A query about formats is not a stream error.
-TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
+TEST(EllipseTrackFrames, QueriesForUnsupportedFormatsPostNoError) {
   const auto harness = tracker();
   BusTap bus(element_of(harness));
   GstCaps* caps = gst_caps_from_string(caps_of("v210", 48, 32).c_str());
@@ -186,7 +186,7 @@ TEST(EllipseTrackFrames, AskingForOtherFormatsIsNoError) {
 }
 
 // Like a camera: GStreamer's own converter makes the mosaic.
-TEST(EllipseTrackFrames, MosaicsAndTenBitsGiveTheEllipseOfGrey) {
+TEST(EllipseTrackFrames, MosaicsAndTenBitsGiveTheSameEllipseAsGrey) {
   const auto centre_in = [](const std::string& format) {
     support::Pipeline pipeline("ellipsetestsrc num-buffers=5 ! videoconvert ! " + format +
                                " ! ellipsetrack name=t ! fakesink");

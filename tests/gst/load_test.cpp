@@ -34,7 +34,7 @@ int frames_until_change(LoadWatch& load, GstClockTime processing_time) {
   return 0;
 }
 
-TEST(LoadWatch, SearchesCoarserBeforeItSkips) {
+TEST(LoadWatch, CoarsensTheSearchBeforeItSkips) {
   LoadWatch load;
   std::string steps;
   for (int step = 0; step < 5; ++step) {
@@ -45,7 +45,7 @@ TEST(LoadWatch, SearchesCoarserBeforeItSkips) {
   EXPECT_EQ(frames_until_change(load, kLimit + 1), 0);  // no further reduction
 }
 
-TEST(LoadWatch, TakesBackOneStepAfterALongRest) {
+TEST(LoadWatch, UndoesOneStepAfterALongRest) {
   LoadWatch load;
   frames_until_change(load, 2 * kLimit);
   frames_until_change(load, 2 * kLimit);
@@ -55,7 +55,7 @@ TEST(LoadWatch, TakesBackOneStepAfterALongRest) {
   EXPECT_FALSE(load.is_overloaded());
 }
 
-TEST(LoadWatch, StaysWhereItIsBetweenHalfAndAll) {
+TEST(LoadWatch, KeepsItsStepBetweenHalfAndTheWholeLimit) {
   LoadWatch load;
   frames_until_change(load, 2 * kLimit);
   EXPECT_EQ(frames_until_change(load, kLimit), 0);
@@ -63,14 +63,14 @@ TEST(LoadWatch, StaysWhereItIsBetweenHalfAndAll) {
   EXPECT_EQ(load.scale(), 2);
 }
 
-TEST(LoadWatch, OneLateFrameNowAndThenIsNoLoad) {
+TEST(LoadWatch, OccasionalLateFramesAreNoOverload) {
   LoadWatch load;
   for (int i = 0; i < 1000; ++i) {
     EXPECT_FALSE(load.add(i % 30 == 0 ? 5 * kLimit : kLimit / 5, kLimit)) << i;
   }
 }
 
-TEST(LoadWatch, EveryEighthFrameLateIsOne) {
+TEST(LoadWatch, EveryEighthFrameLateIsAnOverload) {
   LoadWatch load;
   for (int i = 0; i < 300 && !load.is_overloaded(); ++i) {
     load.add(i % 8 == 0 ? 2 * kLimit : kLimit / 5, kLimit);
@@ -78,7 +78,7 @@ TEST(LoadWatch, EveryEighthFrameLateIsOne) {
   EXPECT_EQ(load.scale(), 2);
 }
 
-TEST(LoadWatch, WithoutALimitItForgets) {
+TEST(LoadWatch, IsResetWithoutALimit) {
   LoadWatch load;
   EXPECT_FALSE(load.add(GST_SECOND, 0));
   frames_until_change(load, 2 * kLimit);
@@ -94,7 +94,7 @@ TEST(LoadWatch, SkipsEvenly) {
   EXPECT_EQ(pattern, "...x...x.");
 }
 
-TEST(Lateness, LeavesOneFrameOfFive) {
+TEST(Lateness, KeepsOneFrameInFive) {
   Lateness lateness;
   EXPECT_FALSE(lateness.should_skip(0));
   lateness.observe(100, 1000);
@@ -109,7 +109,7 @@ TEST(Lateness, LeavesOneFrameOfFive) {
   EXPECT_FALSE(lateness.should_skip(50));
 }
 
-TEST(TrackStats, TellsTimesOfTheLastFrames) {
+TEST(TrackStats, ReportsTimesOfTheLastFrames) {
   TrackStats stats;
   EXPECT_EQ(stats.latency(), 0U);
   for (guint64 i = 0; i < 50; ++i) stats.add_analysed(std::nullopt, GST_SECOND);
@@ -126,7 +126,7 @@ TEST(TrackStats, TellsTimesOfTheLastFrames) {
   EXPECT_EQ(time("latency"), 2 * GST_MSECOND);
 }
 
-TEST(TrackStats, TellsPredictedFromTracked) {
+TEST(TrackStats, CountsPredictedApartFromTracked) {
   TrackStats stats;
   ellipse::Target target;
   for (const auto state : {ellipse::TargetState::kDetected,
@@ -151,7 +151,7 @@ TEST(TrackStats, TellsPredictedFromTracked) {
   g_free(text);
 }
 
-TEST(EllipseTrackLoad, SearchesCoarserThenSkipsAndSaysSo) {
+TEST(EllipseTrackLoad, CoarsensThenSkipsAndReportsIt) {
   const auto harness = tracker("max-processing-time=1 tracking=none messages=none");
   GstElement* element = element_of(harness);
   BusTap bus(element);
@@ -188,7 +188,7 @@ TEST(EllipseTrackLoad, SearchesCoarserThenSkipsAndSaysSo) {
   EXPECT_EQ(stat(element, "skipped-load"), 6U);
 }
 
-TEST(EllipseTrackLoad, WithoutALimitAllIsAsBefore) {
+TEST(EllipseTrackLoad, RemovingTheLimitEndsTheOverload) {
   const auto harness = tracker("max-processing-time=1 tracking=none messages=none");
   for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
   BusTap bus(element_of(harness));
@@ -202,7 +202,7 @@ TEST(EllipseTrackLoad, WithoutALimitAllIsAsBefore) {
   EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 1U);
 }
 
-TEST(EllipseTrackLoad, KeepsWhatItFollows) {
+TEST(EllipseTrackLoad, KeepsTheTarget) {
   const auto harness = tracker("max-processing-time=1 messages=none");
   for (int i = 0; i < 60; ++i) {
     const auto out = push(harness, gray_buffer_of(ring_picture()));
@@ -212,7 +212,7 @@ TEST(EllipseTrackLoad, KeepsWhatItFollows) {
   EXPECT_EQ(stat(element_of(harness), "lost"), 0U);
 }
 
-TEST(EllipseTrackLatency, IsUpstreamsAndWhatWasMeasured) {
+TEST(EllipseTrackLatency, IsThatOfUpstreamPlusTheMeasured) {
   const auto harness = tracker("messages=none");
   GstElement* element = element_of(harness);
   gst_harness_set_upstream_latency(harness.get(), 20 * GST_MSECOND);
@@ -228,7 +228,7 @@ TEST(EllipseTrackLatency, IsUpstreamsAndWhatWasMeasured) {
 }
 
 // Skipped frames leave fewer analyses; the latency message must come nonetheless.
-TEST(EllipseTrackLatency, IsToldWhereFramesAreSkipped) {
+TEST(EllipseTrackLatency, IsReportedWithSkippedFrames) {
   const auto harness = tracker("messages=none interval=1000");
   GstElement* element = element_of(harness);
   gst_harness_set_upstream_latency(harness.get(), 0);
@@ -244,7 +244,7 @@ TEST(EllipseTrackLatency, IsToldWhereFramesAreSkipped) {
   EXPECT_TRUE(bus.pop(GST_MESSAGE_LATENCY));
 }
 
-TEST(TrackStats, LatencyIsNotThatOfTheFirstFrame) {
+TEST(TrackStats, LatencyExcludesTheFirstFrame) {
   TrackStats stats;
   stats.add_analysed(std::nullopt, 90 * GST_MSECOND);
   EXPECT_EQ(stats.latency(), 0U);
@@ -254,7 +254,7 @@ TEST(TrackStats, LatencyIsNotThatOfTheFirstFrame) {
   EXPECT_EQ(stats.latency(), 4 * GST_MSECOND);
 }
 
-TEST(EllipseTrackLatency, IsNoneWhereNothingIsLive) {
+TEST(EllipseTrackLatency, IsZeroInNonLivePipelines) {
   support::Pipeline pipeline(
       "ellipsetestsrc num-buffers=40 ! ellipsetrack name=t ! fakesink sync=false");
   pipeline.play();

@@ -133,7 +133,7 @@ class EachTracking : public testing::TestWithParam<const char*> {};
 
 // 20 frames: detection, then tracking with periodic searches of the whole frame. A search also
 // reads the pixels left and right of the tracked region.
-TEST_P(EachTracking, LumaInSlowMemoryIsReadOnceAndInOrder) {
+TEST_P(EachTracking, SlowMemoryIsReadOnceAndInOrder) {
   const std::string settings = std::string("tracking=") + GetParam();
   const auto harness = tracker(settings, caps_of("I420", kWidth, kHeight));
   const auto reference = tracker(settings, caps_of("I420", kWidth, kHeight));

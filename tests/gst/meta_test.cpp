@@ -60,7 +60,7 @@ TEST(EllipseMeta, StartsEmpty) {
   EXPECT_EQ(meta->pts, GST_CLOCK_TIME_NONE);
 }
 
-TEST(EllipseMeta, SeveralStandOnABufferByRole) {
+TEST(EllipseMeta, SeveralRolesFitOnOneBuffer) {
   const auto buffer = empty_buffer();
   gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH)->cx = 1.0;
   gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET)->cx = 2.0;
@@ -72,7 +72,7 @@ TEST(EllipseMeta, SeveralStandOnABufferByRole) {
   EXPECT_EQ(count, 2);
 }
 
-TEST(EllipseMeta, AreListedInTheirOrder) {
+TEST(EllipseMeta, AreListedInInsertionOrder) {
   const auto buffer = empty_buffer();
   EXPECT_EQ(gst_buffer_list_ellipse_meta(buffer.get()), nullptr);
   GstEllipseMeta* first = gst_buffer_add_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH);
@@ -96,7 +96,7 @@ TEST(EllipseMeta, IsCopiedWithTheBuffer) {
   EXPECT_EQ(meta->pts, 123U);
 }
 
-TEST(EllipseMeta, IsNotCopiedWithAPartOfTheBytes) {
+TEST(EllipseMeta, IsNotCopiedWithPartialBuffers) {
   const auto buffer = empty_buffer();
   add_example(buffer.get());
   const Owned<GstBuffer> part(gst_buffer_copy_region(
@@ -144,7 +144,7 @@ TEST(EllipseMeta, CovarianceFollowsAScaler) {
   EXPECT_NEAR(stretched->covariance[5], 0.09, 1e-6);
 }
 
-TEST(EllipseMeta, TurnsUnderANonUniformScale) {
+TEST(EllipseMeta, RotatesUnderANonUniformScale) {
   const auto from = empty_buffer();
   const auto to = empty_buffer();
   const GstEllipseMeta* before = add_example(from.get());
@@ -160,7 +160,7 @@ TEST(EllipseMeta, TurnsUnderANonUniformScale) {
   }
 }
 
-TEST(EllipseMeta, KeepsItsShapeBetweenBorders) {
+TEST(EllipseMeta, KeepsItsShapeWithBorders) {
   const auto from = empty_buffer();
   const auto wide = empty_buffer();
   const auto high = empty_buffer();
@@ -181,7 +181,7 @@ TEST(EllipseMeta, KeepsItsShapeBetweenBorders) {
   EXPECT_EQ(below->roi_height, 60U);
 }
 
-TEST(EllipseMeta, IsLostWhereBordersLeaveNothingOfThePicture) {
+TEST(EllipseMeta, IsRemovedIfBordersLeaveNothingOfThePicture) {
   const auto from = empty_buffer();
   const auto to = empty_buffer();
   add_example(from.get());
@@ -189,7 +189,7 @@ TEST(EllipseMeta, IsLostWhereBordersLeaveNothingOfThePicture) {
   EXPECT_EQ(scaled_to(from.get(), to.get(), 640, 480, 1000, 1), nullptr);
 }
 
-TEST(EllipseMeta, FillsTheFrameWhereTheShapeCannotBeKnown) {
+TEST(EllipseMeta, FillsTheFrameIfTheShapeIsUnknown) {
   const auto from = empty_buffer();
   const auto to = empty_buffer();
   add_example(from.get());
@@ -246,7 +246,7 @@ TEST(EllipseMeta, JsonOfAFrameListsAllOfItsEllipses) {
   g_free(text);
 }
 
-TEST(EllipseSearchMeta, LivesAsLongAsTheEllipses) {
+TEST(EllipseSearchMeta, IsCopiedAsTheEllipsesAre) {
   const auto buffer = empty_buffer();
   EXPECT_EQ(gst_buffer_get_ellipse_search_meta(buffer.get()), nullptr);
   gst_buffer_add_ellipse_search_meta(buffer.get(), 250)->tracker_state =

@@ -54,7 +54,7 @@ TEST(NdjsonSinks, FileSink) {
   expect_frames(contents_of(folder.file("lines")), 0, kFrames);
 }
 
-TEST(NdjsonSinks, AppSinkHasALineABuffer) {
+TEST(NdjsonSinks, AppSinkReceivesOneLinePerBuffer) {
   Pipeline pipeline(kLines + "appsink name=out");
   const auto sink = pipeline.element("out");
   pipeline.play();
@@ -87,7 +87,7 @@ TEST(NdjsonSinks, FdSinkIntoAPipe) {
   expect_frames(text, 0, kFrames);
 }
 
-TEST(NdjsonSinks, UdpSinkHasALineADatagram) {
+TEST(NdjsonSinks, UdpSinkSendsOneLinePerDatagram) {
   Socket receiver(G_SOCKET_TYPE_DATAGRAM);
   const std::string port = std::to_string(receiver.bind());
   ASSERT_EQ(run_pipeline(kLines + "udpsink host=127.0.0.1 port=" + port), "");
@@ -100,7 +100,7 @@ TEST(NdjsonSinks, UdpSinkHasALineADatagram) {
   expect_frames(text, 0, kFrames);
 }
 
-TEST(NdjsonSinks, TcpServerSinkServesEachClientFromWhenItComes) {
+TEST(NdjsonSinks, TcpServerSinkServesEachClientFromItsConnectionOn) {
   Server server(kLines);
   Socket early(G_SOCKET_TYPE_STREAM);
   Socket late(G_SOCKET_TYPE_STREAM);
@@ -131,7 +131,7 @@ GstPadProbeReturn add_ellipses(GstPad*, GstPadProbeInfo* info, gpointer) {
   return GST_PAD_PROBE_OK;
 }
 
-TEST(NdjsonSinks, TcpServerSinkIsNotHeldUpByAClientThatDoesNotRead) {
+TEST(NdjsonSinks, TcpServerSinkIsNotBlockedByStalledClients) {
   Server server(kManyBytes);
   server.probe("json", add_ellipses, nullptr);
   Socket silent(G_SOCKET_TYPE_STREAM);
@@ -147,7 +147,7 @@ TEST(NdjsonSinks, TcpServerSinkIsNotHeldUpByAClientThatDoesNotRead) {
   EXPECT_GT(server.number("buffers-queued"), 100U);  // kept for the other client
 }
 
-TEST(NdjsonSinks, TcpServerSinkDropsAClientThatDoesNotReadWhereToldSo) {
+TEST(NdjsonSinks, TcpServerSinkDropsStalledClientsWithUnitsMax) {
   Server server(kManyBytes, "units-max=300");
   server.probe("json", add_ellipses, nullptr);
   Socket silent(G_SOCKET_TYPE_STREAM);
@@ -177,7 +177,7 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
 }
 
 // Without the reservation, some of so many random numbers would collide.
-TEST(OwnPort, IsNobodyElses) {
+TEST(OwnPort, IsUnique) {
   std::set<int> numbers;
   std::vector<std::unique_ptr<support::OwnPort>> ports;
   for (int i = 0; i < 500; ++i) {
@@ -186,7 +186,7 @@ TEST(OwnPort, IsNobodyElses) {
   }
 }
 
-TEST(OwnPort, IsNoneThatSomebodyHas) {
+TEST(OwnPort, UsedPortsAreNotFree) {
   for (const GSocketType type : {G_SOCKET_TYPE_STREAM, G_SOCKET_TYPE_DATAGRAM}) {
     Socket socket(type);
     EXPECT_FALSE(support::is_free(socket.bind()));
@@ -231,7 +231,7 @@ std::string lines_without_times() {
                   " ! ellipsetrack ! ellipsejson times=false ! ");
 }
 
-TEST(NdjsonLines, CanLeaveOutTheTimeThatWasSpentAndNothingElse) {
+TEST(NdjsonLines, CanOmitTheProcessingTimeAlone) {
   const std::string without = lines_without_times();
   EXPECT_EQ(without.find("processing_ns"), std::string::npos);
   EXPECT_EQ(without, lines_without_times());
@@ -245,7 +245,7 @@ TEST(NdjsonLines, CanLeaveOutTheTimeThatWasSpentAndNothingElse) {
   expect_frames(untracked, 0, 1);
 }
 
-TEST(NdjsonLines, AreTheSameWhereNumbersHaveACommaAsPoint) {
+TEST(NdjsonLines, AreIndependentOfTheLocale) {
   const std::string expected = lines_without_times();
   const German german;
   if (!german.is_spoken()) GTEST_SKIP() << "neither de_DE.UTF-8 nor localedef is here";

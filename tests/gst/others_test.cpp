@@ -22,7 +22,7 @@ using support::object_of;
 using support::Owned;
 using support::Picture;
 
-TEST(EllipseJson, WritesALineAFrame) {
+TEST(EllipseJson, WritesOneLinePerFrame) {
   const auto harness = harness_of("ellipsejson", caps_of("GRAY8", 64, 48), "application/x-ndjson");
   std::string text;
   for (int i = 0; i < 2; ++i) {
@@ -41,7 +41,7 @@ TEST(EllipseJson, WritesALineAFrame) {
   EXPECT_EQ(text.back(), '\n');
 }
 
-TEST(EllipseJson, TellsAFruitlessSearchFromNone) {
+TEST(EllipseJson, DistinguishesAnEmptySearchFromNone) {
   const support::TemporaryFolder folder;
   ASSERT_EQ(support::run_pipeline("ellipsetestsrc scene=negative ground=plain num-buffers=4 ! "
                                   "ellipsetrack interval=2 ! ellipsejson ! filesink location=" +
@@ -80,7 +80,7 @@ std::string bytes_of(const Owned<GstBuffer>& buffer) {
   return support::bytes_of(buffer.get());
 }
 
-TEST(EllipseTestSrc, CarriesTheTruth) {
+TEST(EllipseTestSrc, AttachesTheTruth) {
   const auto buffer = first_frame("num-buffers=1", caps_of("GRAY8", 320, 180));
   const GstEllipseMeta* truth = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TRUTH);
   ASSERT_NE(truth, nullptr);
@@ -89,7 +89,7 @@ TEST(EllipseTestSrc, CarriesTheTruth) {
   EXPECT_EQ(truth->visible_fraction, 1.0);
 }
 
-TEST(EllipseTestSrc, IsTheSameEachTimeAndInEachFormat) {
+TEST(EllipseTestSrc, IsDeterministicAndEqualInEachFormat) {
   const std::string gray = bytes_of(first_frame("seed=5", caps_of("GRAY8", 160, 90)));
   EXPECT_EQ(gray, bytes_of(first_frame("seed=5", caps_of("GRAY8", 160, 90))));
   EXPECT_NE(gray, bytes_of(first_frame("seed=6", caps_of("GRAY8", 160, 90))));
@@ -117,7 +117,7 @@ TEST(EllipseTestSrc, HasEachSceneByName) {
   EXPECT_GE(distinct.size(), 18U);
 }
 
-TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
+TEST(EllipseTestSrc, PropertiesOverrideTheScene) {
   const auto of = [](const char* settings) {
     return bytes_of(first_frame(settings, caps_of("GRAY8", 160, 90)));
   };
@@ -131,7 +131,7 @@ TEST(EllipseTestSrc, PropertiesReplaceWhatTheSceneHas) {
 }
 
 // Same form as ellipsetrack's outline for a distorting lens.
-TEST(EllipseTestSrc, TruthThroughALensHasItsOutline) {
+TEST(EllipseTestSrc, TruthThroughALensHasAnOutline) {
   for (const char* name : {"none", "barrel", "fisheye"}) {
     const auto buffer =
         first_frame("scene=hover lens=" + std::string(name), caps_of("GRAY8", 320, 180));
@@ -167,7 +167,7 @@ std::vector<const GstEllipseMeta*> truths_of(GstBuffer* buffer) {
   return truths;
 }
 
-TEST(EllipseTestSrc, AWildSceneCarriesAllItsEllipses) {
+TEST(EllipseTestSrc, WildScenesCarryAllTheirEllipses) {
   std::size_t max_truths = 0;
   bool has_none = false;
   for (const int seed : {1, 2, 8, 24, 40}) {
@@ -189,7 +189,7 @@ TEST(EllipseTestSrc, AWildSceneCarriesAllItsEllipses) {
   EXPECT_TRUE(has_none);
 }
 
-TEST(EllipseTestSrc, AWildSceneHasItsOwnSizeAndRate) {
+TEST(EllipseTestSrc, WildScenesHaveTheirOwnSizeAndRate) {
   const ellipse::Wild wild = ellipse::make_wild(9);
   const auto buffer = first_frame("scene=wild seed=9", "video/x-raw,format=GRAY8");
   ASSERT_NE(wild.width, 640);
@@ -220,7 +220,7 @@ TEST(EllipseTestSrc, TakesSizeAndRateFromCaps) {
   EXPECT_EQ(GST_BUFFER_DURATION(buffer.get()), 20 * GST_MSECOND);
 }
 
-TEST(EllipseTestSrc, LiveGivesFramesAtTheirTime) {
+TEST(EllipseTestSrc, LiveModeProducesFramesInRealTime) {
   const GstClockTime start = gst_util_get_timestamp();
   EXPECT_EQ(support::run_pipeline("ellipsetestsrc is-live=true num-buffers=10 ! "
                                   "video/x-raw,width=64,height=36,framerate=30/1 ! fakesink"),

@@ -162,7 +162,7 @@ TEST(EllipseOverlay, CoversTheWholeLineInEachFormat) {
 
 // A red line that covers all pixels that share a sample, also at the border, where the block is
 // cut. Checks both standards and both ranges against their definitions.
-TEST(EllipseOverlay, HasTheColourThatTheCapsAskFor) {
+TEST(EllipseOverlay, UsesTheColorimetryOfTheCaps) {
   struct Case {
     const char* colorimetry;
     guint8 yuv[3];
@@ -205,7 +205,7 @@ std::vector<int> levels_of(GstBuffer* buffer, const GstVideoInfo& info) {
   return levels;
 }
 
-TEST(EllipseOverlay, DrawsTheSameWithMoreBits) {
+TEST(EllipseOverlay, DrawsTheSameInDeepFormats) {
   const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
   const std::string settings = std::string(kAllParts) + " overlay-color=0xff40f010";
   for (const char* format : support::kDeepFormats) {
@@ -226,7 +226,7 @@ TEST(EllipseOverlay, DrawsTheSameWithMoreBits) {
   }
 }
 
-TEST(EllipseOverlay, HasItsColourInChromaOfMoreBits) {
+TEST(EllipseOverlay, HasItsColourInDeepChroma) {
   // A red line over the whole block: Y 81, U 90, V 240 by [BT601], times four with 10 bits.
   constexpr int kRed[] = {81 * 4, 90 * 4, 240 * 4};
   for (const char* format : {"I420_10LE", "P010_10LE"}) {
@@ -269,7 +269,7 @@ TEST(EllipseOverlay, HasItsColourInRgb) {
   }
 }
 
-TEST(EllipseOverlay, WidthIsThatOfTheLine) {
+TEST(EllipseOverlay, DrawsLinesOfTheGivenWidth) {
   for (int width = 1; width <= 8; ++width) {
     const Picture picture = drawn_picture(
         "overlay=ellipse overlay-color=0xffffffff line-width=" + std::to_string(width),
@@ -312,7 +312,7 @@ int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int back
 }
 
 // Without colour a line is grey, possibly the grey of the background.
-TEST(EllipseOverlay, IsSeenOnAnyGreyInAFormatWithoutColour) {
+TEST(EllipseOverlay, IsVisibleOnAnyGreyInGreyFormats) {
   const Ellipse e{80.3, 60.6, 50.0, 35.0, 0.5};
   const GstVideoInfo info = info_of("GRAY8", 161, 121);
   const std::string caps = caps_of("GRAY8", 161, 121);
@@ -337,7 +337,7 @@ TEST(EllipseOverlay, IsSeenOnAnyGreyInAFormatWithoutColour) {
   }
 }
 
-TEST(EllipseOverlay, BorderCutsAndChangesNothingElse) {
+TEST(EllipseOverlay, BorderOnlyClips) {
   const Ellipse e{120.3, 90.6, 70.0, 45.0, 0.5};
   const Picture whole = drawn_gray("overlay=ellipse+axes+centre", 240, 180, e);
   const Picture part =
@@ -359,7 +359,7 @@ TEST(EllipseOverlay, DrawsAllPartsInTheSmallestFrames) {
   }
 }
 
-TEST(EllipseOverlay, ShowsNothingOfTheFrameBefore) {
+TEST(EllipseOverlay, KeepsNothingOfThePreviousFrame) {
   const std::string caps = caps_of("GRAY8", 320, 240);
   const auto harness = harness_of("ellipseoverlay", caps, caps);
   const auto frame_with = [&](const Ellipse& e) {
@@ -373,7 +373,7 @@ TEST(EllipseOverlay, ShowsNothingOfTheFrameBefore) {
   EXPECT_EQ(frame_with(e), alone);
 }
 
-TEST(EllipseOverlay, RowsMayBeFarApart) {
+TEST(EllipseOverlay, HonoursStrideAndOffset) {
   constexpr int kStride = 300;
   GstBuffer* wide = gst_buffer_new_allocate(nullptr, 40 + kStride * 121, nullptr);
   gst_buffer_memset(wide, 0, 128, gst_buffer_get_size(wide));
@@ -395,7 +395,7 @@ TEST(EllipseOverlay, RowsMayBeFarApart) {
   }
 }
 
-TEST(EllipseOverlay, AbsurdEllipsesAreNotDrawn) {
+TEST(EllipseOverlay, NonFiniteAndExtremeEllipsesAreNotDrawn) {
   const double not_a_number = std::nan("");
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double value : {not_a_number, infinity, -infinity, 1e300, -1e300}) {
@@ -426,7 +426,7 @@ TEST(EllipseOverlay, DegenerateAndHugeOnesAreDrawn) {
   }
 }
 
-TEST(EllipseOverlay, SurvivesStatesThatItDoesNotKnow) {
+TEST(EllipseOverlay, AcceptsUnknownStates) {
   const std::string caps = caps_of("GRAY8", 320, 64);
   const auto harness = harness_of("ellipseoverlay overlay=label", caps, caps);
   auto buffer = even_buffer("GRAY8", 320, 64);
@@ -461,7 +461,7 @@ TEST(EllipseOverlay, DrawsCandidatesThinAndGrey) {
   EXPECT_EQ(changed(drawn_as(GST_ELLIPSE_ROLE_TRUTH)), 0);  // unless truth=true
 }
 
-TEST(EllipseOverlay, ABufferTooSmallForItsCapsPassesWithAWarning) {
+TEST(EllipseOverlay, PassesTooSmallBuffersWithAWarning) {
   const std::string caps = caps_of("GRAY8", 320, 240);
   const auto harness = harness_of("ellipseoverlay name=overlay", caps, caps);
   const Owned<GstElement> overlay(gst_bin_get_by_name(GST_BIN(harness->element), "overlay"));
@@ -533,7 +533,7 @@ TEST(EllipseOverlay, LabelFollowsTheHeightOfTheFrame) {
   EXPECT_LE(large.right - large.left, 1000);
 }
 
-TEST(EllipseOverlay, LabelsOfTwoEllipsesDoNotMeet) {
+TEST(EllipseOverlay, LabelsDoNotOverlap) {
   const std::string caps = caps_of("GRAY8", 320, 240);
   const auto count = [&](const char* settings) {
     const auto harness =
@@ -606,7 +606,7 @@ bool sends_composition_caps(const Owned<GstHarness>& harness) {
   return has_feature;
 }
 
-TEST(EllipseOverlay, LeavesComposingToThoseWhoOfferIt) {
+TEST(EllipseOverlay, LeavesCompositionToDownstream) {
   // GStreamer always blends by BT.709, and takes each chroma sample from a single pixel.
   for (const char* format : {"BGRx", "RGB", "ARGB", "Y444", "I420"}) {
     const GstVideoInfo info = info_of(format, 640, 480);
@@ -639,7 +639,7 @@ TEST(EllipseOverlay, LeavesComposingToThoseWhoOfferIt) {
   }
 }
 
-TEST(EllipseOverlay, ComposedPixelsStayTheSameMemory) {
+TEST(EllipseOverlay, CompositionKeepsTheMemory) {
   const auto harness = composing_harness("ellipseoverlay", caps_of("I420", 64, 64));
   auto buffer = even_buffer("I420", 64, 64);
   add_circle(buffer.get(), 32.0, 32.0, 20.0);
@@ -672,7 +672,7 @@ TEST(EllipseOverlay, DrawsUnlessDownstreamOffersBothCapsAndMeta) {
   }
 }
 
-TEST(EllipseOverlay, ComposesOverWhatIsThereAlready) {
+TEST(EllipseOverlay, AddsToAnExistingComposition) {
   const std::string caps = caps_of("I420", 64, 64);
   const auto rectangles = [&](const std::string& elements) {
     auto buffer = even_buffer("I420", 64, 64);
@@ -684,7 +684,7 @@ TEST(EllipseOverlay, ComposesOverWhatIsThereAlready) {
   EXPECT_EQ(rectangles("ellipseoverlay overlay=ellipse ! ellipseoverlay overlay=centre"), 2U);
 }
 
-TEST(EllipseOverlay, NeverLosesWhatUpstreamComposes) {
+TEST(EllipseOverlay, FailsNegotiationRatherThanLoseACompositionFromUpstream) {
   const Owned<GstHarness> harness(gst_harness_new("ellipseoverlay"));
   gst_harness_set_sink_caps_str(harness.get(), caps_of("I420", 64, 64).c_str());
   gst_harness_set_src_caps_str(
@@ -695,7 +695,7 @@ TEST(EllipseOverlay, NeverLosesWhatUpstreamComposes) {
             GST_FLOW_NOT_NEGOTIATED);
 }
 
-TEST(EllipseOverlay, FollowsDownstreamWhenItChangesItsMind) {
+TEST(EllipseOverlay, FollowsDownstreamRenegotiation) {
   const std::string caps = caps_of("I420", 64, 64);
   const auto harness = composing_harness("ellipseoverlay", caps);
   const auto frame = [] {

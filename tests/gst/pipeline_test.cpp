@@ -69,7 +69,7 @@ GstPadProbeReturn note_memory(GstPad*, GstPadProbeInfo* info, gpointer data) {
   return GST_PAD_PROBE_OK;
 }
 
-TEST(Pipeline, MemoryBehindATeeIsTheInputs) {
+TEST(Pipeline, MemoryIsUnchangedBehindATee) {
   std::vector<GstMemory*> before;
   std::vector<GstMemory*> behind;
   const auto watch = [&](GstElement* pipeline) {

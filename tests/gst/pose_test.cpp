@@ -77,7 +77,7 @@ std::vector<JsonObject*> targets_of(const std::vector<Owned<JsonParser>>& lines)
   return targets;
 }
 
-TEST(Pose, IsTheScenesInEachLine) {
+TEST(Pose, MatchesTheSceneInEachLine) {
   for (const char* scene : {"oblique", "orbit"}) {
     const auto lines = lines_of(scene, "hfov=1.012 target-diameter=2");
     const auto targets = targets_of(lines);
@@ -103,7 +103,7 @@ TEST(Pose, IsTheScenesInEachLine) {
   }
 }
 
-TEST(Pose, OfGravityIsKnownAtTheFirstFrame) {
+TEST(Pose, IsCertainInTheFirstFrameWithGravity) {
   const auto [position, normal] = truth_at("orbit", 0.0);
   std::ostringstream gravity;
   gravity << "gravity=\"<" << -normal.x() << "," << -normal.y() << "," << -normal.z() << ">\"";
@@ -114,7 +114,7 @@ TEST(Pose, OfGravityIsKnownAtTheFirstFrame) {
   EXPECT_GT(json_object_get_double_member(target, "certainty"), 0.99);
 }
 
-TEST(Pose, WithoutADiameterHasNoPosition) {
+TEST(Pose, HasNoPositionWithoutADiameter) {
   const auto lines = lines_of("orbit", "fx=577");
   JsonObject* target = targets_of(lines).back();
   ASSERT_NE(target, nullptr);
@@ -123,7 +123,7 @@ TEST(Pose, WithoutADiameterHasNoPosition) {
   EXPECT_FALSE(json_object_has_member(target, "position"));
 }
 
-TEST(Pose, WithoutACameraIsNotThere) {
+TEST(Pose, IsAbsentWithoutACamera) {
   const auto lines = lines_of("orbit", "target-diameter=2");
   JsonObject* target = targets_of(lines).back();
   ASSERT_NE(target, nullptr);
@@ -164,7 +164,7 @@ class PoseElement : public testing::Test {
   }
 };
 
-TEST_F(PoseElement, RefusesABrokenCameraFileAndKeepsTheOldOne) {
+TEST_F(PoseElement, RejectsInvalidCameraFilesAndKeepsTheOldOne) {
   const TemporaryFolder folder;
   const std::string good = camera_file(folder, "-0.2, 0.03, 0., 0., 0.");
   const std::string bad = folder.file("bad.yaml");
@@ -185,7 +185,7 @@ TEST_F(PoseElement, RefusesABrokenCameraFileAndKeepsTheOldOne) {
   g_error_free(error);
 }
 
-TEST_F(PoseElement, TellsItInMessagesAndStructures) {
+TEST_F(PoseElement, ReportsThePoseInMetaMessagesAndStructures) {
   g_object_set(element_.get(), "hfov", kHfovRad, "target-diameter", 2.0, nullptr);
   BusTap bus(element_.get());
   const auto buffer = push(0.0);
@@ -205,7 +205,7 @@ TEST_F(PoseElement, TellsItInMessagesAndStructures) {
 
 // The scene has no lens, so its undistorted outline is not an ellipse. The reported outline must
 // lie on the edge in the picture nevertheless.
-TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
+TEST_F(PoseElement, DistortsTheOutlineBackIntoThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
                "camera-file",
@@ -225,7 +225,7 @@ TEST_F(PoseElement, BendsTheEllipseBackIntoThePicture) {
 
 // The visible part in the picture, not in the ideal plane: undistorted, the frame cuts the disc in
 // the corner.
-TEST_F(PoseElement, TellsWhatIsSeenOfCandidatesInThePicture) {
+TEST_F(PoseElement, ReportsTheVisiblePartOfCandidatesInThePicture) {
   const TemporaryFolder folder;
   g_object_set(element_.get(),
                "camera-file",

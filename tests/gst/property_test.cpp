@@ -36,7 +36,7 @@ Number value_of(GstElement* element, const char* name) {
   return value;
 }
 
-TEST(EllipseTrackProperties, HaveTheFlagsOfTheContract) {
+TEST(EllipseTrackProperties, HaveTheDocumentedFlags) {
   const auto harness = tracker();
   const std::set<std::string> controllable{"detect-contour-overlap",
                                            "detect-ellipse-overlap",
@@ -92,7 +92,7 @@ class EachElement : public testing::TestWithParam<const char*> {
   const Owned<GstElement> element_{gst_element_factory_make(GetParam(), nullptr)};
 };
 
-TEST_P(EachElement, BeginsWithTheDefaultsThatItClaims) {
+TEST_P(EachElement, StartsWithItsDeclaredDefaults) {
   for (GParamSpec* spec : support::settings_of(element_.get())) {
     const bool is_own = spec->owner_type == G_OBJECT_TYPE(element_.get());
     if (!is_own || GST_IS_PARAM_SPEC_ARRAY_LIST(spec)) continue;  // arrays have no default
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Elements,
 // Elements whose settings do not constrain each other.
 class FreeElement : public EachElement {};
 
-TEST_P(FreeElement, KeepsEachNumberThatItIsGiven) {
+TEST_P(FreeElement, KeepsEachGivenNumber) {
   for (GParamSpec* spec : support::settings_of(element_.get())) {
     if (spec->owner_type != G_OBJECT_TYPE(element_.get())) continue;
     for (const double number : {1.0, 0.0, 2.0}) {
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Elements,
                          FreeElement,
                          testing::Values("ellipseoverlay", "ellipsetestsrc"));
 
-TEST(EllipseTrackProperties, TheirTypesArePartOfThePluginsApi) {
+TEST(EllipseTrackProperties, EnumTypesArePartOfThePluginApi) {
   const auto harness = tracker();
   auto* klass = G_OBJECT_GET_CLASS(element_of(harness));
   for (const char* name : {"detector", "tracking", "refine", "messages", "roi-source", "overlay"}) {
@@ -170,7 +170,7 @@ TEST(EllipseTrackProperties, FollowACurveOverStreamTime) {
 }
 
 // Each rejected value posts a warning; a control curve posts one per excursion out of range.
-TEST(EllipseTrackProperties, OfACurveAreRefusedAloudOnce) {
+TEST(EllipseTrackProperties, RejectedValuesOfACurveCauseOneWarning) {
   const auto harness = tracker("tracking=none max-axis=700");
   GstElement* element = element_of(harness);
   BusTap bus(element);
@@ -189,7 +189,7 @@ TEST(EllipseTrackProperties, OfACurveAreRefusedAloudOnce) {
   EXPECT_EQ(warnings, 2);
 }
 
-TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
+TEST(EllipseTrackPreset, AppliesCompletelyOverAnyValues) {
   for (const char* before : {"min-axis=2 max-axis=3",
                              "max-axis=900 min-axis=800",
                              "detect-contour-overlap=0.5 min-axis=9 max-scale=3"}) {
@@ -207,7 +207,7 @@ TEST(EllipseTrackPreset, IsWholeOverAnyValues) {
 }
 
 // Every setting that affects detection changes.
-TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
+TEST(EllipseTrackPreset, KeipourPresetSetsAllDetectionSettings) {
   const auto harness = tracker(
       "max-target-size=300 min-target-size=200 roi-expansion=5 refine=photometric ring-ratio=0.5 "
       "edge-high=40 edge-low=30 interval=3 max-axis-ratio=2 min-contour-size=9 "
@@ -233,7 +233,7 @@ TEST(EllipseTrackPreset, SetsAllThatThePaperFixesOrLeavesOpen) {
 }
 
 // Loading a preset overrides everything that an earlier preset set.
-TEST(EllipseTrackPreset, EachSetsAllThatTheOthersSet) {
+TEST(EllipseTrackPreset, EachPresetSetsAllThatTheOthersSet) {
   const auto settings_after = [](const std::vector<const char*>& presets) {
     const auto harness = tracker();
     GstElement* element = element_of(harness);
@@ -272,7 +272,7 @@ bool finds(const char* preset, const ellipse::Ellipse& ring) {
   return target_on(push(harness, support::gray_buffer_of(picture))) != nullptr;
 }
 
-TEST(EllipseTrackPreset, EachFindsWhatItIsFor) {
+TEST(EllipseTrackPreset, EachPresetFindsItsTargets) {
   const ellipse::Ellipse near{640.3, 500.2, 450.0, 400.0, 0.4};
   const ellipse::Ellipse far{640.3, 500.2, 7.5, 6.5, 0.4};
   const ellipse::Ellipse flat{640.3, 500.2, 120.0, 45.0, 0.4};
@@ -286,7 +286,7 @@ TEST(EllipseTrackPreset, EachFindsWhatItIsFor) {
   EXPECT_TRUE(finds("High frame rate", flat));
 }
 
-TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
+TEST(EllipseTrackPreset, InconsistentPresetsChangeNothing) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   BusTap bus(element);
@@ -299,7 +299,7 @@ TEST(EllipseTrackPreset, ThatDoesNotFitTogetherChangesNothing) {
   EXPECT_FALSE(gst_preset_load_preset(GST_PRESET(element), "No such preset"));
 }
 
-TEST(EllipseTrackPreset, HoldsRegionsAndTimes) {
+TEST(EllipseTrackPreset, RestoresRegionsAndTimes) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   ASSERT_TRUE(gst_preset_load_preset(GST_PRESET(element), "Region"));

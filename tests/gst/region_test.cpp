@@ -54,7 +54,7 @@ void expect_at(const Owned<GstBuffer>& buffer, const ellipse::Ellipse& truth) {
   EXPECT_NEAR(meta->semi_major, truth.semi_major, 0.3);
 }
 
-TEST(EllipseTrackRegion, IsThatOfTheProperty) {
+TEST(EllipseTrackRegion, IsTakenFromTheProperty) {
   const auto left = tracker("roi-source=property roi=\"<0,0,160,240>\"");
   const auto right = tracker("roi-source=property roi=\"<160,0,160,240>\"");
   for (int i = 0; i < 12; ++i) {  // the detector searches again at the ninth
@@ -63,12 +63,12 @@ TEST(EllipseTrackRegion, IsThatOfTheProperty) {
   }
 }
 
-TEST(EllipseTrackRegion, CountsOnlyWhereItIsAskedFor) {
+TEST(EllipseTrackRegion, IsIgnoredUnlessSelected) {
   const auto harness = tracker("roi=\"<0,0,4,4>\"");
   EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
 }
 
-TEST(EllipseTrackRegion, IsWhereTheTrackerLooksAlsoWhileItFollows) {
+TEST(EllipseTrackRegion, LimitsTheSearchAlsoWhileTracking) {
   for (const char* tracking : {"none", "redetect", "edges"}) {
     const auto harness =
         tracker("roi-source=property roi=\"<30,60,110,100>\" tracking=" + std::string(tracking));
@@ -93,7 +93,7 @@ TEST(EllipseTrackRegion, IsClampedToTheFrame) {
   }
 }
 
-TEST(EllipseTrackRegion, NothingIsSearchedWhereItIsEmptyOrOutside) {
+TEST(EllipseTrackRegion, EmptyAndOutsideRegionsSkipTheAnalysis) {
   for (const char* roi : {"<0,0,0,0>", "<320,0,10,10>", "<10,10,-5,20>", "<-20,-20,20,20>"}) {
     const auto harness = tracker("roi-source=property roi=\"" + std::string(roi) + "\"");
     const auto out = push(harness, gray_buffer_of(ring_picture()));
@@ -103,7 +103,7 @@ TEST(EllipseTrackRegion, NothingIsSearchedWhereItIsEmptyOrOutside) {
   }
 }
 
-TEST(EllipseTrackRegion, IsReadBackAsItWasSet) {
+TEST(EllipseTrackRegion, IsReadBackAsSet) {
   const auto harness = tracker("roi=\"<-1,2,30,4>\"");
   GValue value = G_VALUE_INIT;
   g_object_get_property(G_OBJECT(element_of(harness)), "roi", &value);
@@ -113,7 +113,7 @@ TEST(EllipseTrackRegion, IsReadBackAsItWasSet) {
   g_value_unset(&value);
 }
 
-TEST(EllipseTrackRegion, RefusesWhatIsNoBox) {
+TEST(EllipseTrackRegion, RejectsMalformedBoxes) {
   const auto harness = tracker("roi=\"<1,2,3,4>\"");
   BusTap bus(element_of(harness));
   gst_util_set_object_arg(G_OBJECT(element_of(harness)), "roi", "<1,2,3>");
@@ -134,7 +134,7 @@ TEST(EllipseTrackRegion, FollowsTheMetadataOfEachBuffer) {
   expect_at(push(harness, std::move(right)), kRight);
 }
 
-TEST(EllipseTrackRegion, WithoutMetadataTheTargetIsLostAndTold) {
+TEST(EllipseTrackRegion, TargetIsReportedLostWithoutMetadata) {
   const auto harness = tracker("roi-source=meta");
   auto marked = two_rings();
   add_region(marked, "pad", {0, 0, 160, 240});
@@ -153,7 +153,7 @@ TEST(EllipseTrackRegion, WithoutMetadataTheTargetIsLostAndTold) {
   EXPECT_EQ(stat(element_of(harness), "lost"), 1U);
 }
 
-TEST(EllipseTrackRegion, CountsRegionsOfItsTypeOnly) {
+TEST(EllipseTrackRegion, IgnoresRegionsOfOtherTypes) {
   const auto harness = tracker("roi-source=meta roi-type=pad");
   auto buffer = two_rings();
   add_region(buffer, "face", {0, 0, 160, 240});
@@ -162,7 +162,7 @@ TEST(EllipseTrackRegion, CountsRegionsOfItsTypeOnly) {
 }
 
 // GLib never frees a quark; a program that sets types from external input would grow.
-TEST(EllipseTrackRegion, ATypeThatNoRegionHasLeavesNothingBehind) {
+TEST(EllipseTrackRegion, UnusedTypesCreateNoQuark) {
   const auto harness = tracker("roi-source=meta");  // properties in a launch line become quarks
   g_object_set(element_of(harness), "roi-type", "never-seen-before", nullptr);
   auto buffer = two_rings();
@@ -171,7 +171,7 @@ TEST(EllipseTrackRegion, ATypeThatNoRegionHasLeavesNothingBehind) {
   EXPECT_EQ(g_quark_try_string("never-seen-before"), 0U);
 }
 
-TEST(EllipseTrackRegion, OfSeveralIsTheBoxAroundThem) {
+TEST(EllipseTrackRegion, EnclosesAllRegions) {
   const auto harness = tracker("roi-source=meta");
   auto buffer = gray_buffer_of(ring_picture());  // its bounding box: 103 to 197, 71 to 149
   add_region(buffer, "pad", {90, 60, 20, 20});
@@ -202,7 +202,7 @@ GstPadProbeReturn detect_objects(GstPad* /*pad*/, GstPadProbeInfo* info, gpointe
   return GST_PAD_PROBE_OK;
 }
 
-TEST(EllipseTrackRegion, IsThatOfDetectedObjects) {
+TEST(EllipseTrackRegion, IsTakenFromDetectedObjects) {
   const auto harness = tracker("roi-source=meta roi-type=pad");
   const auto of_any_type = tracker("roi-source=meta");
   for (GstHarness* each : {harness.get(), of_any_type.get()}) {
@@ -214,7 +214,7 @@ TEST(EllipseTrackRegion, IsThatOfDetectedObjects) {
   EXPECT_EQ(target_on(push(of_any_type, two_rings()))->roi_width, 320U);
 }
 
-TEST(EllipseTrackRegion, OfObjectsReachesToThoseOfRegions) {
+TEST(EllipseTrackRegion, EnclosesObjectsAndRegions) {
   const auto harness = tracker("roi-source=meta");
   auto buffer = gray_buffer_of(ring_picture());  // its bounding box: 103 to 197, 71 to 149
   add_region(buffer, "pad", {90, 60, 20, 20});
@@ -247,7 +247,7 @@ Owned<GstBuffer> cropped(Owned<GstBuffer> buffer, const int (&box)[4]) {
   return buffer;
 }
 
-TEST(EllipseTrackRegion, CropsAreSearchedInPixelsOfTheWholeFrame) {
+TEST(EllipseTrackRegion, CropsAreReportedInFullFramePixels) {
   const auto left = tracker();
   const auto right = tracker();
   expect_at(push(left, cropped(two_rings(), kLeftHalf)), kLeft);
@@ -259,13 +259,13 @@ TEST(EllipseTrackRegion, CropsAreSearchedInPixelsOfTheWholeFrame) {
   EXPECT_EQ(kept->x, 160U);
 }
 
-TEST(EllipseTrackRegion, OutsideTheCropIsNothing) {
+TEST(EllipseTrackRegion, RegionsOutsideTheCropFindNothing) {
   const auto harness = tracker("roi-source=property roi=\"<0,0,160,240>\"");
   EXPECT_EQ(target_on(push(harness, cropped(two_rings(), kRightHalf))), nullptr);
 }
 
 // Upstream may leave cropping to downstream elements only if all of them support it.
-TEST(EllipseTrackRegion, CroppingIsOfferedWhereDownstreamOffersIt) {
+TEST(EllipseTrackRegion, CroppingIsOfferedIfDownstreamOffersIt) {
   for (const bool is_offered : {false, true}) {
     Owned<GstHarness> harness(gst_harness_new_parse("ellipsetrack name=t"));
     if (is_offered) {

@@ -65,7 +65,7 @@ struct Soak {
 
 class Soaks : public testing::TestWithParam<Soak> {};
 
-TEST_P(Soaks, KeepTheirMemory) {
+TEST_P(Soaks, MemoryStaysConstant) {
   const std::string caps = caps_of("GRAY8", kWidth, kHeight);
   const auto harness = support::harness_of(GetParam().elements, caps, "application/x-ndjson");
   BusTap bus(harness->element);
@@ -91,7 +91,7 @@ TEST_P(Soaks, KeepTheirMemory) {
   EXPECT_LT(min_growth(resident), kGrowthKiB);
 }
 
-TEST(MinGrowth, TellsALeakFromAllocatorNoise) {
+TEST(MinGrowth, SeparatesLeaksFromAllocatorNoise) {
   EXPECT_EQ(min_growth({100, 3000, 3000, 3000, 3000}), 0);  // grown once, then constant
   EXPECT_EQ(min_growth({100, 120, 90, 130, 70}), -60);
   EXPECT_EQ(min_growth({100, 200, 310, 420, 5000}), 100);

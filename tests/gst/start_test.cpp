@@ -39,13 +39,13 @@ Owned<GstElement> tracker_in_null() {
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("ellipsetrack", nullptr))));
 }
 
-TEST(EllipseTrackStart, FailsForAPairTheWrongWayRound) {
+TEST(EllipseTrackStart, FailsForInvertedPairs) {
   const std::string error = run_tracker("min-axis=800 max-axis=700");
   EXPECT_NE(error.find("max-axis = 700 is not in [800, "), std::string::npos) << error;
   EXPECT_EQ(run_tracker("min-axis=20 max-axis=30"), "");
 }
 
-TEST(EllipseTrackStart, TakesTheValuesOfAPairInAnyOrder) {
+TEST(EllipseTrackStart, AcceptsTheValuesOfAPairInAnyOrder) {
   for (const char* settings : {"min-axis=800 max-axis=900", "max-axis=900 min-axis=800"}) {
     const Owned<GstElement> element(GST_ELEMENT(gst_object_ref_sink(
         gst_parse_launch((std::string("ellipsetrack ") + settings).c_str(), nullptr))));
@@ -56,7 +56,7 @@ TEST(EllipseTrackStart, TakesTheValuesOfAPairInAnyOrder) {
   }
 }
 
-TEST(EllipseTrackStart, FailsForACameraFileThatCannotBeRead) {
+TEST(EllipseTrackStart, FailsForUnreadableCameraFiles) {
   const TemporaryFolder folder;
   const std::string missing = run_tracker("camera-file=" + folder.file("no-such.yaml"));
   EXPECT_NE(missing.find(folder.file("no-such.yaml")), std::string::npos) << missing;
@@ -65,7 +65,7 @@ TEST(EllipseTrackStart, FailsForACameraFileThatCannotBeRead) {
   EXPECT_NE(bad.find(folder.file("bad.yaml")), std::string::npos) << bad;
 }
 
-TEST(EllipseTrackStart, FailsForATableThatCannotBeRead) {
+TEST(EllipseTrackStart, FailsForUnreadableEvidenceFiles) {
   const TemporaryFolder folder;
   const std::string missing = run_tracker("evidence-file=" + folder.file("no-such.txt"));
   EXPECT_NE(missing.find(folder.file("no-such.txt")), std::string::npos) << missing;
@@ -74,7 +74,7 @@ TEST(EllipseTrackStart, FailsForATableThatCannotBeRead) {
   EXPECT_NE(bad.find(folder.file("bad.txt") + ":1"), std::string::npos) << bad;
 }
 
-TEST(EllipseTrackStart, DecidesByTheTableThatItIsGiven) {
+TEST(EllipseTrackStart, UsesTheGivenEvidenceFile) {
   const TemporaryFolder folder;
   ellipse::EvidenceTable sceptical = ellipse::built_in_evidence();
   sceptical.bias = -30.0;
@@ -100,12 +100,12 @@ TEST(EllipseTrackStart, DecidesByTheTableThatItIsGiven) {
   EXPECT_TRUE(target_in(3));
 }
 
-TEST(EllipseTrackStart, FailsForAVectorThatIsNone) {
+TEST(EllipseTrackStart, FailsForMalformedVectors) {
   const std::string error = run_tracker("roi=\"<1,2,3>\"");
   EXPECT_NE(error.find("roi"), std::string::npos) << error;
 }
 
-TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
+TEST(EllipseTrackStart, SucceedsAfterTheValuesAreCorrected) {
   const Owned<GstElement> element = tracker_in_null();
   g_object_set(element.get(), "camera-file", "/no/such/file.yaml", "max-axis", 700.0, nullptr);
   g_object_set(element.get(), "min-axis", 800.0, nullptr);
@@ -121,7 +121,7 @@ TEST(EllipseTrackStart, WorksOnceTheValueIsMended) {
 }
 
 // A value rejected while running is discarded; a warning reported it.
-TEST(EllipseTrackStart, DoesNotFailForWhatWasRefusedWhileItRan) {
+TEST(EllipseTrackStart, IgnoresValuesRejectedWhileRunning) {
   const Owned<GstElement> element = tracker_in_null();
   g_object_set(element.get(), "max-axis", 700.0, nullptr);
   ASSERT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);

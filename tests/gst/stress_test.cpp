@@ -103,7 +103,7 @@ TEST(Stress, PropertiesAreWrittenTenThousandTimesWhilePlaying) {
   EXPECT_NE(target_on(support::push(harness, support::gray_buffer_of(picture))), nullptr);
 }
 
-TEST(Stress, NumbersThatAreNoneAndExtremesPass) {
+TEST(Stress, SurvivesNaNAndExtremeNumbers) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   support::QuietWarnings quiet;
@@ -169,7 +169,7 @@ std::vector<Verdict> numbered_from_one(std::vector<Verdict> verdicts) {
   return verdicts;
 }
 
-TEST(Stress, AStormOfSeeksLeavesNoTrace) {
+TEST(Stress, ManySeeksLeaveTheResultUnchanged) {
   const support::TemporaryFolder folder;
   const std::string video = folder.file("landing.avi");
   ASSERT_EQ(support::run_pipeline("ellipsetestsrc num-buffers=60 ! "
@@ -204,7 +204,7 @@ TEST(Stress, AStormOfSeeksLeavesNoTrace) {
 
 // async=false: a sink with preroll loses its state in each flush, and the bin's thread that
 // restores it races with the next flush. That would test the bin.
-TEST(Stress, AStormOfFlushesFromTheSourcePasses) {
+TEST(Stress, SurvivesManyFlushesFromTheSource) {
   Pipeline pipeline(
       "ellipsetestsrc name=src ! video/x-raw,width=160,height=120 ! ellipsetrack name=t ! "
       "ellipsejson ! fakesink name=out async=false");

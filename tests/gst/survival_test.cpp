@@ -177,7 +177,7 @@ std::string in_folder(std::string pipeline, const TemporaryFolder& folder) {
 
 class Survival : public testing::TestWithParam<Row> {};
 
-TEST_P(Survival, IsAsTheDocumentSays) {
+TEST_P(Survival, MatchesTheDocument) {
   const Row& row = GetParam();
   const TemporaryFolder folder;
   Witness witness;
@@ -209,7 +209,7 @@ std::string name_of(const testing::TestParamInfo<Row>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Document, Survival, testing::ValuesIn(rows_of_the_document()), name_of);
 
-TEST(SurvivalTable, NamesWhatPeoplePutBehindATracker) {
+TEST(SurvivalTable, ListsTheUsualDownstreamElements) {
   std::string all;
   const std::set<std::string> words{"kept", "box", "wrong", "lost"};
   for (const Row& row : rows_of_the_document()) {

@@ -175,7 +175,7 @@ TEST(TargetStates, AreConfirmedBeforeTheyAreReported) {
   EXPECT_NE(following, story.end());
 }
 
-TEST(TargetStates, AreFollowedOrSearchedForWhereEdgesAreNotFollowed) {
+TEST(TargetStates, AreFollowingOrSearchingWithoutEdgeTracking) {
   for (const std::string tracking : {"redetect", "none"}) {
     const auto harness = support::harness_of("ellipsetrack name=t ! ellipsejson",
                                              support::caps_of("GRAY8", 320, 240),
@@ -190,7 +190,7 @@ TEST(TargetStates, AreFollowedOrSearchedForWhereEdgesAreNotFollowed) {
   }
 }
 
-TEST(TargetStates, AreSearchedForAfterAReset) {
+TEST(TargetStates, ReturnToSearchingAfterAFlush) {
   const auto harness = support::tracker();
   GstElement* element = support::element_of(harness);
   (void)support::push(harness, support::gray_buffer_of(picture_of(Sight::kClear, 0)));
@@ -219,7 +219,7 @@ double in_line(GstBuffer* line, const char* name) {
   return json_object_get_double_member(json_array_get_object_element(targets, 0), name);
 }
 
-TEST(TargetStates, HaveTheProbabilityOfAllFramesSoFar) {
+TEST(TargetStates, AccumulateTheProbabilityOverFrames) {
   const auto harness = support::harness_of("ellipsetrack name=t ! ellipsejson",
                                            support::caps_of("GRAY8", 320, 240),
                                            "application/x-ndjson");
@@ -237,7 +237,7 @@ TEST(TargetStates, HaveTheProbabilityOfAllFramesSoFar) {
   EXPECT_EQ(probability_in(4), 1.0);
 }
 
-TEST(TargetStates, NumbersChangeOnlyWhileThePadIsOutOfThePicture) {
+TEST(TargetStates, IdsChangeOnlyWhileThePadIsOutOfThePicture) {
   std::vector<ShownFrame> frames;
   ASSERT_EQ(support::run_pipeline(
                 "ellipsetestsrc scene=reenter num-buffers=400 ! "

@@ -46,13 +46,13 @@ TEST(EllipseTrack, AttachesTheTarget) {
   EXPECT_NEAR(meta->visible_fraction, 1.0, 1e-9);
 }
 
-TEST(EllipseTrack, AttachesNothingWhereNothingIs) {
+TEST(EllipseTrack, AttachesNothingToEmptyPictures) {
   const auto harness = tracker();
   const auto out = push(harness, gray_buffer_of(Picture(320, 240, 90)));
   EXPECT_EQ(target_on(out), nullptr);
 }
 
-TEST(EllipseTrack, AttachesCandidatesWhereTheyAreAskedFor) {
+TEST(EllipseTrack, AttachesCandidatesOnRequest) {
   for (const char* detector : {"contours", "arcs"}) {
     const auto harness = tracker("detector=" + std::string(detector) + " candidates=true");
     const auto out = push(harness, gray_buffer_of(ring_picture()));
@@ -136,7 +136,7 @@ ellipse::Ellipse found_in(const std::string& format, int width) {
 
 class Formats : public testing::TestWithParam<int> {};
 
-TEST_P(Formats, PlanarOnesGiveTheSameBitForBit) {
+TEST_P(Formats, PlanarFormatsGiveIdenticalEllipses) {
   const ellipse::Ellipse gray = found_in("GRAY8", GetParam());
   ASSERT_GT(gray.semi_major, 0.0);
   for (const char* format : support::kPlanarFormats) {
@@ -144,7 +144,7 @@ TEST_P(Formats, PlanarOnesGiveTheSameBitForBit) {
   }
 }
 
-TEST_P(Formats, PackedOnesGiveTheSameWithinRounding) {
+TEST_P(Formats, PackedFormatsGiveEqualEllipsesWithinRounding) {
   const ellipse::Ellipse gray = found_in("GRAY8", GetParam());
   for (const char* format : support::kPackedFormats) {
     const ellipse::Ellipse found = found_in(format, GetParam());
@@ -219,7 +219,7 @@ TEST(EllipseTrack, AnalysesEveryNthFrame) {
   EXPECT_EQ(stat(element_of(harness), "frames"), 7U);
 }
 
-TEST(EllipseTrack, LatenessSkipsTheAnalysisNotTheFrame) {
+TEST(EllipseTrack, LateFramesPassWithoutAnalysis) {
   const auto harness = tracker();
   push(harness, gray_buffer_of(ring_picture()));
   gst_harness_push_upstream_event(
@@ -243,7 +243,7 @@ TEST(EllipseTrack, PropertiesChangeWhilePlaying) {
   EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
 }
 
-TEST(EllipseTrack, RefusesAPairTheWrongWayRoundAndSaysSo) {
+TEST(EllipseTrack, RejectsInvertedPairsWithAWarning) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   BusTap bus(element);
@@ -259,7 +259,7 @@ TEST(EllipseTrack, RefusesAPairTheWrongWayRoundAndSaysSo) {
   g_error_free(error);
 }
 
-TEST(EllipseTrack, SpeaksOfItsOwnTargetBehindAnotherTracker) {
+TEST(EllipseTrack, ReportsItsOwnTargetAfterAnotherTracker) {
   const auto harness = tracker("overlay=ellipse");
   BusTap bus(element_of(harness));
   auto buffer = gray_buffer_of(ring_picture());
@@ -274,7 +274,7 @@ TEST(EllipseTrack, SpeaksOfItsOwnTargetBehindAnotherTracker) {
   EXPECT_NEAR(cx, kRing.cx, 0.1);
 }
 
-TEST(EllipseTrack, NaNChangesNothing) {
+TEST(EllipseTrack, IgnoresNaN) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   for (const char* name : {"roi-expansion", "detect-contour-overlap", "edge-high", "max-axis"}) {
@@ -288,7 +288,7 @@ TEST(EllipseTrack, NaNChangesNothing) {
   EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
 }
 
-TEST(EllipseTrack, ExtremeSettingsPass) {
+TEST(EllipseTrack, RunsWithExtremeSettings) {
   const auto harness = tracker(
       "max-scale=128 roi-expansion=10 min-contour-size=5 max-axis-ratio=100 min-axis=1 "
       "max-axis=32768 min-target-size=1 max-target-size=1 track-contour-overlap=0.0001");
@@ -341,7 +341,7 @@ TEST(EllipseTrack, PostsAMessageOnChange) {
   EXPECT_STREQ(gst_structure_get_string(gst_message_get_structure(lost.get()), "state"), "lost");
 }
 
-TEST(EllipseTrack, MessagesComeEveryFrameOrNever) {
+TEST(EllipseTrack, PostsMessagesInEveryFrameOrNever) {
   const auto count = [](const char* setting) {
     const auto harness = tracker(setting);
     BusTap bus(element_of(harness));
@@ -375,7 +375,7 @@ TEST(EllipseTrack, SignalsAcquisitionAndLoss) {
   EXPECT_EQ(heard, "+-+");
 }
 
-TEST(EllipseTrack, LatenessThatIsNotItsOwnLeavesItSomeFrames) {
+TEST(EllipseTrack, AnalysesSomeFramesIfOtherElementsAreLate) {
   const auto harness = tracker();
   std::string pattern;
   for (guint64 i = 0; i < 12; ++i) {
@@ -390,7 +390,7 @@ TEST(EllipseTrack, LatenessThatIsNotItsOwnLeavesItSomeFrames) {
   EXPECT_EQ(pattern, "....x....x..");
 }
 
-TEST(EllipseTrack, ResetTellsOfTheLoss) {
+TEST(EllipseTrack, ResetReportsTheLoss) {
   const auto harness = tracker();
   GstElement* element = element_of(harness);
   push(harness, gray_buffer_of(ring_picture()));
@@ -409,7 +409,7 @@ TEST(EllipseTrack, ResetTellsOfTheLoss) {
   EXPECT_FALSE(bus.pop(GST_MESSAGE_ELEMENT));
 }
 
-TEST(EllipseTrack, SegmentsInBytesPass) {
+TEST(EllipseTrack, AcceptsSegmentsInBytes) {
   const auto harness = tracker("messages=every-frame");
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_BYTES);
@@ -429,7 +429,7 @@ TEST(EllipseTrack, ReportsNoAxisBeyondItsLimit) {
   }
 }
 
-TEST(EllipseTrack, LoweringMaxScaleActsAtOnce) {
+TEST(EllipseTrack, LoweringMaxScaleTakesEffectInTheNextFrame) {
   const auto harness = tracker("tracking=redetect max-target-size=40 min-target-size=10");
   for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
   EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 4U);
@@ -437,7 +437,7 @@ TEST(EllipseTrack, LoweringMaxScaleActsAtOnce) {
   EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 2U);
 }
 
-TEST(EllipseTrack, ResetStartsOver) {
+TEST(EllipseTrack, ResetSignalStartsANewTarget) {
   const auto harness = tracker();
   push(harness, gray_buffer_of(ring_picture()));
   g_signal_emit_by_name(element_of(harness), "reset");
@@ -464,7 +464,7 @@ TEST(EllipseTrack, TargetAndStatsAreReadable) {
   EXPECT_EQ(stat(element, "lost"), 1U);
 }
 
-TEST(EllipseTrack, CapsMayChangeAtAnyBuffer) {
+TEST(EllipseTrack, AcceptsNewCapsAtEachBuffer) {
   const auto harness = tracker();
   for (const char* format : {"I420", "BGR", "GRAY8", "YUY2"}) {
     for (const int width : {320, 91, 322}) {
@@ -500,7 +500,7 @@ TEST(EllipseTrack, TakesFramesOfAnySize) {
   }
 }
 
-TEST(EllipseTrack, ABufferTooSmallForItsCapsPasses) {
+TEST(EllipseTrack, PassesTooSmallBuffersWithAWarning) {
   const auto harness = tracker();
   BusTap bus(element_of(harness));
   Owned<GstBuffer> small(gst_buffer_new_allocate(nullptr, 100, nullptr));
@@ -509,7 +509,7 @@ TEST(EllipseTrack, ABufferTooSmallForItsCapsPasses) {
   EXPECT_NE(target_on(push(harness, gray_buffer_of(ring_picture()))), nullptr);
 }
 
-TEST(EllipseTrack, FlushStartsOver) {
+TEST(EllipseTrack, FlushResetsTheTracker) {
   const auto harness = tracker();
   push(harness, gray_buffer_of(ring_picture()));
   gst_harness_push_event(harness.get(), gst_event_new_flush_start());
@@ -521,7 +521,7 @@ TEST(EllipseTrack, FlushStartsOver) {
   EXPECT_EQ(target_on(out)->state, GST_ELLIPSE_STATE_DETECTED);
 }
 
-TEST(EllipseTrack, BuffersWithoutTimePass) {
+TEST(EllipseTrack, AcceptsBuffersWithoutTimestamps) {
   const auto harness = tracker("messages=every-frame");
   auto buffer = gray_buffer_of(ring_picture());
   GST_BUFFER_PTS(buffer.get()) = GST_CLOCK_TIME_NONE;

@@ -44,7 +44,7 @@ constexpr int kContinuation = 0;
 constexpr int kText = 1;
 constexpr int kPing = 9;
 
-TEST(LiveFrameGuard, MessagesPassInAnyPieces) {
+TEST(LiveFrameGuard, MessagesPassInPiecesOfAnySize) {
   FrameGuard guard(clock_us);
   const std::string text = frame(kText, 30) + frame(kText, 1024) + frame(kText, 500, false) +
                            frame(kPing, 100) + frame(kContinuation, 524) + frame(kText, 0);
@@ -55,7 +55,7 @@ TEST(LiveFrameGuard, MessagesPassInAnyPieces) {
   }
 }
 
-TEST(LiveFrameGuard, AMessageIsBoundedInAllItsFragments) {
+TEST(LiveFrameGuard, MessagesAreLimitedOverAllFragments) {
   EXPECT_FALSE(FrameGuard(clock_us).take(bytes_of(frame(kText, 1025))));
   EXPECT_FALSE(FrameGuard(clock_us).take(bytes_of(frame(kText, 70'000))));
   FrameGuard guard(clock_us);
@@ -65,7 +65,7 @@ TEST(LiveFrameGuard, AMessageIsBoundedInAllItsFragments) {
 }
 
 // Fragments, and pings with a lower limit.
-TEST(LiveFrameGuard, FramesAreCountedAndComeBackWithTime) {
+TEST(LiveFrameGuard, FrameRateIsLimited) {
   now_us = 1'000'000;
   FrameGuard guard(clock_us);
   const auto taken = [&](int opcode) {
@@ -84,7 +84,7 @@ std::string request(const std::string& method, const std::string& headers = "") 
   return method + " rtsp://robot:8554/live RTSP/1.0\r\nCSeq: 1\r\n" + headers + "\r\n";
 }
 
-TEST(LiveRtspGuard, RequestsAndPacketsPassInAnyPieces) {
+TEST(LiveRtspGuard, RequestsAndPacketsPassInPiecesOfAnySize) {
   RtspGuard guard(clock_us);
   const std::string packet = std::string("$\x01\x00\x05", 4) + "a\r\nb$";
   const std::string text = request("OPTIONS") + packet + "\r\n" +
@@ -98,7 +98,7 @@ TEST(LiveRtspGuard, RequestsAndPacketsPassInAnyPieces) {
   }
 }
 
-TEST(LiveRtspGuard, HeadersAreBoundedAndPlain) {
+TEST(LiveRtspGuard, HeadersAreLimitedInSizeAndForm) {
   const auto passes = [](const std::string& text) {
     return RtspGuard(clock_us).take(bytes_of(text));
   };
@@ -115,7 +115,7 @@ TEST(LiveRtspGuard, HeadersAreBoundedAndPlain) {
   EXPECT_FALSE(passes(std::string("OPTIONS * RTSP/1.0\r\n\0a", 22)));
 }
 
-TEST(LiveRtspGuard, RequestsAreCountedAndComeBackWithTime) {
+TEST(LiveRtspGuard, RequestRateIsLimited) {
   now_us = 1'000'000;
   RtspGuard guard(clock_us);
   const auto taken = [&] {

@@ -60,7 +60,7 @@ void expect_no_growth(const LiveProgram& program, long before_kib) {
   EXPECT_LT(program.memory_kib("VmHWM"), before_kib + kGrowthKib);
 }
 
-TEST(LiveHostile, AnRtspBodyIsNotTaken) {
+TEST(LiveHostile, RejectsLargeRtspBodies) {
   const RtspProgram rtsp;
   const long before_kib = rtsp.program().memory_kib("VmHWM");
   const RawClient client(rtsp.port());
@@ -72,7 +72,7 @@ TEST(LiveHostile, AnRtspBodyIsNotTaken) {
   EXPECT_NE(rtsp.describe().find(" 401 "), std::string::npos);
 }
 
-TEST(LiveHostile, RtspHeadersWithoutAnEndAreNotTaken) {
+TEST(LiveHostile, RejectsEndlessRtspHeaders) {
   const RtspProgram rtsp;
   const long before_kib = rtsp.program().memory_kib("VmHWM");
   const RawClient client(rtsp.port());
@@ -85,7 +85,7 @@ TEST(LiveHostile, RtspHeadersWithoutAnEndAreNotTaken) {
 }
 
 // The clients neither send requests nor know the password; one sends a byte now and then.
-TEST(LiveHostile, RtspConnectionsAreCountedAndIdleOnesDropped) {
+TEST(LiveHostile, LimitsRtspConnectionsAndDropsIdleOnes) {
   const RtspProgram rtsp;
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 40; ++i) idle.push_back(std::make_unique<RawClient>(rtsp.port()));
@@ -99,7 +99,7 @@ TEST(LiveHostile, RtspConnectionsAreCountedAndIdleOnesDropped) {
   EXPECT_NE(rtsp.describe().find(" 401 "), std::string::npos);
 }
 
-TEST(LiveHostile, TheNameOfTheSchemeIsWrittenInAnyCaseOverRtsp) {
+TEST(LiveHostile, RtspAcceptsTheAuthSchemeInAnyCase) {
   const RtspProgram rtsp;
   const live::Ref<gchar> secret(
       g_base64_encode(reinterpret_cast<const guchar*>("ellipse:sesame"), 14));
@@ -129,7 +129,7 @@ std::string fragment(bool is_first) {
   return head + "\xfe\x03\xe8mask" + std::string(1000, 'a');
 }
 
-TEST(LiveHostile, AMessageInFragmentsWithoutAnEndIsNotTaken) {
+TEST(LiveHostile, RejectsMessagesOfEndlessFragments) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 30; }));
@@ -142,7 +142,7 @@ TEST(LiveHostile, AMessageInFragmentsWithoutAnEndIsNotTaken) {
 }
 
 // Every ping calls for an answer, and this client reads none.
-TEST(LiveHostile, PingsWithoutEndAreNotAnswered) {
+TEST(LiveHostile, CutsOffEndlessPings) {
   const LiveProgram program({"--source", "[videotestsrc num-buffers=1 ! imagefreeze]"});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 0; }));
@@ -155,7 +155,7 @@ TEST(LiveHostile, PingsWithoutEndAreNotAnswered) {
   EXPECT_TRUE(wait_until([&] { return client.stat("listeners") == 0.0; }));
 }
 
-TEST(LiveHostile, RangesAreIgnored) {
+TEST(LiveHostile, IgnoresRanges) {
   g_setenv("G_DEBUG", "fatal-criticals", TRUE);
   const LiveProgram program({});
   g_unsetenv("G_DEBUG");
@@ -175,7 +175,7 @@ TEST(LiveHostile, RangesAreIgnored) {
 }
 
 // Setting long texts repeatedly must not accumulate memory.
-TEST(LiveHostile, TypesOfRegionsAreNotKept) {
+TEST(LiveHostile, KeepsNoRegionTypes) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 30; }));
@@ -195,7 +195,7 @@ TEST(LiveHostile, TypesOfRegionsAreNotKept) {
 }
 
 // Like a viewer that acknowledges nothing.
-TEST(LiveHostile, WhoTakesNoLineOfTheEventsIsDropped) {
+TEST(LiveHostile, DropsClientsThatReadNoEvents) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_EQ(client.put("api/properties", R"({"candidates":true})").status, 200U);

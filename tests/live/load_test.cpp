@@ -22,7 +22,7 @@ double tracker_stat(const Client& client, const char* name) {
 
 // With viewers that never read, the pipeline still analyses each frame, and other viewers get
 // theirs.
-TEST(LiveLoad, StalledViewersHoldNobodyUp) {
+TEST(LiveLoad, StalledViewersDelayNobody) {
   const LiveProgram program({});
   const Client client(program.url());
   std::vector<std::unique_ptr<SocketClient>> stalled;

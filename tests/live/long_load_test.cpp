@@ -46,7 +46,7 @@ Pace run(const Client& client) {
           json_object_get_double_member(tracker, "skipped")};
 }
 
-TEST(LiveLongLoad, FiftyViewersAndFiveOfThemStalledDoNotSlowThePipeline) {
+TEST(LiveLongLoad, FiftyViewersWithFiveStalledDoNotSlowThePipeline) {
   const LiveProgram program({});
   const Client client(program.url());
   // Real clients run on machines of their own: here they only get the time that the program leaves.

@@ -22,7 +22,7 @@ TEST(LiveProgram, DISABLED_IsKilledWhileItRuns) {
   std::raise(SIGKILL);
 }
 
-TEST(LiveProgram, EndsWithTheTestsThatStartedIt) {
+TEST(LiveProgram, ExitsWithItsParent) {
   const support::TemporaryFolder folder;
   const std::string file = folder.file("url");
   EXPECT_FALSE(support::run_own_tests(

@@ -26,7 +26,7 @@ def buffer_with(*roles):
 
 
 class EllipseMeta(unittest.TestCase):
-    def test_lists_all_in_their_order(self):
+    def test_lists_all_in_insertion_order(self):
         ellipses = GstEllipse.buffer_list_ellipse_meta(buffer_with(TRUTH, TARGET, CANDIDATE))
         self.assertEqual([e.role for e in ellipses], [TRUTH, TARGET, CANDIDATE])
         self.assertEqual([e.id for e in ellipses], [1, 2, 3])
@@ -34,7 +34,7 @@ class EllipseMeta(unittest.TestCase):
     def test_lists_nothing_on_an_empty_buffer(self):
         self.assertEqual(GstEllipse.buffer_list_ellipse_meta(buffer_with()), [])
 
-    def test_gets_the_first_of_a_role_or_none(self):
+    def test_gets_the_first_of_a_role(self):
         buffer = buffer_with(TRUTH, TARGET, TARGET)
         self.assertEqual(GstEllipse.buffer_get_ellipse_meta(buffer, TARGET).id, 2)
         self.assertIsNone(GstEllipse.buffer_get_ellipse_meta(buffer, CANDIDATE))
@@ -48,7 +48,7 @@ class EllipseMeta(unittest.TestCase):
             ellipse, state = GstEllipse.buffer_iterate_ellipse_meta(buffer, state)
         self.assertEqual(ids, [1, 2])
 
-    def test_keeps_what_is_written(self):
+    def test_written_fields_are_read_back(self):
         buffer = buffer_with(TARGET)
         written = GstEllipse.buffer_get_ellipse_meta(buffer, TARGET)
         self.assertEqual(written.pts, Gst.CLOCK_TIME_NONE)
@@ -61,7 +61,7 @@ class EllipseMeta(unittest.TestCase):
         self.assertEqual((read.get_role_name(), read.get_state_name()), ("target", "tracked"))
         self.assertEqual(read.state.value_nick, "tracked")
 
-    def test_says_what_the_tracker_was_doing(self):
+    def test_reports_the_tracker_state(self):
         buffer = buffer_with()
         search = GstEllipse.buffer_add_ellipse_search_meta(buffer, 5)
         self.assertEqual(search.get_tracker_state_name(), "unknown")
@@ -71,7 +71,7 @@ class EllipseMeta(unittest.TestCase):
         line = json.loads(GstEllipse.buffer_ellipses_to_json(buffer, 0, 320, 240))
         self.assertEqual((line["processing_ns"], line["tracker"]), (5, "confirming"))
 
-    def test_follows_a_copy_of_the_buffer(self):
+    def test_is_copied_with_the_buffer(self):
         copy = buffer_with(TRUTH, TARGET).copy_deep()
         self.assertEqual([e.id for e in GstEllipse.buffer_list_ellipse_meta(copy)], [1, 2])
 
@@ -84,7 +84,7 @@ class EllipseMeta(unittest.TestCase):
         self.assertEqual(structure.get_uint64("id"), (True, 2))
         self.assertEqual(structure.get_value("semi_major"), 0.0)
 
-    def test_json_is_that_of_the_lines(self):
+    def test_json_matches_the_lines(self):
         ellipse = GstEllipse.buffer_get_ellipse_meta(buffer_with(TARGET), TARGET)
         fields = json.loads(ellipse.to_json())
         self.assertEqual((fields["role"], fields["id"], fields["state"]), ("target", 1, "detected"))
@@ -134,7 +134,7 @@ class SearchRegion(unittest.TestCase):
         pipeline.set_state(Gst.State.NULL)
         return found
 
-    def test_is_where_the_target_is_looked_for(self):
+    def test_limits_the_search(self):
         inside = self.targets_inside("<200,100,300,200>")
         self.assertEqual(len(inside), 5)
         self.assertAlmostEqual(inside[0][0], 319.8, delta=0.5)
@@ -144,7 +144,7 @@ class SearchRegion(unittest.TestCase):
 class Reference(unittest.TestCase):
     """The GIR file from which the API reference is generated."""
 
-    def test_says_of_everything_since_when(self):
+    def test_every_symbol_has_a_since_version(self):
         gir = ElementTree.parse(os.environ["ELLIPSE_GIR"])
         core = "{http://www.gtk.org/introspection/core/1.0}"
         namespace = gir.find(f"{core}namespace")

@@ -44,7 +44,7 @@ class RosYaml(unittest.TestCase):
             line = json.loads(text)
             yield from ((line, t) for t in line["targets"] if t["role"] == "target")
 
-    def test_is_one_message_a_frame_with_the_pose_of_its_line(self):
+    def test_writes_one_message_per_frame_with_its_pose(self):
         self.assertEqual(len(self.messages), 12)
         for message, (line, target) in zip(self.messages, self.targets()):
             stamp = message["header"]["stamp"]
@@ -52,7 +52,7 @@ class RosYaml(unittest.TestCase):
             self.assertEqual(message["header"]["frame_id"], "camera")
             self.assertEqual(message["pose"]["pose"]["position"], target["position"])
 
-    def test_turns_z_to_the_normal(self):
+    def test_orientation_maps_z_to_the_normal(self):
         for message, (_, target) in zip(self.messages, self.targets()):
             turn = message["pose"]["pose"]["orientation"]
             self.assertAlmostEqual(math.fsum(v * v for v in turn.values()), 1.0, places=5)
@@ -68,7 +68,7 @@ class RosYaml(unittest.TestCase):
             self.assertEqual(rows[0][:3], target["position_covariance"][:3])
             self.assertGreater(rows[2][2], 0.0)
 
-    def test_says_nothing_of_a_frame_without_a_target(self):
+    def test_writes_no_message_without_a_target(self):
         self.assertEqual(messages_of('{"frame":0,"pts_ns":0,"targets":[]}\n'), [])
 
 

@@ -59,7 +59,7 @@ void follow(const Scene& scene, Tally& tally) {
   }
 }
 
-TEST(DistortedScenes, AreFollowedInTheIdealPlane) {
+TEST(DistortedScenes, AreTrackedInTheIdealPlane) {
   Tally all;
   for (const NamedLens& lens : lens_catalog()) {
     for (const NamedScene& named : scene_catalog()) {

@@ -131,7 +131,7 @@ void fly(std::uint64_t seed, Pattern pattern, Errors& errors) {
   }
 }
 
-TEST(PoseRegression, FromFifteenMetresToOne) {
+TEST(PoseRegression, ErrorsStayWithinLimitsFromFifteenMetresToOne) {
   Errors errors;
   for (int i = 0; i < kFlights; ++i) {
     const Pattern pattern = i % 3 == 0   ? Pattern::kRingX

@@ -108,7 +108,7 @@ class RealPictures : public testing::TestWithParam<Limits> {
   TrackerSettings settings_;
 };
 
-TEST_P(RealPictures, ShowTheirEllipses) {
+TEST_P(RealPictures, EnoughEllipsesAreFound) {
   int right = 0;
   std::ostringstream missed;
   for (const Label& label : labels_) {
@@ -123,7 +123,7 @@ TEST_P(RealPictures, ShowTheirEllipses) {
   EXPECT_GE(right, GetParam().min_right) << "missed:\n" << missed.str();
 }
 
-TEST_P(RealPictures, WithoutEllipsesShowNoTarget) {
+TEST_P(RealPictures, PicturesWithoutEllipsesGiveFewTargets) {
   int wrong = 0;
   std::ostringstream found;
   for (const Label& label : labels_) {

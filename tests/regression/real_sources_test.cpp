@@ -95,7 +95,7 @@ class RealSources : public testing::TestWithParam<Source> {
   fs::path folder_;
 };
 
-TEST_P(RealSources, ShowTheirTargetAndNoOther) {
+TEST_P(RealSources, ResultsMeetTheirLimits) {
   const Dataset dataset = read_dataset(folder_);
   EXPECT_TRUE(dataset.problems.empty()) << dataset.problems[0];
   const Evaluation evaluation = evaluation_of(dataset.sequences, false);
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(All, RealSources, testing::ValuesIn(kSources), [](const
   return name;
 });
 
-TEST(RealDiscs, AreAllFound) {
+TEST(RealDiscs, ResultsMeetTheirLimits) {
   gst_init(nullptr, nullptr);
   const fs::path folder = folder_of("calibration-discs");
   if (folder.empty()) GTEST_SKIP() << "calibration-discs is not here: set ELLIPSE_REAL_SOURCES";

@@ -169,7 +169,7 @@ class Watched {
   int false_ = 0;
 };
 
-TEST_P(Scenes, ShowTheirTargetAndNoOther) {
+TEST_P(Scenes, ResultsMeetTheirLimits) {
   std::deque<Watched> methods;  // trackers are not movable
   const Limits* any = nullptr;
   for (const Limits& limits : kLimits) {
@@ -217,7 +217,7 @@ void PrintTo(const Ban& ban, std::ostream* out) {
 
 class BareGround : public testing::TestWithParam<Ban> {};
 
-TEST_P(BareGround, ShowsNothing) {
+TEST_P(BareGround, GivesNoTarget) {
   Scene scene = scene_by_name("negative", kSeed);
   const auto nicks = ground_nicks();
   const auto nick = std::find(nicks.begin(), nicks.end(), std::string(GetParam().ground));
@@ -260,7 +260,7 @@ int false_on(GroundKind kind) {
 }
 
 // 800 frames of shapes that resemble a pad: half ellipses on roads, petals cut by the border.
-TEST(Clutter, FoolsTheArcsInFewFrames) {
+TEST(Clutter, CausesFewFalseTargetsOfArcs) {
   int wrong = 0;
   for (const GroundKind kind : {GroundKind::kClutter,
                                 GroundKind::kFlowers,
@@ -274,7 +274,7 @@ TEST(Clutter, FoolsTheArcsInFewFrames) {
 }
 
 // An octagon with a radius of a dozen pixels is hardly distinguishable from an ellipse.
-TEST(Clutter, OfPolygonsFoolsTheArcsWhereTheyAreSmall) {
+TEST(Clutter, PolygonsCauseFewFalseTargetsOfArcs) {
   const int wrong = false_on(GroundKind::kPolygons);
   RecordProperty("false", wrong);
   EXPECT_LE(wrong, 22);

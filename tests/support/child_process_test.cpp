@@ -98,7 +98,7 @@ TEST_F(Children, AFailedForkAtATerminalSignalsNobody) {
   EXPECT_EQ(signalled, std::vector<pid_t>{});
 }
 
-TEST_F(Children, AMachineWithoutTerminalsIsToldApart) {
+TEST_F(Children, MissingTerminalSupportIsDetected) {
   for (const auto open : {fail_to_open<ENOENT>, fail_to_open<ENODEV>}) {
     Terminal terminal({"sleep", "60"}, {open, {fork, record_kill}});
     EXPECT_TRUE(terminal.is_missing());
@@ -120,7 +120,7 @@ TEST_F(Children, ATerminalThatCannotBeOpenedFailsTheTest) {
   EXPECT_EQ(signalled, std::vector<pid_t>{});
 }
 
-TEST_F(Children, AProgramThatIsMissingIsNamed) {
+TEST_F(Children, ErrorNamesMissingPrograms) {
   EXPECT_NONFATAL_FAILURE(
       {
         ChildProcess child({.arguments = {"no-such-program"}}, {fork, record_kill});
@@ -132,7 +132,7 @@ TEST_F(Children, AProgramThatIsMissingIsNamed) {
   EXPECT_EQ(signalled, std::vector<pid_t>{});
 }
 
-TEST_F(Children, EndWithTheirOwner) {
+TEST_F(Children, AreKilledWithTheirOwner) {
   pid_t process = 0;
   {
     ChildProcess child({.arguments = {"sleep", "60"}});
@@ -166,7 +166,7 @@ TEST_F(Children, AreSignalledWithTheirGroupWhereTheyHaveOne) {
   }
 }
 
-TEST_F(Children, TellHowTheyEnded) {
+TEST_F(Children, ReportHowTheyEnded) {
   ChildProcess status({.arguments = {"sh", "-c", "exit 3"}});
   EXPECT_EQ(status.wait(), 3);
   EXPECT_EQ(status.ended_by(), 0);
@@ -177,7 +177,7 @@ TEST_F(Children, TellHowTheyEnded) {
   EXPECT_EQ(support::run_shell("echo out; kill -TERM $$").status, -1);
 }
 
-TEST_F(Children, HaveTheirVariablesFolderAndStreams) {
+TEST_F(Children, RunWithTheirVariablesFolderAndStreams) {
   support::Pipe pipe;
   ChildProcess child({.arguments = {"sh", "-c", "pwd; echo \"$LANG $ADDED\"; read line || echo no"},
                       .variables = {"LANG=C", "ADDED=yes"},

@@ -47,7 +47,7 @@ class CameraFile : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(CameraFile, ReadsWhatOpenCvWrites) {
+TEST_F(CameraFile, ReadsOpenCvFiles) {
   const Camera expected = support::wide();
   for (const char* name : {"camera.yml", "camera.xml", "camera.json"}) {
     cv::FileStorage storage(path(name), cv::FileStorage::WRITE);
@@ -105,7 +105,7 @@ TEST_F(CameraFile, ReadsRosCameraInfo) {
   }
 }
 
-TEST_F(CameraFile, ReadsAFisheyeOfRos) {
+TEST_F(CameraFile, ReadsRosFisheye) {
   std::string text = with("plumb_bob", "equidistant");
   const std::string five = "cols: 5\n  data: [-0.337586, 0.111344, -0.00069, -0.0003, 0.0]";
   text.replace(text.find(five), five.size(), "cols: 4\n  data: [-0.02, 0.004, -0.002, 0.0003]");
@@ -114,7 +114,7 @@ TEST_F(CameraFile, ReadsAFisheyeOfRos) {
   EXPECT_DOUBLE_EQ(camera.distortion[2], -0.002);
 }
 
-TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsWrong) {
+TEST_F(CameraFile, ErrorNamesFileLineAndKey) {
   EXPECT_EQ(refusal("a.yaml", with("image_width: 640\n", "")), "a.yaml: image_width is missing");
   EXPECT_EQ(refusal("b.yaml", with("image_height: 480", "image_height: -3")),
             "b.yaml:2: image_height is not a whole number from 1 to 65536");
@@ -133,7 +133,7 @@ TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsWrong) {
             "h.yaml:10: distortion_coefficients is not a number");
 }
 
-TEST_F(CameraFile, RefusesWhatIsNoCalibration) {
+TEST_F(CameraFile, RejectsOtherFiles) {
   EXPECT_EQ(refusal("empty.yaml", ""), "empty.yaml: is empty");
   EXPECT_EQ(refusal("zeros.yaml", std::string(64, '\0')), "zeros.yaml: is not a text file");
   EXPECT_NE(refusal("prose.txt", "Call me Ishmael.\nSome years ago\n"), "accepted");
@@ -177,19 +177,19 @@ roi:
 ---
 )";
 
-TEST_F(CameraFile, ReadsTheMessageOfRos) {
+TEST_F(CameraFile, ReadsRosMessages) {
   EXPECT_EQ(read_camera(file("message.yaml", kMessage)), read_camera(file("a.yaml", kCameraInfo)));
   std::string text = kMessage;
   EXPECT_EQ(refusal("b.yaml", text.replace(text.find("430.5"), 5, "lots ")),
             "b.yaml:15: k is not a number");
 }
 
-TEST_F(CameraFile, ReadsWhatBeginsWithAByteOrderMark) {
+TEST_F(CameraFile, SkipsAByteOrderMark) {
   const Camera expected = read_camera(file("a.yaml", kCameraInfo));
   EXPECT_EQ(read_camera(file("b.yaml", std::string("\xEF\xBB\xBF").append(kCameraInfo))), expected);
 }
 
-TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsOutOfRange) {
+TEST_F(CameraFile, ErrorNamesFileLineAndKeyOfValuesOutOfRange) {
   EXPECT_EQ(refusal("a.yaml", with("319.25", "1.0e7")),
             "a.yaml:5: camera_matrix is out of range: cx is not between -1e6 and 1e6 px");
   EXPECT_EQ(refusal("b.yaml", with("431.25", "1.0e7")),
@@ -198,7 +198,7 @@ TEST_F(CameraFile, NamesFileLineAndKeyOfWhatIsOutOfRange) {
             "c.yaml:5: camera_matrix has a focal length below 1 px");
 }
 
-TEST_F(CameraFile, RefusesALensThatIsNotOneToOne) {
+TEST_F(CameraFile, RejectsALensThatIsNotOneToOne) {
   const std::string expected =
       "distortion_coefficients is not one to one over the middle half of the picture";
   for (const char* each : {"1e300, 1e300, 0., 0., 0.",
@@ -212,13 +212,13 @@ TEST_F(CameraFile, RefusesALensThatIsNotOneToOne) {
 }
 
 // A lens may be non-monotonic beyond the middle half; this one is, beyond 1.5 times that radius.
-TEST_F(CameraFile, TakesALensThatTurnsBackFartherOut) {
+TEST_F(CameraFile, AcceptsALensThatTurnsBackFartherOut) {
   const std::string text =
       with("-0.337586, 0.111344, -0.00069, -0.0003, 0.0", "-0.3, 0., 0., 0., 0.");
   EXPECT_EQ(read_camera(file("a.yaml", text)).distortion[0], -0.3);
 }
 
-TEST_F(CameraFile, TakesRegularFilesOnly) {
+TEST_F(CameraFile, AcceptsRegularFilesOnly) {
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
   for (const char* name : {"fifo", "."}) {
     try {
@@ -230,17 +230,17 @@ TEST_F(CameraFile, TakesRegularFilesOnly) {
   }
 }
 
-TEST_F(CameraFile, RefusesAFileWithoutKeys) {
+TEST_F(CameraFile, RejectsFilesWithoutKeys) {
   EXPECT_EQ(refusal("a.yaml", "[1, 2]\n"), "a.yaml: is not a calibration: it has no keys");
   EXPECT_EQ(refusal("b.yaml", "- 1\n- 2\n"), "b.yaml: is not a calibration: it has no keys");
 }
 
-TEST_F(CameraFile, RefusesAKeyWithoutLetters) {
+TEST_F(CameraFile, RejectsEmptyKeys) {
   EXPECT_EQ(refusal("a.yaml", "header:\n  sec: 17\n  :\n"), "a.yaml: is not a calibration");
 }
 
 // OpenCV's parser would read past the end.
-TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
+TEST_F(CameraFile, RejectsTruncatedFiles) {
   for (const char* text : {"<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=",
                            "{\"camera_matrix\": [1, 2"}) {
     EXPECT_EQ(refusal("a", text), "a: is not a calibration: it is truncated");
@@ -248,7 +248,7 @@ TEST_F(CameraFile, RefusesWhatEndsTooEarly) {
 }
 
 // The error names the line number of broken YAML.
-TEST_F(CameraFile, NamesTheLineOfBrokenYaml) {
+TEST_F(CameraFile, ErrorNamesTheLineOfInvalidYaml) {
   const std::string message = refusal("broken.yaml", with("data: [ 430.5", "data: [ 430.5 }"));
   EXPECT_EQ(message.rfind("broken.yaml:8: is not a calibration", 0), 0U) << message;
 }

@@ -47,7 +47,7 @@ std::vector<Vector2d> grid(double margin_px) {
 class EachLens : public testing::TestWithParam<Camera> {};
 INSTANTIATE_TEST_SUITE_P(Lens, EachLens, testing::Values(support::wide(), support::fisheye()));
 
-TEST_P(EachLens, DistortsAsOpenCvDoes) {
+TEST_P(EachLens, DistortsLikeOpenCv) {
   const Lens lens(GetParam());
   const std::vector<Vector2d> ideal = grid(40.0);
   const std::vector<cv::Point2d> expected = opencv_picture(GetParam(), ideal);
@@ -59,7 +59,7 @@ TEST_P(EachLens, DistortsAsOpenCvDoes) {
   }
 }
 
-TEST_P(EachLens, IsUndone) {
+TEST_P(EachLens, UndistortInvertsDistort) {
   const Lens lens(GetParam());
   for (const Vector2d& ideal : grid(100.0)) {
     const auto point = lens.picture_from_ideal(ideal);
@@ -70,7 +70,7 @@ TEST_P(EachLens, IsUndone) {
   }
 }
 
-TEST_P(EachLens, KnowsItsSlope) {
+TEST_P(EachLens, DerivativeMatchesDifferences) {
   const Lens lens(GetParam());
   constexpr double kStep = 1e-4;
   for (const Vector2d& ideal : grid(0.0)) {
@@ -84,7 +84,7 @@ TEST_P(EachLens, KnowsItsSlope) {
   }
 }
 
-TEST(Lens, EndsWhereItsPolynomialTurnsBack) {
+TEST(Lens, RangeEndsWhereThePolynomialTurnsBack) {
   Camera camera = Camera::with_hfov(1.012, 640, 360);
   camera.distortion = {-0.3};  // r (1 - .3 r^2) is highest at r = 1.054
   const Lens lens(camera);
@@ -94,7 +94,7 @@ TEST(Lens, EndsWhereItsPolynomialTurnsBack) {
   EXPECT_FALSE(lens.ideal_from_picture(middle + Vector2d(0.75 * camera.fx, 0.0)));
 }
 
-TEST(Lens, WithoutDistortionIsTheIdealPlane) {
+TEST(Lens, EqualsTheIdealPlaneWithoutDistortion) {
   const Camera camera = Camera::with_hfov(1.012, 640, 360);
   EXPECT_FALSE(camera.is_distorted());
   const Lens lens(camera);

@@ -46,7 +46,7 @@ RingUncertainty uncertainty_of(const Ellipse& e, double sigma) {
   return {image_from_pad(e), RingMatrix::Identity() / (sigma * sigma)};
 }
 
-TEST(CirclePoses, OneOfThemIsTheCircle) {
+TEST(CirclePoses, ContainTheTruePose) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int i = 0; i < 2000; ++i) {
@@ -69,7 +69,7 @@ TEST(CirclePoses, OneOfThemIsTheCircle) {
   }
 }
 
-TEST(CirclePoses, MeetWhereACircleIsSeenStraightOn) {
+TEST(CirclePoses, CoincideInTheFrontalView) {
   const CirclePose truth = circle_at({319.5, 179.5}, 8.0, 0.0, 0.0);
   const auto ideal = project_circle(image_from_pad(camera_640(), truth), 1.0);
   const auto poses = circle_poses(camera_640(), *ideal);
@@ -78,7 +78,7 @@ TEST(CirclePoses, MeetWhereACircleIsSeenStraightOn) {
   EXPECT_NEAR((*poses)[0].position.z(), 8.0, 1e-9);
 }
 
-TEST(CirclePoses, CentreIsNotTheCentreOfTheEllipse) {
+TEST(CirclePoses, CentreDiffersFromTheEllipseCentre) {
   const CirclePose truth = circle_at({400.0, 120.0}, 4.0, 1.0, 0.7);
   const auto ideal = project_circle(image_from_pad(camera_640(), truth), 1.0);
   EXPECT_GT((ideal->center() - Vector2d(400.0, 120.0)).norm(), 5.0);
@@ -87,7 +87,7 @@ TEST(CirclePoses, CentreIsNotTheCentreOfTheEllipse) {
             1e-5);
 }
 
-TEST(CirclePoses, ThinnestEllipsesAreNoError) {
+TEST(CirclePoses, AreFiniteForTheThinnestEllipses) {
   for (const double minor : {1e-3, 1e-8, 1e-200}) {
     const auto poses = circle_poses(camera_640(), {320.0, 180.0, 100.0, minor, 0.3});
     if (!poses) continue;
@@ -99,7 +99,7 @@ TEST(CirclePoses, ThinnestEllipsesAreNoError) {
 }
 
 // The five parameters predict the displacement of an edge point in any view.
-TEST(RingChanges, AreTheSameChangeInAnotherView) {
+TEST(RingChanges, ConvertTheSameChangeBetweenViews) {
   const CirclePose pose = circle_at({400.0, 120.0}, 4.0, 0.8, 0.7);
   const Matrix3d view = image_from_pad(camera_640(), pose);
   const auto ellipse = project_circle(view, 1.0);
@@ -121,7 +121,7 @@ TEST(RingChanges, AreTheSameChangeInAnotherView) {
 // The mean normalised squared error of 10,000 positions is 3, within 1.96 sqrt(6 / 10,000). Its
 // tail is slightly longer than chi-square's, because the error is not normal near the view straight
 // on: of 250,000 positions .9484 are within the 95 % quantile.
-TEST(PositionCovariance, IsWhatThePositionsScatterBy) {
+TEST(PositionCovariance, MatchesTheScatterOfThePositions) {
   std::mt19937 random(20261122);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::normal_distribution<double> normal(0.0, 1.0);
@@ -199,7 +199,7 @@ std::optional<TargetPose> pose_of(PoseEstimator& estimator,
       Lens(camera_640()), view.ideal, uncertainty_of(view.ideal, 1e-3), inner_edges, 0.75, gravity);
 }
 
-TEST(PoseEstimator, KnowsTheSolutionByOneInnerCircle) {
+TEST(PoseEstimator, ResolvesTheAmbiguityByOneInnerCircle) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
     const View view = view_at(0.5, turn);
     PoseEstimator estimator;
@@ -212,7 +212,7 @@ TEST(PoseEstimator, KnowsTheSolutionByOneInnerCircle) {
   }
 }
 
-TEST(PoseEstimator, KnowsTheSolutionByGravity) {
+TEST(PoseEstimator, ResolvesTheAmbiguityByGravity) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
     const View view = view_at(0.5, turn);
     PoseEstimator estimator;
@@ -223,7 +223,7 @@ TEST(PoseEstimator, KnowsTheSolutionByGravity) {
   }
 }
 
-TEST(PoseEstimator, StaysWithTheSolutionThatWasRight) {
+TEST(PoseEstimator, KeepsTheResolvedSolution) {
   PoseEstimator estimator;
   (void)pose_of(estimator, view_at(0.5), {inner_edge(view_at(0.5).truth)});
   for (int i = 1; i < 100; ++i) {
@@ -235,7 +235,7 @@ TEST(PoseEstimator, StaysWithTheSolutionThatWasRight) {
   }
 }
 
-TEST(PoseEstimator, ARepeatedFrameIsNoFurtherEvidence) {
+TEST(PoseEstimator, RepeatedFramesAddNoEvidence) {
   PoseEstimator estimator;
   const View view = view_at(0.5);
   const FittedEllipse inner = inner_edge(view.truth, 0.8, 0.05);
@@ -250,7 +250,7 @@ TEST(PoseEstimator, ARepeatedFrameIsNoFurtherEvidence) {
   EXPECT_NEAR(often, once, 1e-6 * once);
 }
 
-TEST(PoseEstimator, AnInnerEdgeThatFitsNeitherSolutionTellsLittle) {
+TEST(PoseEstimator, InnerEdgesThatFitNeitherSolutionAddLittleEvidence) {
   const View view = view_at(0.5);
   FittedEllipse strange = inner_edge(view.truth);
   strange.ellipse.semi_major *= 1.1;
@@ -259,7 +259,7 @@ TEST(PoseEstimator, AnInnerEdgeThatFitsNeitherSolutionTellsLittle) {
   EXPECT_LT(pose_of(estimator, view, {strange})->certainty, 0.9);
 }
 
-TEST(PoseEstimator, GravityOverrulesAnInnerEdge) {
+TEST(PoseEstimator, GravityOverridesAnInnerEdge) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
     const View view = view_at(0.5, turn);
     PoseEstimator estimator;
@@ -272,14 +272,14 @@ TEST(PoseEstimator, GravityOverrulesAnInnerEdge) {
   }
 }
 
-TEST(PoseEstimator, WithoutAnythingToTellByItDoesNotClaimToKnow) {
+TEST(PoseEstimator, CertaintyIsOneHalfWithoutEvidence) {
   PoseEstimator estimator;
   const auto pose = pose_of(estimator, view_at(0.5), {});
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->certainty, 0.5, 1e-3);
 }
 
-TEST(PoseEstimator, WithoutADiameterTellsDirectionsOnly) {
+TEST(PoseEstimator, ReportsDirectionsOnlyWithoutADiameter) {
   const View view = view_at(0.5);
   PoseEstimator estimator;
   const auto pose = estimator.estimate(Lens(camera_640()),

@@ -35,7 +35,7 @@ class EachLensView : public testing::TestWithParam<Camera> {
 };
 INSTANTIATE_TEST_SUITE_P(LensView, EachLensView, testing::Values(barrel(), support::fisheye()));
 
-TEST_P(EachLensView, TableIsNearTheInverse) {
+TEST_P(EachLensView, TableApproximatesTheInverse) {
   const LensView view(lens_);
   for (double y = 0.0; y < 360.0; y += 8.3) {
     for (double x = 0.0; x < 640.0; x += 9.7) {
@@ -49,7 +49,7 @@ TEST_P(EachLensView, TableIsNearTheInverse) {
 }
 
 // Pixels and ideal pixels of a part of a reduced copy correspond to those of the frame.
-TEST_P(EachLensView, IsThatOfAPartAndOfAReducedCopy) {
+TEST_P(EachLensView, PartsAndReducedCopiesMatchTheFrame) {
   const LensView frame(lens_);
   const LensView part = frame.part({40.0, 24.0}).reduced(4);
   const auto in_frame = [](const Vector2d& p) -> Vector2d {
@@ -65,7 +65,7 @@ TEST_P(EachLensView, IsThatOfAPartAndOfAReducedCopy) {
   }
 }
 
-TEST_P(EachLensView, BendsManyPlacesAsOne) {
+TEST_P(EachLensView, DistortsManyPointsLikeSinglePoints) {
   const LensView view = LensView(lens_).part({100.0, 50.0});
   const Vector2d origin(120.0, 90.0);
   constexpr std::size_t kCount = 90;
@@ -97,7 +97,7 @@ TEST_P(EachLensView, BendsManyPlacesAsOne) {
   }
 }
 
-TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
+TEST_P(EachLensView, PlacesPointsBeyondItsRangeOutsideAnyPicture) {
   std::array<float, 2> x = {100.0F, 1e6F}, y = {100.0F, 0.0F}, nx = {1.0F, 1.0F}, ny = {};
   std::array<float, 2> across, along;
   LensView(lens_).distort(
@@ -106,7 +106,7 @@ TEST_P(EachLensView, PutsWhatItDoesNotShowOutsideOfAnyPicture) {
   EXPECT_EQ(x[1], static_cast<float>(kFarPx));
 }
 
-TEST_P(EachLensView, WhatIsBentIsUnbent) {
+TEST_P(EachLensView, UndistortInvertsDistort) {
   const LensView view(lens_);
   const Ellipse small{
       250.0, 200.0, 9.0, 6.0, 0.4};  // so small that its distorted image is an ellipse
@@ -118,12 +118,12 @@ TEST_P(EachLensView, WhatIsBentIsUnbent) {
   EXPECT_GT(max_difference_px(*shown, small), 0.2);
 }
 
-TEST_P(EachLensView, BendsNoEllipseThatItShowsInPart) {
+TEST_P(EachLensView, DoesNotDistortEllipsesPartlyOutOfRange) {
   const LensView view(lens_);
   EXPECT_FALSE(distorted(view, {320.0, 180.0, 5e4, 50.0, 0.0}));
 }
 
-TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
+TEST_P(EachLensView, VisibleFractionIsOfThePicture) {
   const LensView view(lens_);
   EXPECT_EQ(visible_fraction(view, {320.0, 180.0, 40.0, 30.0, 0.0}, 640, 360), 1.0);
   // The picture's left border halves `cut`; the ideal plane's rectangle contains less of it.
@@ -134,7 +134,7 @@ TEST_P(EachLensView, TellsTheVisibleShareInThePicture) {
   EXPECT_LT(visible_fraction(Ellipse(cut), 640, 360), 0.45);
 }
 
-TEST_P(EachLensView, EdgesMoveAsTheirRowsSay) {
+TEST_P(EachLensView, EdgesMoveAsTheirRowsPredict) {
   Matrix3d pose;
   pose << 70.0, 12.0, 210.0, -8.0, 60.0, 120.0, 0.05, -0.08, 1.0;
   PadModel model;
@@ -161,7 +161,7 @@ TEST_P(EachLensView, EdgesMoveAsTheirRowsSay) {
   }
 }
 
-TEST(LensView, IsNoneByDefault) {
+TEST(LensView, IsUndistortedByDefault) {
   const Lens pinhole(Camera::with_hfov(1.012, 640, 360));
   for (const LensView& view : {LensView(), LensView(pinhole)}) {
     EXPECT_FALSE(view.is_distorted());
@@ -176,7 +176,7 @@ TEST(LensView, IsNoneByDefault) {
   }
 }
 
-TEST(LensModel, ArcTangentInSinglePrecision) {
+TEST(LensModel, ArcTangentIsAccurateInSinglePrecision) {
   for (double x = 0.0; x < 30.0; x += 0.0137) {
     EXPECT_NEAR(arc_tangent(static_cast<float>(x)), std::atan(x), 3e-7) << x;
   }

@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Detectors,
                            return std::string(detector_nicks()[std::size_t(info.param)]);
                          });
 
-TEST_P(DetectionTraceOf, ChangesNoBitOfWhatIsFound) {
+TEST_P(DetectionTraceOf, LeavesTheDetectionsUnchanged) {
   for (const NamedScene& scene : scene_catalog()) {
     const Picture picture = of_scene(scene.name, 4.0);
     const auto plain = make_detector(GetParam());
@@ -117,7 +117,7 @@ TEST_P(DetectionTraceOf, ChangesNoBitOfWhatIsFound) {
   }
 }
 
-TEST_P(DetectionTraceOf, HasEachDetectionAndOneTarget) {
+TEST_P(DetectionTraceOf, ListsEachDetectionAndOneTarget) {
   const Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
   ASSERT_TRUE(look.target);
   int targets = 0;
@@ -136,28 +136,28 @@ TEST_P(DetectionTraceOf, HasEachDetectionAndOneTarget) {
   }
 }
 
-TEST_P(DetectionTraceOf, SaysTooSmallInPixelsOfTheFrame) {
+TEST_P(DetectionTraceOf, ReportsTooSmallInFramePixels) {
   const Verdict verdict = verdict_for(
       Reason::kTooSmall, rendered(plain_ring(), kRing), [](auto& t) { t.min_axis_px = 110.0; });
   EXPECT_EQ(verdict.limit, 110.0);
   EXPECT_NEAR(verdict.measured, 2.0 * kRing.semi_minor, 25.0);  // of the outer or inner edge
 }
 
-TEST_P(DetectionTraceOf, SaysTooLarge) {
+TEST_P(DetectionTraceOf, ReportsTooLarge) {
   const Verdict verdict = verdict_for(
       Reason::kTooLarge, rendered(plain_ring(), kRing), [](auto& t) { t.max_axis_px = 80.0; });
   EXPECT_EQ(verdict.limit, 80.0);
   EXPECT_NEAR(verdict.measured, 2.0 * kRing.semi_major, 35.0);
 }
 
-TEST_P(DetectionTraceOf, SaysTooFlat) {
+TEST_P(DetectionTraceOf, ReportsTooFlat) {
   const Verdict verdict = verdict_for(
       Reason::kTooFlat, rendered(plain_ring(), kRing), [](auto& t) { t.max_axis_ratio = 1.2; });
   EXPECT_EQ(verdict.limit, 1.2);
   EXPECT_NEAR(verdict.measured, kRing.aspect_ratio(), 0.05);
 }
 
-TEST_P(DetectionTraceOf, SaysContourTooShort) {
+TEST_P(DetectionTraceOf, ReportsContourTooShort) {
   const Verdict verdict = verdict_for(Reason::kContourTooShort,
                                       rendered(plain_ring(), kRing),
                                       [](auto& t) { t.min_contour_size = 1000; });
@@ -165,14 +165,14 @@ TEST_P(DetectionTraceOf, SaysContourTooShort) {
   EXPECT_GT(verdict.measured, 5.0);
 }
 
-TEST_P(DetectionTraceOf, SaysContourOverlap) {
+TEST_P(DetectionTraceOf, ReportsContourOverlap) {
   const Verdict verdict = verdict_for(
       Reason::kContourOverlap, of_scene("glare", 0.5), [](auto& t) { t.contour_overlap = 1.0; });
   EXPECT_EQ(verdict.limit, 1.0);
   EXPECT_GT(verdict.measured, 0.0);
 }
 
-TEST_P(DetectionTraceOf, SaysEllipseOverlap) {
+TEST_P(DetectionTraceOf, ReportsEllipseOverlap) {
   Scene scene = plain_ring();
   scene.pad.gaps_rad = {1.0, 3.1, 5.2};
   scene.pad.gap_width_rad = 1.2;
@@ -186,19 +186,19 @@ TEST_P(DetectionTraceOf, SaysEllipseOverlap) {
   EXPECT_GT(verdict.measured, 0.1);
 }
 
-TEST_P(DetectionTraceOf, SaysThatAnotherIsTheSame) {
+TEST_P(DetectionTraceOf, ReportsDuplicates) {
   const auto wanting_all = [](Thresholds& t) { t.wants_all = true; };  // at all scales
   EXPECT_EQ(verdict_for(Reason::kKnown, rendered(plain_ring(), kRing), wanting_all).reason,
             Reason::kKnown);
 }
 
-TEST_P(DetectionTraceOf, SaysInnerEdge) {
+TEST_P(DetectionTraceOf, ReportsInnerEdge) {
   const Verdict verdict = verdict_for(Reason::kInnerEdge, rendered(plain_ring(), kRing));
   EXPECT_NEAR(verdict.limit, 2.0 * kRing.semi_major, 1.0);
   EXPECT_LT(verdict.measured, verdict.limit - 5.0);
 }
 
-TEST_P(DetectionTraceOf, SaysWhereTheTargetWas) {
+TEST_P(DetectionTraceOf, ReportsDistanceFromAndSizeOfTheLastTarget) {
   Ellipse last = kRing;
   last.cx -= 100.0;
   const Verdict distance =
@@ -213,7 +213,7 @@ TEST_P(DetectionTraceOf, SaysWhereTheTargetWas) {
   EXPECT_NEAR(size.limit, last.semi_major, 1e-9);
 }
 
-TEST_P(DetectionTraceOf, SaysThatAnotherSetHasMore) {
+TEST_P(DetectionTraceOf, ReportsWeakerSet) {
   Picture picture = rendered(plain_ring(), kRing, 640, 240);
   const Ellipse small{480.0, 120.0, 30.0, 26.0, 0.1};
   const Picture second = rendered(plain_ring(), small, 640, 240);
@@ -226,12 +226,12 @@ TEST_P(DetectionTraceOf, SaysThatAnotherSetHasMore) {
 }
 
 // Only contours: a detector with probabilities selects by them.
-TEST(DetectionTrace, OfContoursSaysThatWhatIsAloneDoesNotCount) {
+TEST(DetectionTrace, OfContoursReportsSingleEllipses) {
   const Look look = look_at(DetectorKind::kContours, of_scene("approach", 5.5));
   EXPECT_TRUE(has(look, Reason::kSingle));
 }
 
-TEST(DetectionTrace, OfContoursSaysWeakInSet) {
+TEST(DetectionTrace, OfContoursReportsWeakInSet) {
   const Look look = look_at(DetectorKind::kContours, of_scene("bullseye", 4.0));
   const TracedCandidate* weak = first_with(look.trace, Reason::kWeakInSet);
   ASSERT_NE(weak, nullptr);
@@ -239,7 +239,7 @@ TEST(DetectionTrace, OfContoursSaysWeakInSet) {
   EXPECT_LT(weak->verdict.measured, weak->verdict.limit);
 }
 
-TEST_P(DetectionTraceOf, FiguresAgreeWithEllipses) {
+TEST_P(DetectionTraceOf, MeasuredValuesMatchTheEllipses) {
   for (const char* name : {"approach", "glare", "oblique"}) {
     const Look look = look_at(GetParam(), of_scene(name, 4.0));
     for (const TracedCandidate& candidate : look.trace.candidates()) {
@@ -258,7 +258,7 @@ TEST_P(DetectionTraceOf, FiguresAgreeWithEllipses) {
   }
 }
 
-TEST_P(DetectionTraceOf, HasItsStages) {
+TEST_P(DetectionTraceOf, PassesHoldEdgesChainsAndPoints) {
   const Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
   for (const TracedPass& pass : look.trace.passes()) {
     EXPECT_EQ(pass.region, (Rect{0, 0, 320, 240}));
@@ -277,7 +277,7 @@ TEST_P(DetectionTraceOf, HasItsStages) {
   }
 }
 
-TEST_P(DetectionTraceOf, AnEmptyPictureHasNothing) {
+TEST_P(DetectionTraceOf, IsEmptyForAnEmptyPicture) {
   Look look = look_at(GetParam(), rendered(plain_ring(), kRing));
   const auto detector = make_detector(GetParam());
   detector->set_trace(&look.trace);
@@ -285,13 +285,13 @@ TEST_P(DetectionTraceOf, AnEmptyPictureHasNothing) {
   EXPECT_TRUE(look.trace.candidates().empty());
 }
 
-TEST(DetectionTrace, OfContoursSaysThatPointsMakeNoEllipse) {
+TEST(DetectionTrace, OfContoursReportsFailedFits) {
   const Look look = look_at(
       DetectorKind::kContours, of_scene("glare", 0.5), [](auto& t) { t.min_contour_size = 20; });
   EXPECT_TRUE(has(look, Reason::kNoEllipse));
 }
 
-TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
+TEST(DetectionTrace, OfArcsReportsReasonsOfArcsOnly) {
   const struct {
     Reason reason;
     const char* scene;
@@ -311,7 +311,7 @@ TEST(DetectionTrace, OfArcsSaysWhatOnlyTheyTest) {
   }
 }
 
-TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
+TEST_P(DetectionTraceOf, LimitsEqualTheSettings) {
   int rejected = 0;
   for (const char* name : {"approach", "glare", "occluded"}) {
     const Look look = look_at(GetParam(), of_scene(name, 6.0), [](auto& t) {
@@ -329,7 +329,7 @@ TEST_P(DetectionTraceOf, LimitsAreTheSettings) {
   EXPECT_GT(rejected, 0);
 }
 
-TEST(DetectionTrace, OfArcsMeasuresTheProbabilityThatWouldTakeIt) {
+TEST(DetectionTrace, OfArcsMeasuresTheProbabilityThatWouldAcceptIt) {
   const auto look_with = [](double probability) {
     return look_at(DetectorKind::kArcs, of_scene("glare", 6.0), [&](auto& t) {
       t.min_contour_size = 20;
@@ -356,7 +356,7 @@ TEST(DetectionTrace, OfArcsMeasuresTheProbabilityThatWouldTakeIt) {
   }
 }
 
-TEST(DetectionTrace, OfArcsHasThreeSizesWhereThereIsDoubt) {
+TEST(DetectionTrace, OfArcsHasThreeScalesIfUncertain) {
   const Look look = look_at(DetectorKind::kArcs, of_scene("negative", 0.5));
   ASSERT_EQ(look.trace.passes().size(), 3U);
   EXPECT_EQ(look.trace.passes()[0].scale, 2);
@@ -364,7 +364,7 @@ TEST(DetectionTrace, OfArcsHasThreeSizesWhereThereIsDoubt) {
   EXPECT_EQ(look.trace.passes()[2].scale, 1);
 }
 
-TEST(DetectionTrace, OfATrackerIsInPixelsOfTheFrame) {
+TEST(DetectionTrace, OfATrackerIsInFramePixels) {
   const Picture picture = rendered(plain_ring(), kRing);
   TrackerSettings settings;
   settings.tracking = TrackingMode::kNone;

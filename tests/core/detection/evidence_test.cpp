@@ -54,7 +54,7 @@ TEST(Evidence, IsTheLogisticFunctionOfTheContributions) {
   EXPECT_EQ(table.contributions(table.means), Features{});
 }
 
-TEST_F(EvidenceFile, KeepsATable) {
+TEST_F(EvidenceFile, ReadInvertsWrite) {
   const EvidenceTable& table = built_in_evidence();
   const EvidenceTable again = read("# comment\n\n" + text_of(table));
   for (std::size_t i = 0; i < kFeatures; ++i) {
@@ -64,7 +64,7 @@ TEST_F(EvidenceFile, KeepsATable) {
   EXPECT_NEAR(again.bias, table.bias, 1e-5);
 }
 
-TEST_F(EvidenceFile, SaysWhatIsWrongInWhichLine) {
+TEST_F(EvidenceFile, ErrorNamesTheLine) {
   const std::string good = text_of(built_in_evidence());
   const std::string path = file_.string();
   EXPECT_EQ(message_of("size 1 2\n"), path + ":1: unknown feature size");

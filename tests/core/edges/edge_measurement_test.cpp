@@ -50,7 +50,7 @@ double errors_over_sigma(double blur_px, double noise) {
   return std::sqrt(squares / count);
 }
 
-TEST(EdgeMeasurer, TellsItsStandardDeviation) {
+TEST(EdgeMeasurer, ReportsItsStandardDeviation) {
   for (const double noise : {1.0, 2.0, 4.0, 8.0, 14.0}) {
     for (const double blur : {0.6, 1.0, 1.5}) {
       EXPECT_NEAR(errors_over_sigma(blur, noise), 1.025, 0.12) << blur << ' ' << noise;

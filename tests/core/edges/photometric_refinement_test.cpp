@@ -99,7 +99,7 @@ Errors errors_of(double radius, double blur_px, double noise) {
   return errors;
 }
 
-TEST(PhotometricRefinement, ComesNearToTheCramerRaoBound) {
+TEST(PhotometricRefinement, ApproachesTheCramerRaoBound) {
   for (const double radius : {12.0, 20.0, 40.0, 70.0}) {
     for (const double noise : {4.0, 8.0}) {
       const Errors errors = errors_of(radius, 0.7, noise);
@@ -110,14 +110,14 @@ TEST(PhotometricRefinement, ComesNearToTheCramerRaoBound) {
   }
 }
 
-TEST(PhotometricRefinement, TellsHowBlurredTheEdgeIs) {
+TEST(PhotometricRefinement, AdaptsToTheBlurOfTheEdge) {
   for (const double blur_px : {0.5, 1.0, 1.5}) {
     const Errors errors = errors_of(50.0, blur_px, 4.0);
     EXPECT_LE(errors.rms_px, 2.5 * errors.bound_px) << blur_px;
   }
 }
 
-TEST(PhotometricRefinement, ReachesOverHalfAPixel) {
+TEST(PhotometricRefinement, ConvergesFromOverHalfAPixelAway) {
   const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
   const Picture picture = rendered(disc(0.7, 0.0), truth, 260, 260);
   Ellipse start = truth;
@@ -129,7 +129,7 @@ TEST(PhotometricRefinement, ReachesOverHalfAPixel) {
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
 }
 
-TEST(PhotometricRefinement, IsNotMovedByWhatIsInFrontOrByAShadow) {
+TEST(PhotometricRefinement, IsUnaffectedByOccludersAndShadows) {
   const Ellipse truth{130.3, 129.6, 70.0, 50.0, 0.4};
   Scene scene = disc(0.7, 2.0);
   scene.bars = {bar_px({60.0, 0.0}, {110.0, 259.0}, 14.0, 30.0, 260, 260),
@@ -143,7 +143,7 @@ TEST(PhotometricRefinement, IsNotMovedByWhatIsInFrontOrByAShadow) {
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.05);
 }
 
-TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
+TEST(PhotometricRefinement, UsesThePartInsideThePicture) {
   const Ellipse truth{20.3, 129.6, 60.0, 50.0, 0.4};
   const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
   const auto refined =
@@ -152,7 +152,7 @@ TEST(PhotometricRefinement, TakesThePartInsideThePicture) {
   EXPECT_LT((refined->ellipse.center() - truth.center()).norm(), 0.1);
 }
 
-TEST(PhotometricRefinement, GivesNothingWhereThereIsNoSuchEdge) {
+TEST(PhotometricRefinement, FailsWithoutAMatchingEdge) {
   const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
   const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
   const auto refined =
@@ -169,7 +169,7 @@ TEST(PhotometricRefinement, GivesNothingWhereThereIsNoSuchEdge) {
   EXPECT_FALSE(refined(ImageView{}, Polarity::kDarkInside, 9.0, 20.0));
 }
 
-TEST(PhotometricRefinement, TakesEllipsesOfAnySize) {
+TEST(PhotometricRefinement, AcceptsEllipsesOfAnySize) {
   const Picture picture = rendered(disc(0.7, 2.0), {130.3, 129.6, 60.0, 40.0, 0.4}, 260, 260);
   for (const Ellipse& e : {Ellipse{130.0, 130.0, 0.01, 0.001, 0.0},
                            Ellipse{130.0, 130.0, 5000.0, 0.01, 1.0},
@@ -205,7 +205,7 @@ TEST(OuterEdge, IsExactForThickAndThinRings) {
   }
 }
 
-TEST(OuterEdge, IsNotTakenFromAnotherEdgeFarAway) {
+TEST(OuterEdge, IsNotFoundFarFromThePad) {
   const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
   const Picture picture = rendered(plain_ring(), truth, 260, 260);
   const auto model = learn_circles(picture.view(), image_from_pad(truth));

@@ -33,7 +33,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-TEST(RingEdges, LeavesEdgesThatAreFarApart) {
+TEST(RingEdges, KeepsDistantEdges) {
   const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
   const Ellipse inner = grown(outer, -7.0);
   const RingEdges edges = without_blur_bias({outer, inner});
@@ -41,7 +41,7 @@ TEST(RingEdges, LeavesEdgesThatAreFarApart) {
   EXPECT_EQ(edges.inner, inner);
 }
 
-TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
+TEST(RingEdges, MovesNearbyMaximaTogether) {
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.3};
   for (const double ratio : {0.78, 0.75, 0.72}) {
     const Ellipse inner = shrunk(outer, ratio);
@@ -55,7 +55,7 @@ TEST(RingEdges, DrawsMaximaTogetherThatAreNear) {
   }
 }
 
-TEST(RingEdges, KeepsTheRingThatCannotBeTold) {
+TEST(RingEdges, ReducesUnresolvedRingsToALine) {
   // Noise puts the gradient maxima closer together than those of a line: the ring has no width.
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.0};
   const RingEdges edges = without_blur_bias({outer, grown(outer, -1.5)});
@@ -63,7 +63,7 @@ TEST(RingEdges, KeepsTheRingThatCannotBeTold) {
   EXPECT_NEAR(edges.inner.semi_major, 13.25, 0.01);
 }
 
-TEST(RingEdges, MakeSmallRingsExact) {
+TEST(RingEdges, RemoveTheBiasOfSmallRings) {
   Random random(5);
   ArcDetector detector;
   Thresholds thresholds;
@@ -88,7 +88,7 @@ TEST(RingEdges, MakeSmallRingsExact) {
   }
 }
 
-TEST(RingEdges, ArePartnersWhereTheyHaveOneCentreAndShape) {
+TEST(RingEdges, ArePartnersIfConcentricAndOfOneShape) {
   const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
   EXPECT_TRUE(are_partners(outer, shrunk(outer, 0.8)));
   EXPECT_FALSE(are_partners(outer, shrunk(outer, 0.99)));

@@ -57,7 +57,7 @@ TEST(EllipseFit, FivePointsDetermineIt) {
   EXPECT_FALSE(fit_ellipse(std::vector<Eigen::Vector2d>{}));
 }
 
-TEST(EllipseFit, RefusesPointsOnALineOrAtOnePlace) {
+TEST(EllipseFit, RejectsPointsOnALineOrAtOnePlace) {
   std::vector<Eigen::Vector2d> line;
   for (int i = 0; i < 50; ++i) line.emplace_back(3.0 * i + 100.0, 2.0 * i - 7.0);
   EXPECT_FALSE(fit_ellipse(line));
@@ -65,7 +65,7 @@ TEST(EllipseFit, RefusesPointsOnALineOrAtOnePlace) {
   EXPECT_FALSE(fit_ellipse(std::vector<Eigen::Vector2d>(20, {NAN, 5.0})));
 }
 
-TEST(EllipseFit, AveragesNoiseAway) {
+TEST(EllipseFit, AveragesNoise) {
   const Ellipse truth{100.0, 90.0, 60.0, 40.0, 0.5};
   const auto fit = fit_ellipse(arc(truth, 0.0, kTurn, 400, 0.5));
   ASSERT_TRUE(fit);
@@ -85,7 +85,7 @@ TEST(EllipseFit, MomentsOfAnyOrderGiveTheSame) {
   EXPECT_NEAR(forward->semi_minor, backward->semi_minor, 1e-6);
 }
 
-TEST(GeometricFit, IsFreeOfTheBiasOfDirectLeastSquaresOnShortArcs) {
+TEST(GeometricFit, IsLessBiasedThanDirectLeastSquaresOnShortArcs) {
   const Ellipse truth{100.0, 100.0, 60.0, 60.0, 0.0};
   const auto points = arc(truth, 0.0, kTurn / 3, 300, 0.3);
   const auto direct = fit_ellipse(points);
@@ -100,7 +100,7 @@ TEST(GeometricFit, IsFreeOfTheBiasOfDirectLeastSquaresOnShortArcs) {
   EXPECT_LT(std::abs(e.semi_major - 60.0) + std::abs(e.semi_minor - 60.0), 0.5 * bias);
 }
 
-TEST(GeometricFit, StaysOnTheExactEllipse) {
+TEST(GeometricFit, KeepsTheExactEllipse) {
   const Ellipse truth{33.0, 44.0, 25.0, 12.0, -0.9};
   GeometricFit step(truth);
   for (const auto& p : arc(truth, 0.0, kTurn, 50)) {
@@ -113,7 +113,7 @@ TEST(GeometricFit, StaysOnTheExactEllipse) {
   EXPECT_NEAR(fit->semi_major, truth.semi_major, 1e-9);
 }
 
-TEST(GeometricFit, SaysNothingOfTooFewPoints) {
+TEST(GeometricFit, FailsForTooFewPoints) {
   GeometricFit step({0.0, 0.0, 10.0, 8.0, 0.0});
   for (int i = 0; i < 4; ++i) step.add({10.0, 1.0 * i});
   EXPECT_FALSE(step.solve());

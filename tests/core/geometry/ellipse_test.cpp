@@ -21,7 +21,7 @@ void expect_same(const Ellipse& a, const Ellipse& b, double tolerance) {
   EXPECT_NEAR(std::remainder(a.angle_rad - b.angle_rad, kPi), 0.0, tolerance);
 }
 
-TEST(Ellipse, PassesThroughItsConicAndBack) {
+TEST(Ellipse, ConvertsToItsConicAndBack) {
   const Ellipse e{320.5, 181.25, 97.0, 31.0, -1.1};
   const auto back = from_conic(-3.0 * conic_matrix(e));
   ASSERT_TRUE(back);
@@ -37,7 +37,7 @@ TEST(Ellipse, PointsLieOnItsConic) {
   }
 }
 
-TEST(Ellipse, OtherConicsAreNone) {
+TEST(Ellipse, RejectsOtherConics) {
   EXPECT_FALSE(from_conic(Eigen::Vector3d(1, -1, -1).asDiagonal()));  // hyperbola
   EXPECT_FALSE(from_conic(Eigen::Vector3d(1, 1, 1).asDiagonal()));    // no real point
   EXPECT_FALSE(from_conic(Eigen::Matrix3d::Zero()));
@@ -58,7 +58,7 @@ TEST(Ellipse, ScalingKeepsTheAreaThatPixelsCover) {
   expect_same(scaled(half, 2.0), {0.5, 2.5, 10.0, 6.0, 0.3}, 1e-12);
 }
 
-TEST(Ellipse, NonUniformScaleTurnsIt) {
+TEST(Ellipse, NonUniformScaleRotatesIt) {
   const Ellipse e{100.0, 50.0, 40.0, 20.0, 0.7};
   const Eigen::Matrix2d stretch = Eigen::Vector2d(2.0, 0.5).asDiagonal();
   const auto moved = transformed(e, stretch, {1.0, -2.0});
@@ -77,7 +77,7 @@ TEST(Ellipse, DistanceToCircleIsExact) {
   EXPECT_NEAR(sampson_distance(circle, circle.center()), -10.0, 1e-12);
 }
 
-TEST(Ellipse, PerimeterWalkIsAsLongAsThePerimeter) {
+TEST(Ellipse, PerimeterWalkHasTheLengthOfThePerimeter) {
   for (const double minor : {100.0, 60.0, 20.0}) {
     const Ellipse e{0.0, 0.0, 100.0, minor, 0.9};
     double length = 0.0;
@@ -106,13 +106,13 @@ TEST(Ellipse, OverlapCountsInsideTheFrameOnly) {
   EXPECT_EQ(iou_inside(far_left, far_left, 100, 100), 0.0);
 }
 
-TEST(Ellipse, HalfOfItIsVisibleAtTheBorder) {
+TEST(Ellipse, VisibleFractionIsHalfAtTheBorder) {
   EXPECT_NEAR(visible_fraction({-0.5, 50.0, 30.0, 20.0, 0.0}, 200, 100), 0.5, 0.01);
   EXPECT_NEAR(visible_fraction({100.0, 50.0, 30.0, 20.0, 0.5}, 200, 100), 1.0, 1e-12);
   EXPECT_EQ(visible_fraction({100.0, 500.0, 30.0, 20.0, 0.5}, 200, 100), 0.0);
 }
 
-TEST(Ellipse, BoxTouchesIt) {
+TEST(Ellipse, HalfExtentIsTight) {
   const Ellipse e{10.0, 20.0, 30.0, 10.0, 0.6};
   double right = 0.0;
   for (int i = 0; i < 3600; ++i) right = std::max(right, e.point_at(i * kPi / 1800).x());

@@ -26,14 +26,14 @@ Vector2d projected(const Matrix3d& view, const Vector2d& point) {
   return (view * point.homogeneous()).hnormalized();
 }
 
-TEST(Homography, ShowsTheOuterCircleAsItsEllipse) {
+TEST(Homography, MapsTheUnitCircleToTheEllipse) {
   const Ellipse e{310.0, 170.0, 80.0, 55.0, 0.4};
   const auto circle = project_circle(image_from_pad(e), 1.0);
   ASSERT_TRUE(circle);
   EXPECT_LT(max_difference_px(*circle, e), 1e-9);
 }
 
-TEST(Homography, IsLaidUponAnOuterEdge) {
+TEST(Homography, IsAlignedToAGivenOuterEdge) {
   const Matrix3d view = tilted_view();
   const Ellipse outer_edge = project_circle(view, 1.0).value();
   for (const Ellipse& e : {outer_edge,
@@ -72,7 +72,7 @@ TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {
   }
 }
 
-TEST(Homography, TurnAndTiltLeaveTheOuterCircle) {
+TEST(Homography, TurnAndTiltKeepTheOuterCircle) {
   const Matrix3d view = tilted_view();
   const auto circle = project_circle(view, 1.0);
   for (const int i : {5, 6, 7}) {
@@ -82,7 +82,7 @@ TEST(Homography, TurnAndTiltLeaveTheOuterCircle) {
   }
 }
 
-TEST(Homography, GivesBackAChange) {
+TEST(Homography, ChangeOfInvertsMoved) {
   HomographyChange change;
   change << 0.01, -0.02, 0.005, 0.003, -0.004, 0.02, 0.001, -0.002;
   const Matrix3d view = tilted_view();
@@ -92,7 +92,7 @@ TEST(Homography, GivesBackAChange) {
   EXPECT_LT((change_of(generator) - change).norm(), 1e-3);
 }
 
-TEST(Homography, FollowsTheCamera) {
+TEST(Homography, ChangesAsPredictedByTheCameraMotion) {
   // A camera above the pad makes small motions; the view must change by the predicted amounts.
   constexpr double kFocal = 500.0;
   const Vector2d middle(319.5, 179.5);
@@ -122,7 +122,7 @@ TEST(Homography, FollowsTheCamera) {
   }
 }
 
-TEST(ParameterCovariance, IsWhatSmallChangesOfTheViewScatterBy) {
+TEST(ParameterCovariance, MatchesTheScatterOfSmallViewChanges) {
   const Matrix3d view = tilted_view();
   const Ellipse e = project_circle(view, 1.0).value();
   const RingMatrix root = RingMatrix::NullaryExpr([](Eigen::Index i, Eigen::Index k) {
@@ -151,7 +151,7 @@ TEST(ParameterCovariance, IsWhatSmallChangesOfTheViewScatterBy) {
   }
 }
 
-TEST(ParameterCovariance, TheAngleOfACircleIsUnknown) {
+TEST(ParameterCovariance, AngleOfACircleIsUnknown) {
   const Ellipse circle{100.0, 80.0, 30.0, 30.0, 0.0};
   const RingMatrix covariance =
       parameter_covariance(circle, {image_from_pad(circle), 1e6 * RingMatrix::Identity()});

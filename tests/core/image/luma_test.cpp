@@ -32,7 +32,7 @@ std::vector<int> read(const PixelView& picture, const Rect& region) {
   return levels_of(reader.read(region));
 }
 
-TEST(LumaReader, ReadsPlainLumaWhereItLies) {
+TEST(LumaReader, ReadsPlainLumaInPlace) {
   const support::Picture picture(10, 8, 7);
   LumaReader reader;
   reader.begin(picture.view());
@@ -56,13 +56,13 @@ TEST(LumaReader, ConvertsOnlyTheRegion) {
             (std::vector<int>{20, 30}));
 }
 
-TEST(LumaReader, TurnsPicturesThatLieUpsideDown) {
+TEST(LumaReader, ReadsBottomUpPictures) {
   const std::array<std::uint8_t, 4> rows = {1, 2, 3, 4};
   const ImageView upside_down{rows.data() + 2, 2, 2, -2};
   EXPECT_EQ(read(upside_down, {0, 0, 2, 2}), (std::vector<int>{3, 4, 1, 2}));
 }
 
-TEST(LumaReader, TakesTheEightHighestOfMoreBits) {
+TEST(LumaReader, ReadsTheEightHighestBits) {
   // 10 bits: 1023, 514, 3.
   const std::array<std::uint8_t, 6> low = {0xff, 0x03, 0x02, 0x02, 0x03, 0x00};
   const std::array<std::uint8_t, 6> high = {0xc0, 0xff, 0x80, 0x80, 0xc0, 0x00};
@@ -75,7 +75,7 @@ TEST(LumaReader, TakesTheEightHighestOfMoreBits) {
   EXPECT_EQ(read({big_endian.data(), 3, 1, 6, {Kind::kLuma, 2, 0}}, all), expected);
 }
 
-TEST(LumaReader, UnpacksThreePixelsOfAWord) {
+TEST(LumaReader, UnpacksThreePixelsPerWord) {
   std::vector<std::uint8_t> bytes;
   std::vector<int> expected;
   for (unsigned pixel = 0; pixel < 9; pixel += 3) {
@@ -118,7 +118,7 @@ class EachLayout : public testing::TestWithParam<PixelLayout> {
   static constexpr int kHeight = 41;
 };
 
-TEST_P(EachLayout, PartsAreThoseOfTheWhole) {
+TEST_P(EachLayout, PartsEqualThoseOfTheWhole) {
   std::mt19937 random(7);
   std::vector<std::uint8_t> bytes(4UL * kWidth * kHeight);
   for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());

@@ -41,7 +41,7 @@ class SceneLens : public testing::TestWithParam<const char*> {
   static Camera camera() { return camera_of(through_lens({}), kWidth, kHeight); }
 };
 
-TEST_P(SceneLens, FieldOfViewIsFromBorderToBorder) {
+TEST_P(SceneLens, FieldOfViewSpansThePicture) {
   const Lens lens(camera());
   for (const double x : {-0.5, kWidth - 0.5}) {
     const auto ideal = lens.ideal_from_picture({x, 0.5 * (kHeight - 1)});
@@ -52,7 +52,7 @@ TEST_P(SceneLens, FieldOfViewIsFromBorderToBorder) {
 }
 
 // The maximum error in the picture of the block homographies against the lens.
-TEST_P(SceneLens, BlocksBendAsTheLensDoes) {
+TEST_P(SceneLens, BlockHomographiesApproximateTheLens) {
   const LensMap map(camera());
   double farthest_px = 0.0;
   for (int y = 0; y < kHeight; ++y) {
@@ -127,7 +127,7 @@ double quantile(std::vector<double> values, double q) {
 }
 
 // Discs with outlines through the picture's middle, sides and corners.
-TEST_P(SceneLens, TruthIsWhatThePixelsShow) {
+TEST_P(SceneLens, TruthMatchesThePixels) {
   const Scene scene = plain_disc();
   const Lens lens(camera());
   SceneRenderer renderer(scene);
@@ -159,7 +159,7 @@ TEST_P(SceneLens, TruthIsWhatThePixelsShow) {
 }
 
 // The same in the perspective of a flight.
-TEST_P(SceneLens, TruthOfAFlightIsWhatThePixelsShow) {
+TEST_P(SceneLens, TruthOfAFlightMatchesThePixels) {
   Scene scene = plain_disc();
   scene.flight.highest = 6.0;
   SceneRenderer renderer(scene);
@@ -175,7 +175,7 @@ TEST_P(SceneLens, TruthOfAFlightIsWhatThePixelsShow) {
   EXPECT_LT(quantile(errors, 0.99), 0.02);
 }
 
-TEST_P(SceneLens, VisibleFractionIsOfTheBentOutlinesLength) {
+TEST_P(SceneLens, VisibleFractionIsOfTheDistortedOutline) {
   const Scene scene = plain_disc();
   const Lens lens(camera());
   for (const double x : {-40.0, 60.0, 200.0, 320.0}) {
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses,
                          testing::Values("barrel", "fisheye"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST(LensOfAScene, WithoutDistortionIsAPinhole) {
+TEST(LensOfAScene, EqualsAPinholeWithoutDistortion) {
   Scene scene = scene_by_name("glare");
   Picture pinhole(161, 91);
   SceneRenderer(scene).render(4.0, 2, pinhole.writable());
@@ -229,7 +229,7 @@ TEST(LensOfAScene, WithoutDistortionIsAPinhole) {
 
 // All scene content, drawn block by block: textures, shadows, glare, bars, motion blur. Only the
 // mipmap level of the ground near the horizon, which is constant within a block, may differ.
-TEST(LensOfAScene, ThatHardlyBendsShowsWhatAPinholeShows) {
+TEST(LensOfAScene, EqualsAPinholeWithLittleDistortion) {
   for (const NamedScene& named : scene_catalog()) {
     Scene scene = named.make(1);
     Picture pinhole(322, 182);
@@ -246,7 +246,7 @@ TEST(LensOfAScene, ThatHardlyBendsShowsWhatAPinholeShows) {
   }
 }
 
-TEST(LensOfAScene, IsBlackWhereItShowsNothing) {
+TEST(LensOfAScene, IsBlackOutsideItsFieldOfView) {
   Scene scene = scene_by_name("hover");
   scene.lens = Distortion{LensModel::kFisheye, {}};
   scene.hfov_rad = 170.0 * std::numbers::pi / 180.0;
@@ -259,7 +259,7 @@ TEST(LensOfAScene, IsBlackWhereItShowsNothing) {
   EXPECT_GT(picture.at(2, 50), 0);
 }
 
-TEST(LensOfAScene, HasAName) {
+TEST(LensOfAScene, IsFoundByName) {
   for (const NamedLens& lens : lens_catalog()) {
     Scene scene;
     put_on_lens(scene, lens.name);
@@ -274,7 +274,7 @@ TEST(LensOfAScene, HasAName) {
   }
 }
 
-TEST(LensOfAScene, RefusesAFieldOfViewThatItDoesNotShow) {
+TEST(LensOfAScene, RejectsAFieldOfViewBeyondItsRange) {
   Scene scene;
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
   scene.hfov_rad = 110.0 * std::numbers::pi / 180.0;  // beyond the turning point of its polynomial
@@ -282,7 +282,7 @@ TEST(LensOfAScene, RefusesAFieldOfViewThatItDoesNotShow) {
   EXPECT_THROW(SceneRenderer{scene}, std::invalid_argument);
 }
 
-TEST(LensOfAScene, AnOutlineBeyondItsEndIsNotInTheFrame) {
+TEST(LensOfAScene, OutlinesBeyondItsRangeAreNotVisible) {
   Scene scene;
   scene.lens = Distortion{LensModel::kBrownConrady, {-0.22}};
   const Camera camera = camera_of(scene, 640, 360);

@@ -36,7 +36,7 @@ double share(const Scene& scene, std::uint8_t level) {
   return (scene.ground.level - level) / (scene.ground.level - scene.pad.paint_level);
 }
 
-TEST(Scene, DarkAreaIsTheEllipsesArea) {
+TEST(Scene, DarkAreaEqualsTheEllipseArea) {
   const Scene scene = clean_disc();
   const Ellipse truth{80.3, 70.6, 50.0, 25.0, 0.7};
   const Picture picture = support::rendered(scene, truth, 160, 140);
@@ -45,7 +45,7 @@ TEST(Scene, DarkAreaIsTheEllipsesArea) {
   EXPECT_NEAR(area / (std::numbers::pi * 50.0 * 25.0), 1.0, 2e-3);
 }
 
-TEST(Scene, DarkAreasCentroidIsTheTruthsCentre) {
+TEST(Scene, CentroidOfTheDarkAreaIsTheTrueCentre) {
   const Scene scene = clean_disc();
   const Ellipse truth{80.3, 70.6, 40.0, 30.0, -0.4};
   const Picture picture = support::rendered(scene, truth, 160, 140);
@@ -72,7 +72,7 @@ TEST(Scene, ProjectedCircleLiesOnProjectedPoints) {
   }
 }
 
-TEST(Scene, CircleThatReachesBehindTheCameraIsNoEllipse) {
+TEST(Scene, CirclesReachingBehindTheCameraGiveNoEllipse) {
   CameraPose pose;
   pose.position = {0.0, -0.5, 0.1};
   pose.looks_at = {0.0, 1.0, 0.1};
@@ -142,7 +142,7 @@ TEST(Sensor, GainAndBiasScaleAndShift) {
   EXPECT_EQ(picture.at(50, 50), 38);  // 55 / 2 + 10, rounded
 }
 
-TEST(Sensor, JpegIsWhatLibjpegLeaves) {
+TEST(Sensor, JpegEqualsThatOfLibjpeg) {
   Scene scene;
   scene.sensor.read_noise = 10.0;
   Picture picture = support::rendered(scene, {60.0, 50.0, 40.0, 30.0, 0.3}, 123, 101);
@@ -185,14 +185,14 @@ TEST(Renderer, MotionBlurIsAnEvenRampWithoutGhosts) {
   EXPECT_NEAR(ramp, 20, 2);
 }
 
-TEST(Renderer, AnInstantIsSharp) {
+TEST(Renderer, ZeroExposureIsSharp) {
   const std::vector<double> profile = moving_profile(0.0);
   int ramp = 0;
   for (std::size_t i = 1; i < profile.size(); ++i) ramp += profile[i] - profile[i - 1] > 4.0;
   EXPECT_LE(ramp, 4);
 }
 
-TEST(Renderer, ShadowTakesItsShareOfTheLight) {
+TEST(Renderer, ShadowReducesTheLightByItsShare) {
   Scene scene = clean_disc();
   scene.light.shadows = {{0.0, 10.0, 5.0, 0.4, 0.0}};  // x from 5 to 15 radii
   Picture picture = support::rendered(scene, {20.0, 20.0, 4.0, 4.0, 0.0}, 100, 40);
@@ -212,7 +212,7 @@ TEST(Renderer, GlareSaturatesAndFadesAway) {
 }
 
 // Compares the ground beneath a moved pad with the same ground under a moved camera.
-TEST(Renderer, TheGroundPassesBeneathAPadThatMoves) {
+TEST(Renderer, MovedPadLiesOnOtherGround) {
   Scene scene = scene_by_name("approach");
   scene.pad.pattern = Pattern::kNone;
   scene.sensor.read_noise = 0.0;
@@ -233,7 +233,7 @@ TEST(Renderer, TheGroundPassesBeneathAPadThatMoves) {
   }
 }
 
-TEST(Renderer, GlareNeedsThePlaceOfTheCamera) {
+TEST(Renderer, GlareRequiresTheCameraPosition) {
   Scene scene = clean_disc();
   scene.light.glare = {{0.0, 0.0}, 0.05, 300.0};
   const CameraPose pose{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, 0.0};
@@ -255,7 +255,7 @@ TEST(Renderer, GradientBrightensOneSide) {
   EXPECT_NEAR(picture.at(100, 95), 200.0 * 1.2, 1.0);
 }
 
-TEST(Renderer, CrumpledEdgeLeavesTheCircleByItsAmplitude) {
+TEST(Renderer, CrumpledEdgeDeviatesByItsAmplitude) {
   Scene scene = clean_disc();
   scene.pad.crumple = 0.03;
   const double radius = 200.0;
@@ -293,7 +293,7 @@ TEST(Renderer, HonoursStridesAndAnySize) {
   }
 }
 
-TEST(Renderer, AHorizonIsNoTrouble) {
+TEST(Renderer, RendersAHorizon) {
   Scene scene = scene_by_name("oblique");
   CameraPose pose;
   pose.position = {0.0, -6.0, 0.5};
@@ -305,7 +305,7 @@ TEST(Renderer, AHorizonIsNoTrouble) {
   EXPECT_NEAR(picture.at(160, 10), 200, 10);  // sky
 }
 
-TEST(GroundTexture, LooksAtAPicture) {
+TEST(GroundTexture, UsesTheGivenPicture) {
   Ground ground;
   ground.kind = GroundKind::kPicture;
   EXPECT_THROW(GroundTexture(ground, 1), std::invalid_argument);
@@ -353,13 +353,13 @@ cv::Rect covered_by_square(int first_px, int last_px) {
   return box;
 }
 
-TEST(Polygon, CoversItsInsideAndItsBorderAsFarAsTheTileGoes) {
+TEST(Polygon, FillsItsInsideAndBorderClippedToTheTile) {
   EXPECT_EQ(covered_by_square(10, 30), cv::Rect(10, 10, 21, 21));
   EXPECT_EQ(covered_by_square(-7, 5), cv::Rect(0, 0, 6, 6));
   EXPECT_EQ(covered_by_square(60, 90), cv::Rect(60, 60, 4, 4));
 }
 
-TEST(Polygon, IsHollowWhereItCrossesItself) {
+TEST(Polygon, IsHollowAtSelfIntersections) {
   cv::Mat tile(64, 64, CV_32F, cv::Scalar(0.0));
   std::vector<cv::Point> star;  // with five points, drawn in one go
   for (int i = 0; i < 5; ++i) {

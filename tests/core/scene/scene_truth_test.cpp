@@ -51,11 +51,11 @@ class SceneTruth : public testing::TestWithParam<int> {
   }
 };
 
-TEST_P(SceneTruth, OfADiscIsWhatItsPixelsShow) {
+TEST_P(SceneTruth, OfADiscMatchesItsPixels) {
   check(Pattern::kDisc);
 }
 
-TEST_P(SceneTruth, OfARingIsWhatItsPixelsShow) {
+TEST_P(SceneTruth, OfARingMatchesItsPixels) {
   check(Pattern::kRing);
 }
 

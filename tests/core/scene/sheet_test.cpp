@@ -51,14 +51,14 @@ TEST(Deformation, DeformedAtInvertsPatternAt) {
   }
 }
 
-TEST(Sheet, ADiscOnTheGroundIsAPadsDisc) {
+TEST(Sheet, DiscOnTheGroundEqualsThePadsDisc) {
   Scene with_pad = disc_scene();
   with_pad.sheets.clear();
   with_pad.pad.pattern = Pattern::kDisc;
   EXPECT_EQ(render(disc_scene()).pixels, render(with_pad).pixels);
 }
 
-TEST(Sheet, ABallsOutlineIsTheConeOfItsTangents) {
+TEST(Sheet, OutlineOfABallIsItsTangentCone) {
   const Camera camera = Camera::with_hfov(1.0, 640, 480);
   const Eigen::Vector3d middle(1.5, -0.8, 5.0);
   const auto outline = project_ball(camera, middle, 1.0);
@@ -87,7 +87,7 @@ TEST(Sheet, AnUprightSheetStandsOnTheGround) {
   EXPECT_LT(e.cy, 100.0);
 }
 
-TEST(TrueEllipses, WhatASheetHidesIsNotVisible) {
+TEST(TrueEllipses, HiddenPartsAreNotVisible) {
   Scene scene = disc_scene();
   EXPECT_NEAR(true_ellipses(scene, 0.0, 320, 240)[0].visible_fraction, 1.0, 1e-9);
   Paint paint;
@@ -99,7 +99,7 @@ TEST(TrueEllipses, WhatASheetHidesIsNotVisible) {
   EXPECT_TRUE(true_ellipses(scene, 0.0, 320, 240).empty());
 }
 
-TEST(TrueEllipses, OfThePadAreAllItsEdges) {
+TEST(TrueEllipses, IncludeAllEdgesOfThePad) {
   const Scene scene = scene_by_name("bullseye");
   const auto found = true_ellipses(scene, 8.0, 640, 360);
   ASSERT_EQ(found.size(), 5U);
@@ -111,7 +111,7 @@ TEST(TrueEllipses, OfThePadAreAllItsEdges) {
   EXPECT_NEAR(found[0].visible_fraction, truth.visible_fraction, 0.02);
 }
 
-TEST(Shape, MeshHasTheSharesOfItsWires) {
+TEST(Shape, MeshDarkensByTheShareOfItsWires) {
   Scene scene = disc_scene();
   Paint black;
   black.level = 0.0;
@@ -129,7 +129,7 @@ TEST(Shape, MeshHasTheSharesOfItsWires) {
   }
 }
 
-TEST(Sensor, GammaBendsTheGreysBetweenBlackAndWhite) {
+TEST(Sensor, GammaMapsTheGreysBetweenBlackAndWhite) {
   Scene scene = disc_scene();
   scene.ground.level = 255.0;
   scene.sheets[0].shapes[0].paint.level = 64.0;
@@ -149,7 +149,7 @@ TEST(Renderer, VignetteDarkensTheCorners) {
   EXPECT_EQ(picture.at(319, 239), 120);
 }
 
-TEST(Renderer, FieldsAreTheirTimesRows) {
+TEST(Renderer, FieldsShowTheRowsOfTheirTimes) {
   Scene scene = disc_scene();
   scene.sheets[0].swing.reach = {1.0, 0.0, 0.0};
   Picture even = render(scene, 0.48);
@@ -162,7 +162,7 @@ TEST(Renderer, FieldsAreTheirTimesRows) {
   }
 }
 
-TEST(Renderer, ARollingShutterSkewsWhatMoves) {
+TEST(Renderer, RollingShutterSkewsMovingObjects) {
   Scene scene = disc_scene();
   // 100 px a second to the right at time 0, read within .48 s: .2 px a row.
   scene.sheets[0].swing = {{1.0, 0.0, 0.0}, 2.0 * std::numbers::pi, 0.0, 1};

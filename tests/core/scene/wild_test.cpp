@@ -74,7 +74,7 @@ void for_lone_shapes(int count, const Wanted& is_wanted, const Use& use) {
   EXPECT_EQ(found, count);
 }
 
-TEST(WildTruth, OfFlatShapesIsWhatTheirPixelsShow) {
+TEST(WildTruth, OfFlatShapesMatchesTheirPixels) {
   const auto is_wanted = [](const Wild& one, const std::vector<TrueEllipse>& ellipses) {
     const double thinnest_px = ellipses.back().ellipse.semi_minor;
     const double ring_px = ellipses.size() > 1 ? ellipses[0].ellipse.semi_minor - thinnest_px : 9.0;
@@ -119,7 +119,7 @@ std::vector<double> offsets_from(const Ellipse& e, const Picture& picture, doubl
   return offsets;
 }
 
-TEST(WildTruth, OfDeformedShapesIsTheBestEllipseAndItsDeviation) {
+TEST(WildTruth, OfDeformedShapesIsTheBestFitAndItsDeviation) {
   const auto is_wanted = [](const Wild&, const std::vector<TrueEllipse>& ellipses) {
     return ellipses.size() == 1 && ellipses[0].deviation_px > 0.15 &&
            ellipses[0].ellipse.semi_minor > 20.0 && ellipses[0].ellipse.aspect_ratio() < 2.5;
@@ -153,7 +153,7 @@ TEST(Wild, SeedAndFrameDecideThePicture) {
   EXPECT_NE(render(wild, 0, 0.0).pixels, render(wild, 0, 0.5).pixels);
 }
 
-TEST(Wild, AllKindsOfThingsOccur) {
+TEST(Wild, AllKindsOfObjectsOccur) {
   std::set<std::string_view> things;
   std::set<WildTheme> themes;
   std::set<double> rates;
@@ -182,7 +182,7 @@ TEST(Wild, AllKindsOfThingsOccur) {
   EXPECT_EQ(*rates.rbegin(), 78.0);
 }
 
-TEST(Wild, AShareOfTheScenesIsNegativeAndListsNothing) {
+TEST(Wild, NegativeScenesListNothing) {
   int negatives = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Wild wild = make_wild(seed);
@@ -207,7 +207,7 @@ TEST(Wild, AShareOfTheScenesIsNegativeAndListsNothing) {
   EXPECT_LT(negatives, 100);
 }
 
-TEST(Wild, NothingIsAsRoundAsAnEllipseWithoutBeingListed) {
+TEST(Wild, AllRoundShapesAreListed) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Wild wild = make_wild(seed);
     EXPECT_NE(wild.scene.ground.kind, GroundKind::kCircles);
@@ -244,7 +244,7 @@ double contrast_across(const TrueEllipse& truth, const Picture& picture, double 
   return samples > 0 ? sum / samples : 0.0;
 }
 
-TEST(Wild, WhatTheTruthListsIsThereToBeSeen) {
+TEST(Wild, NearlyAllListedEllipsesAreVisible) {
   int listed = 0;
   int visible = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {

@@ -14,14 +14,14 @@ constexpr std::int64_t kNone = -1;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr double kMicrosecond = 3.1e-5;  // [1/30 s], the clock's resolution
 
-TEST(FrameClock, CountsInThirtiethsOfASecond) {
+TEST(FrameClock, CountsThirtiethsOfASecond) {
   FrameClock clock;
   EXPECT_NEAR(clock.advance_to(500 * kMs), 1.0, kMicrosecond) << "the first frame comes after none";
   EXPECT_NEAR(clock.advance_to(600 * kMs), 3.0, kMicrosecond);
   EXPECT_NEAR(clock.advance_to(620 * kMs), 0.6, kMicrosecond);
 }
 
-TEST(FrameClock, TakesAFrameWithoutATimeStampForTheNextOfAnEvenStream) {
+TEST(FrameClock, ExtrapolatesMissingTimestampsAtTheLastInterval) {
   FrameClock clock;
   (void)clock.advance_to(0);
   EXPECT_NEAR(clock.advance_to(100 * kMs), 3.0, kMicrosecond);
@@ -30,13 +30,13 @@ TEST(FrameClock, TakesAFrameWithoutATimeStampForTheNextOfAnEvenStream) {
   EXPECT_NEAR(clock.advance_to(400 * kMs), 3.0, kMicrosecond);
 }
 
-TEST(FrameClock, TakesAStreamWithoutTimeStampsForAnEvenOne) {
+TEST(FrameClock, AssumesAConstantRateWithoutTimestamps) {
   FrameClock clock;
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(clock.advance_to(kNone), 1.0, kMicrosecond);
   EXPECT_NEAR(clock.advance_to(700 * kMs), 1.0, kMicrosecond);
 }
 
-TEST(FrameClock, KnowsNothingAcrossJumps) {
+TEST(FrameClock, LimitsIntervalsAcrossJumps) {
   FrameClock clock;
   (void)clock.advance_to(900 * kMs);
   EXPECT_NEAR(clock.advance_to(100 * kMs), 1.0, kMicrosecond) << "back";
@@ -48,7 +48,7 @@ TEST(FrameClock, KnowsNothingAcrossJumps) {
 }
 
 // A rate of 30/1 gives intervals of 33,333,333 and 33,333,334 ns.
-TEST(FrameClock, MeasuresTheSameWithAndWithoutATimeStamp) {
+TEST(FrameClock, MissingTimestampsChangeNothingAtAConstantRate) {
   FrameClock whole;
   FrameClock partial;
   for (std::int64_t i = 0; i < 100; ++i) {

@@ -31,7 +31,7 @@ class ScriptedFrameSearch : public testing::Test {
   FrameSearch search_{std::make_unique<ScriptedDetector>(script_)};
 };
 
-TEST_F(ScriptedFrameSearch, TellsWhatItFindsInPixelsOfTheFrame) {
+TEST_F(ScriptedFrameSearch, ReportsTargetsInFramePixels) {
   script_.answers = {{support::detection_at(180, 120, 40)}};
   const Rect region{96, 64, 200, 120};
   const auto target = search_.find_target(frame(), region, 2, search_.detecting_thresholds(2));
@@ -46,7 +46,7 @@ TEST_F(ScriptedFrameSearch, TellsWhatItFindsInPixelsOfTheFrame) {
   EXPECT_DOUBLE_EQ(search_.candidates()[0].ellipse.cy, 120.0);
 }
 
-TEST_F(ScriptedFrameSearch, WhileTrackingOnlyTheSameTargetCounts) {
+TEST_F(ScriptedFrameSearch, AcceptsOnlyTheSameTargetWhileTracking) {
   const Detection elsewhere = support::detection_at(400, 120, 40);
   script_.answers = {{elsewhere}};
   const auto find = [&](const Ellipse& last) {
@@ -59,7 +59,7 @@ TEST_F(ScriptedFrameSearch, WhileTrackingOnlyTheSameTargetCounts) {
   EXPECT_EQ(target->state, TargetState::kTracked);
 }
 
-TEST_F(ScriptedFrameSearch, SettingsOverruleTheDetectorsOwnOverlaps) {
+TEST_F(ScriptedFrameSearch, SettingsOverrideTheDetectorsOverlaps) {
   TrackerSettings settings;
   settings.detect_overlaps = {0.5, 0.0};
   settings.track_overlaps = {0.0, 0.2};

@@ -56,7 +56,7 @@ class OutlineJudgeTest : public testing::Test {
   OutlineJudge judge_;
 };
 
-TEST_F(OutlineJudgeTest, AsksInEveryFrameUntilItIsSure) {
+TEST_F(OutlineJudgeTest, JudgesEveryFrameUntilItIsCertain) {
   detector_.answer = 0.0;
   judge_.start(0.0, false);
   EXPECT_EQ(calls_in_a_second(), 30);
@@ -65,7 +65,7 @@ TEST_F(OutlineJudgeTest, AsksInEveryFrameUntilItIsSure) {
   EXPECT_LT(calls_in_a_second(), 8);
 }
 
-TEST_F(OutlineJudgeTest, AsksAtOnceWhereLessIsMatched) {
+TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
   judge_.start(5.0, false);
   judge_.judge(detector_, window_, target_, {});
   judge_.advance(1.0);
@@ -78,7 +78,7 @@ TEST_F(OutlineJudgeTest, AsksAtOnceWhereLessIsMatched) {
   EXPECT_EQ(detector_.calls, before + 1);
 }
 
-TEST_F(OutlineJudgeTest, AShortArcOfWhatWasSeenWholeTellsNothing) {
+TEST_F(OutlineJudgeTest, IgnoresShortArcsOfTargetsSeenWhole) {
   judge_.start(0.0, false);
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
@@ -87,7 +87,7 @@ TEST_F(OutlineJudgeTest, AShortArcOfWhatWasSeenWholeTellsNothing) {
   EXPECT_GT(calls_in_a_second(), 0);
 }
 
-TEST_F(OutlineJudgeTest, ShowsTheOutlineWithItsSurroundingsAlone) {
+TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
   judge_.start(0.0, false);
   judge_.judge(detector_, window_, target_, {});
   // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).

@@ -86,7 +86,7 @@ TEST_F(ScriptedRedetectTracker, ScaleHalvesWhileTheTargetIsSmall) {
   EXPECT_EQ(track()->scale, 1);
 }
 
-TEST_F(ScriptedRedetectTracker, ALossAtACoarseScaleIsTriedAgainAtOnce) {
+TEST_F(ScriptedRedetectTracker, LossAtACoarseScaleIsRetriedInTheSameFrame) {
   script_.answers = {{at(320, 180, 80)}, {}, {at(320, 180, 80)}};
   EXPECT_TRUE(track());
   const auto retried = track();
@@ -100,7 +100,7 @@ TEST_F(ScriptedRedetectTracker, ALossAtACoarseScaleIsTriedAgainAtOnce) {
   EXPECT_EQ(retried->state, TargetState::kTracked);
 }
 
-TEST_F(ScriptedRedetectTracker, ALossWhereItWasTriedAgainIsALoss) {
+TEST_F(ScriptedRedetectTracker, LossIsFinalAfterTheRetry) {
   script_.answers = {{at(320, 180, 80)}, {}};
   EXPECT_TRUE(track());
   EXPECT_FALSE(track());
@@ -109,7 +109,7 @@ TEST_F(ScriptedRedetectTracker, ALossWhereItWasTriedAgainIsALoss) {
   EXPECT_EQ(script_.calls.back().width, 640);
 }
 
-TEST_F(ScriptedRedetectTracker, ALossAtScaleOneIsNot) {
+TEST_F(ScriptedRedetectTracker, LossAtScaleOneIsNotRetried) {
   script_.answers = {{at(320, 180, 30)}, {}};
   EXPECT_TRUE(track());
   EXPECT_FALSE(track());
@@ -126,7 +126,7 @@ TEST_F(ScriptedRedetectTracker, SearchesOnlyInsideTheScope) {
   EXPECT_EQ(script_.calls.back().width, 0);  // the target's region does not intersect it
 }
 
-TEST_F(ScriptedRedetectTracker, TheFinestScaleIsNotGoneBelow) {
+TEST_F(ScriptedRedetectTracker, ScaleStaysAtOrAboveTheFinest) {
   script_.answers = {{at(320, 180, 60)}, {}};
   const Rect all{0, 0, 640, 360};
   EXPECT_EQ(track(all, 4)->scale, 4);
@@ -145,7 +145,7 @@ TEST_F(ScriptedRedetectTracker, FollowsALowerLimitOfTheScale) {
   EXPECT_EQ(track()->scale, 2);
 }
 
-TEST(RedetectTracker, OffsetsAreCompensatedExactlyBetweenScales) {
+TEST(RedetectTracker, OffsetsBetweenScalesAreCompensated) {
   // Still pictures, so that only scale and region change; many positions, so that pixel
   // quantization averages out and only the compensation's error remains.
   Scene scene = plain_ring();

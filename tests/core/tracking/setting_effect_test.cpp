@@ -165,7 +165,7 @@ double value_of(const std::string& name, const TrackerSettings& settings) {
       ->get(settings);
 }
 
-TEST_P(SettingEffectOf, IsWhatTheTrackerDoes) {
+TEST_P(SettingEffectOf, MatchesTheTracker) {
   const std::string& name = GetParam();
   const SettingEffect effect = effect_of(name);
   for (const DetectorKind detector : kDetectors) {
@@ -186,7 +186,7 @@ TEST_P(SettingEffectOf, IsWhatTheTrackerDoes) {
 }
 
 // Justifies elsewhere_above, once per second of every scene.
-TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
+TEST(SettingEffect, OfContourOverlapStartsBelowAllValuesOfArcs) {
   const auto arcs = make_detector(DetectorKind::kArcs);
   Thresholds thresholds;
   thresholds.contour_overlap = 0.01;
@@ -207,7 +207,7 @@ TEST(SettingEffect, OfContourOverlapStartsWhereArcsReportNothing) {
 }
 
 // The element coarsens the search under load, up to max-scale.
-TEST(SettingEffect, OfMaxScaleIsThereUnderLoad) {
+TEST(SettingEffect, OfMaxScaleExistsUnderLoad) {
   EXPECT_STREQ(effect_of("max-scale").otherwise, "max-processing-time");
   for (const DetectorKind detector : kDetectors) {
     for (const TrackingMode tracking : kTrackings) {
@@ -219,7 +219,7 @@ TEST(SettingEffect, OfMaxScaleIsThereUnderLoad) {
   }
 }
 
-TEST(SettingEffect, IsToldInWords) {
+TEST(SettingEffect, IsDescribedInWords) {
   EXPECT_EQ(condition_of(effect_of("max-axis")), "");
   EXPECT_EQ(condition_of(effect_of("refine")), "with tracking=edges only");
   EXPECT_EQ(condition_of(effect_of("track-contour-overlap")),
@@ -230,7 +230,7 @@ TEST(SettingEffect, IsToldInWords) {
   EXPECT_THROW((void)effect_of("no-such"), std::invalid_argument);
 }
 
-TEST(SettingsInForce, HaveTheDetectorsOwnOverlapsWhereTheyAreZero) {
+TEST(SettingsInForce, ReplaceZeroOverlapsByThoseOfTheDetector) {
   TrackerSettings settings;
   settings.detect_overlaps.contour = 0.5;
   settings.detector = DetectorKind::kContours;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMemory_s = 0.3;  // measured on footage
 
-TEST(TargetOdds, BelieveAFirstFrameMoreWhereATargetWasJustBefore) {
+TEST(TargetOdds, StartHigherNearARecentTarget) {
   TargetOdds unknown;
   unknown.start(2.0, false);
   TargetOdds blinked;
@@ -27,7 +27,7 @@ TEST(TargetOdds, BelieveAFirstFrameMoreWhereATargetWasJustBefore) {
 // Reference: the log likelihood ratio of all samples under multivariate normal distributions with
 // the process's covariance. With means of +-m and a variance of 2 m, a sample equals its own log
 // likelihood ratio.
-TEST(TargetOdds, AreTheLikelihoodRatioOfCorrelatedSamples) {
+TEST(TargetOdds, EqualTheLogLikelihoodRatioOfCorrelatedSamples) {
   constexpr double kMean = 1.0;
   const std::array<double, 5> samples = {1.2, 0.4, -0.8, 0.9, 1.7};
   const std::array<double, 5> times_s = {0.0, 0.05, 0.08, 0.4, 0.45};
@@ -48,7 +48,7 @@ TEST(TargetOdds, AreTheLikelihoodRatioOfCorrelatedSamples) {
   EXPECT_NEAR(odds.value(), 2.0 * mean.dot(covariance.ldlt().solve(x)), 1e-9);
 }
 
-TEST(TargetOdds, GrowAlikeAtAnyRateOfFrames) {
+TEST(TargetOdds, GrowEquallyAtAnyFrameRate) {
   const auto after_a_second = [](int frames) {
     TargetOdds odds;
     odds.start(1.0, false);
@@ -59,7 +59,7 @@ TEST(TargetOdds, GrowAlikeAtAnyRateOfFrames) {
   EXPECT_GT(after_a_second(30), 1.0);
 }
 
-TEST(TargetOdds, FallToZeroByOneFrameThatShowsSomethingElse) {
+TEST(TargetOdds, FallToZeroAfterOneContraryFrame) {
   TargetOdds odds;
   odds.start(kInfinity, false);
   for (int i = 0; i < 300; ++i) odds.add(kInfinity, 1.0 / 30.0);

@@ -53,7 +53,7 @@ TEST_F(ScriptedTracker, ALossEndsTheId) {
   EXPECT_EQ(process()->id, 2U);
 }
 
-TEST_F(ScriptedTracker, IsFollowingOrSearchingWhereEdgesAreNotFollowed) {
+TEST_F(ScriptedTracker, IsFollowingOrSearchingWithoutEdgeTracking) {
   for (const TrackingMode mode : {TrackingMode::kRedetect, TrackingMode::kNone}) {
     settings_.tracking = mode;
     tracker_.configure(settings_);
@@ -66,7 +66,7 @@ TEST_F(ScriptedTracker, IsFollowingOrSearchingWhereEdgesAreNotFollowed) {
   }
 }
 
-TEST_F(ScriptedTracker, WithoutTrackingEachFrameStandsAlone) {
+TEST_F(ScriptedTracker, FramesAreIndependentWithoutTracking) {
   settings_.tracking = TrackingMode::kNone;
   tracker_.configure(settings_);
   script_.answers = {{at(320, 180, 130)}};
@@ -89,7 +89,7 @@ TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
   EXPECT_EQ(script_.calls.back().width, 320);
 }
 
-TEST_F(ScriptedTracker, WhereNothingIsSearchedTheTargetIsForgotten) {
+TEST_F(ScriptedTracker, AnEmptyScopeForgetsTheTarget) {
   script_.answers = {{at(100, 100, 30)}};
   process();
   for (const Rect& nowhere : {Rect{}, Rect{640, 0, 9, 9}, Rect{10, 10, -5, 9}}) {
@@ -101,14 +101,14 @@ TEST_F(ScriptedTracker, WhereNothingIsSearchedTheTargetIsForgotten) {
   EXPECT_EQ(tracker_.search_region(), (Rect{0, 0, 640, 360}));
 }
 
-TEST_F(ScriptedTracker, TheFinestScaleStaysBelowTheCoarsest) {
+TEST_F(ScriptedTracker, FinestScaleIsLimitedByTheCoarsest) {
   settings_.max_scale = 3;
   tracker_.configure(settings_);
   script_.answers = {{at(320, 180, 60)}};
   EXPECT_EQ(process({{0, 0, 640, 360}, 8})->scale, 2);
 }
 
-TEST(Tracker, RefusesSettingsAndKeepsTheOldOnes) {
+TEST(Tracker, RejectsInvalidSettingsAndKeepsTheOldOnes) {
   TrackerSettings bad;
   bad.roi_expansion = std::nan("");
   EXPECT_THROW(Tracker{bad}, std::invalid_argument);
@@ -182,7 +182,7 @@ TEST(FollowingTracker, FollowsFromTheSecondFrameOn) {
   }
 }
 
-TEST(FollowingTracker, TellsItsState) {
+TEST(FollowingTracker, ReportsItsState) {
   const Film film(plain_ring());
   Tracker tracker;
   EXPECT_FALSE(tracker.process(film.empty().view(), 0));
@@ -196,7 +196,7 @@ TEST(FollowingTracker, TellsItsState) {
 }
 
 // Half a disc alone is ambiguous; the probability grows as more of it becomes visible.
-TEST(FollowingTracker, ConfirmsOverFrames) {
+TEST(FollowingTracker, ConfirmsOverSeveralFrames) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
   TrackerSettings settings;
@@ -217,7 +217,7 @@ TEST(FollowingTracker, ConfirmsOverFrames) {
 }
 
 // A hexagon in place of a disc has most of its edges within reach of the disc's outline.
-TEST(FollowingTracker, GivesUpWhatIsNoEllipseAnyMore) {
+TEST(FollowingTracker, DropsTargetsThatAreNoLongerEllipses) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
   const Film film(scene);
@@ -248,7 +248,7 @@ TEST(FollowingTracker, GivesUpWhatIsNoEllipseAnyMore) {
   EXPECT_LE(reports, 3);
 }
 
-TEST(FollowingTracker, ReportsNothingWhereNothingIsSeenAndKnowsTheTargetAgain) {
+TEST(FollowingTracker, KeepsTheIdThroughFramesWithoutTheTarget) {
   const Film film(plain_ring());
   Tracker tracker;
   for (int frame = 0; frame < 20; ++frame) {
@@ -293,7 +293,7 @@ TEST(FollowingTracker, FollowsInsideTheScopeOnly) {
   EXPECT_FALSE(elsewhere);
 }
 
-TEST(FollowingTracker, FollowsASmallTargetAlsoWhereTheDetectorLooksTooCoarsely) {
+TEST(FollowingTracker, TracksSmallTargetsBelowTheDetectorsScale) {
   const Film film(plain_ring());
   Tracker tracker;
   (void)tracker.process(film.at(0).view(), 0);
@@ -306,7 +306,7 @@ TEST(FollowingTracker, FollowsASmallTargetAlsoWhereTheDetectorLooksTooCoarsely) 
   }
 }
 
-TEST(FollowingTracker, LocksExactlyOntoWhatWasFoundAtACoarseScale) {
+TEST(FollowingTracker, RefinesTargetsFoundAtACoarseScale) {
   const Film film(plain_ring());
   Tracker tracker;
   for (int frame = 0; frame < 10; ++frame) {
@@ -318,7 +318,7 @@ TEST(FollowingTracker, LocksExactlyOntoWhatWasFoundAtACoarseScale) {
   }
 }
 
-TEST(FollowingTracker, LeavesADiscOrALesserRingForThePad) {
+TEST(FollowingTracker, SwitchesFromADiscOrASmallerRingToThePad) {
   Scene disc = plain_ring();
   disc.pad.pattern = Pattern::kDisc;
   const Ellipse lone{60.0, 60.0, 34.0, 30.0, 0.0};
@@ -344,7 +344,7 @@ TEST(FollowingTracker, LeavesADiscOrALesserRingForThePad) {
   }
 }
 
-TEST(FollowingTracker, TellsAllCandidatesOfEveryFrameWhereTheyAreWanted) {
+TEST(FollowingTracker, ReportsCandidatesInEveryFrameOnRequest) {
   const Picture picture = rendered(plain_ring(), {160.0, 120.0, 60.0, 50.0, 0.2});
   for (const bool is_wanted : {false, true}) {
     TrackerSettings settings;
@@ -357,7 +357,7 @@ TEST(FollowingTracker, TellsAllCandidatesOfEveryFrameWhereTheyAreWanted) {
   }
 }
 
-TEST(FollowingTracker, GivesTheSameForTheSame) {
+TEST(FollowingTracker, IsDeterministic) {
   const Film film(plain_ring());
   Tracker a;
   Tracker b;

@@ -55,7 +55,7 @@ Shares shares_in(const char* name, int frames) {
 
 // Scenes without motion blur. Independent frames would give 95 %; consecutive errors are
 // correlated.
-TEST(Uncertainty, HoldsTheTruthInMostFrames) {
+TEST(Uncertainty, ContainsTheTruthInMostFrames) {
   for (const char* name : {"approach", "glare", "noise"}) {
     const Shares shares = shares_in(name, 150);
     EXPECT_GT(shares.frames, 140) << name;
@@ -64,7 +64,7 @@ TEST(Uncertainty, HoldsTheTruthInMostFrames) {
 }
 
 // The uncertainty is not simply too large: errors twice as large would exceed it.
-TEST(Uncertainty, IsNoLargerThanTheErrors) {
+TEST(Uncertainty, MatchesTheErrors) {
   SceneRenderer renderer(scene_by_name("oblique", 31));
   support::Picture picture(640, 360);
   Tracker tracker;

@@ -55,7 +55,7 @@ TEST(LiveApi, ServesItsPageAndNothingElse) {
 // The pad moves by up to 40 px a frame, with motion blur: the ellipse of the previous frame would
 // be far off. A new detection in the same frame, through JPEG, differs by a few px. Everything is
 // read before it is checked, because a slow reader gets fewer lines.
-TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
+TEST(LiveApi, PicturesAndLinesAreOfTheSameFrame) {
   const LiveProgram program({"--source", "test:dash"});
   SocketClient lines(program.url(), "ws/meta");
   SocketClient video(program.url(), "ws/video");
@@ -90,7 +90,7 @@ TEST(LiveApi, EachPictureHasTheEllipseOfItsOwnFrame) {
   EXPECT_GT(compared, 20);
 }
 
-TEST(LiveApi, WhoDoesNotAcknowledgeGetsTwoFramesAndThenTheNewest) {
+TEST(LiveApi, SendsTwoFramesUnacknowledgedThenTheNewest) {
   const LiveProgram program({});
   const Client client(program.url());
   SocketClient video(program.url(), "ws/video");
@@ -124,7 +124,7 @@ TEST(LiveApi, EncodesNothingWithoutAViewer) {
   EXPECT_LE(client.stat("encoded"), encoded + 1);  // the one in transit
 }
 
-TEST(LiveApi, EventsAreTheLines) {
+TEST(LiveApi, EventsCarryTheLines) {
   const LiveProgram program({});
   std::istringstream text(support::read_stream(program.url() + "api/events", "\n\n", 10));
   std::vector<gint64> numbers;
@@ -144,7 +144,7 @@ TEST(LiveApi, EventsAreTheLines) {
   }
 }
 
-TEST(LiveApi, EndsInOrderWhileAllKindsOfClientsListen) {
+TEST(LiveApi, ShutsDownCleanlyWithAllKindsOfClients) {
   LiveProgram program({});
   const SocketClient video(program.url(), "ws/video");
   const SocketClient lines(program.url(), "ws/meta");
@@ -160,7 +160,7 @@ TEST(LiveApi, EndsInOrderWhileAllKindsOfClientsListen) {
   mjpeg.join();
 }
 
-TEST(LiveApi, MjpegIsForWhatKnowsNoWebSocket) {
+TEST(LiveApi, ServesMjpeg) {
   const LiveProgram program({});
   const std::string text =
       support::read_stream(program.url() + "video.mjpeg", "Content-Length: ", 4);
@@ -172,7 +172,7 @@ TEST(LiveApi, MjpegIsForWhatKnowsNoWebSocket) {
   EXPECT_EQ(picture.cols, 640);
 }
 
-TEST(LiveApi, WhoAsksForTheHeadAloneIsNoViewer) {
+TEST(LiveApi, HeadRequestsDoNotCountAsViewers) {
   const LiveProgram program({});
   const Client client(program.url());
   EXPECT_EQ(client.ask("HEAD", "").status, 200U);
@@ -202,7 +202,7 @@ TEST(LiveApi, MetricsAreWellFormed) {
   EXPECT_GT(samples, 15);
 }
 
-TEST(LiveApi, TheTargetIsAskedForByItself) {
+TEST(LiveApi, ServesTheTarget) {
   const LiveProgram program({});
   const Client client(program.url());
   Answer answer;
@@ -240,7 +240,7 @@ int count_of(const Answer& answer, const char* reason) {
   return static_cast<int>(json_object_get_int_member_with_default(counts, reason, 0));
 }
 
-TEST(LiveApi, AnAnalysisNamesWhyWhatIsRefused) {
+TEST(LiveApi, AnalysisNamesTheReasonsOfRejection) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 0; }));

@@ -52,7 +52,7 @@ void send_garbage(const LiveProgram& program, std::mt19937& random, int times) {
 
 // Minimum growth over the rounds: the number of open connections, and with it the allocator's
 // memory, varies from round to round, while a leak grows in each.
-TEST(LiveGarbage, MalformedRequestsByTheThousandDoNoHarm) {
+TEST(LiveGarbage, ThousandsOfMalformedRequestsDoNoHarm) {
   LiveProgram program({});
   const Client client(program.url());
   std::mt19937 random(7);

@@ -24,7 +24,7 @@ std::string get(const std::string& path) {
   return "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
 }
 
-TEST(LiveLimits, WhatIsTooLargeIsRefused) {
+TEST(LiveLimits, RejectsTooLargeRequestsAndMessages) {
   const LiveProgram program({});
   const Client client(program.url());
   EXPECT_EQ(client.put("api/properties", std::string(70'000, ' ')).status, 413U);
@@ -62,7 +62,7 @@ std::string send_body(const LiveProgram& program, bool is_chunked, const std::st
   return client.receive();
 }
 
-TEST(LiveLimits, NothingOfARefusedBodyIsKept) {
+TEST(LiveLimits, KeepsNothingOfRejectedBodies) {
   if (!support::kHasPlainMemory) GTEST_SKIP() << "a sanitizer has a memory of its own";
   const LiveProgram program({"--token", "sesame"});
   const Client client(program.url().substr(0, program.url().find('?')));
@@ -92,7 +92,7 @@ bool is_stopped_at_once(const LiveProgram& program, int requests) {
   return is_stopped;
 }
 
-TEST(LiveLimits, WhoAsksTooOftenHasToWait) {
+TEST(LiveLimits, LimitsTheRequestRate) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitized program answers too slowly to be asked too often";
 #endif
@@ -103,7 +103,7 @@ TEST(LiveLimits, WhoAsksTooOftenHasToWait) {
   EXPECT_EQ(Client(program.url()).get("api/target").status, 200U);
 }
 
-TEST(LiveLimits, ConnectionsAreCounted) {
+TEST(LiveLimits, LimitsTheNumberOfConnections) {
   const LiveProgram program({});
   const Client client(program.url());
   std::vector<std::unique_ptr<RawClient>> idle;
@@ -118,7 +118,7 @@ TEST(LiveLimits, ConnectionsAreCounted) {
 }
 
 // A still picture causes no writes, so that no failed write reveals a client that left.
-TEST(LiveLimits, WhoLeavesWhileNothingMovesIsNotKept) {
+TEST(LiveLimits, ReleasesClientsThatLeaveWhilePaused) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
@@ -135,7 +135,7 @@ TEST(LiveLimits, WhoLeavesWhileNothingMovesIsNotKept) {
   EXPECT_TRUE(wait_until([&] { return client.stat("viewers") + client.stat("listeners") == 0.0; }));
 }
 
-TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
+TEST(LiveLimits, ReservesConnectionsForRequests) {
   const LiveProgram program({});
   const Client client(program.url());
   std::vector<std::unique_ptr<RawClient>> watching;
@@ -152,7 +152,7 @@ TEST(LiveLimits, WhoWatchesLeavesConnectionsToThoseWhoAsk) {
 }
 
 // A client that sends a byte now and then is never idle and never finishes.
-TEST(LiveLimits, ARequestHasToComeToItsEnd) {
+TEST(LiveLimits, DropsUnfinishedRequests) {
   const LiveProgram program({});
   const Client client(program.url());
   const std::string rest = "PUT /api/properties HTTP/1.1\r\nHost: localhost\r\nContent-Length: 500";
@@ -173,7 +173,7 @@ TEST(LiveLimits, ARequestHasToComeToItsEnd) {
 }
 
 // A viewer of lines need not send anything; this one does not even answer pings.
-TEST(LiveLimits, AWebSocketMayBeSilent) {
+TEST(LiveLimits, KeepsSilentWebSockets) {
   const LiveProgram program({});
   const RawClient viewer(program.port());
   ASSERT_TRUE(
@@ -184,7 +184,7 @@ TEST(LiveLimits, AWebSocketMayBeSilent) {
   while (g_get_monotonic_time() - begin < 25 * G_USEC_PER_SEC) ASSERT_NE(viewer.receive(), "");
 }
 
-TEST(LiveLimits, OneAddressInANetworkDoesNotTakeAllConnections) {
+TEST(LiveLimits, LimitsConnectionsPerNetworkAddress) {
   const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
   const LiveProgram program({"--bind", "0.0.0.0", "--token", "sesame"});

@@ -17,7 +17,7 @@ using support::Client;
 using support::LiveProgram;
 using support::SocketClient;
 
-TEST(LiveSecurity, KnowsTheLoopback) {
+TEST(LiveSecurity, RecognizesLoopbackAddressesAndHosts) {
   EXPECT_TRUE(live::is_loopback_address("127.0.0.1"));
   EXPECT_TRUE(live::is_loopback_address("::1"));
   EXPECT_FALSE(live::is_loopback_address("0.0.0.0"));
@@ -29,7 +29,7 @@ TEST(LiveSecurity, KnowsTheLoopback) {
   EXPECT_FALSE(live::is_loopback_host(""));
 }
 
-TEST(LiveSecurity, TokensAreLongAndComparedWhole) {
+TEST(LiveSecurity, TokensAreRandomAndComparedCompletely) {
   const std::string token = live::make_token();
   EXPECT_EQ(token.size(), 32U);
   EXPECT_NE(token, live::make_token());
@@ -41,7 +41,7 @@ TEST(LiveSecurity, TokensAreLongAndComparedWhole) {
 
 std::int64_t now_us = 0;
 
-TEST(LiveSecurity, AnAllowanceRunsOutAndComesBack) {
+TEST(LiveSecurity, RateLimiterRefillsWithTime) {
   now_us = 5'000'000;
   live::RateLimiter allowance(100.0, 300.0, [] { return now_us; });
   const auto taken = [&] {
@@ -60,7 +60,7 @@ TEST(LiveSecurity, AnAllowanceRunsOutAndComesBack) {
   EXPECT_EQ(taken(), 300);
 }
 
-TEST(LiveSecurity, PagesOfOtherSitesAreKeptOut) {
+TEST(LiveSecurity, RejectsRequestsFromOtherSites) {
   const LiveProgram program({});
   const Client client(program.url());
   const std::string own = program.url().substr(0, program.url().size() - 1);
@@ -78,7 +78,7 @@ TEST(LiveSecurity, PagesOfOtherSitesAreKeptOut) {
   EXPECT_FALSE(SocketClient(program.url(), "ws/video", "http://evil.example").is_open());
 }
 
-TEST(LiveSecurity, TheTokenIsAskedForEverywhere) {
+TEST(LiveSecurity, RequiresTheTokenEverywhere) {
   LiveProgram program({"--token", "sesame"});
   ASSERT_TRUE(program.url().ends_with("/?token=sesame"));
   const std::string url = program.url().substr(0, program.url().find('?'));
@@ -105,7 +105,7 @@ TEST(LiveSecurity, TheTokenIsAskedForEverywhere) {
   EXPECT_EQ(client.get("?token=sesam").status, 401U);
 }
 
-TEST(LiveSecurity, ATokenThatWouldNotFitIntoALinkIsRefused) {
+TEST(LiveSecurity, RejectsTokensThatNeedEscapingInLinks) {
   for (const char* token : {"open sesame", "a;b", "a&b", "a%41", "sésame", ""}) {
     LiveProgram program({"--token", token}, false);
     EXPECT_NE(program.line_with("--token"), "") << token;
@@ -153,13 +153,13 @@ void expect_locked(const LiveProgram& program, const LiveProgram& other) {
   EXPECT_EQ(link.headers.at("Set-Cookie").find("ellipse_token=" + token + ";"), 0U);
 }
 
-TEST(LiveSecurity, OpenToAllNetworksItMakesATokenAndAsksForIt) {
+TEST(LiveSecurity, RequiresAGeneratedTokenWhenOpenToAllNetworks) {
   const LiveProgram program({"--bind", "0.0.0.0"});
   const LiveProgram other({"--bind", "0.0.0.0"});
   expect_locked(program, other);
 }
 
-TEST(LiveSecurity, OpenToOneNetworkItMakesATokenAndAsksForIt) {
+TEST(LiveSecurity, RequiresAGeneratedTokenWhenOpenToOneNetwork) {
   const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
   const LiveProgram program({"--bind", address});
@@ -167,7 +167,7 @@ TEST(LiveSecurity, OpenToOneNetworkItMakesATokenAndAsksForIt) {
   expect_locked(program, other);
 }
 
-TEST(LiveSecurity, IsNotReachedFromTheNetworkUnlessAsked) {
+TEST(LiveSecurity, ListensOnTheLoopbackByDefault) {
   const std::string address = support::network_address();
   if (address.empty()) GTEST_SKIP() << "this machine is in no network";
   const LiveProgram program({});
@@ -179,7 +179,7 @@ TEST(LiveSecurity, IsNotReachedFromTheNetworkUnlessAsked) {
 }
 
 // A browser sends its cookie no matter which site's page makes the request.
-TEST(LiveSecurity, TheTokenDoesNotLetOtherSitesPagesIn) {
+TEST(LiveSecurity, RejectsRequestsFromOtherSitesDespiteTheToken) {
   const LiveProgram program({"--bind", "0.0.0.0"});
   const auto [url, token] = door_of(program);
   const Client client(url);

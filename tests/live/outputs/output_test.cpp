@@ -52,7 +52,7 @@ int green_pixels(const std::string& file) {
 
 class Transport : public testing::TestWithParam<const char*> {};
 
-TEST_P(Transport, RtspHasTheOverlayDrawnIn) {
+TEST_P(Transport, RtspIncludesTheOverlay) {
   const TemporaryFolder folder;
   LiveProgram program({"--rtsp", "0"});
   const std::string address = LiveProgram::address_in(program.line_with("rtsp://"));
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(LiveOutput,
                          testing::Values("tcp", "udp"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(LiveOutput, RtspAsksForTheTokenToo) {
+TEST(LiveOutput, RtspRequiresTheToken) {
   LiveProgram program({"--rtsp", "0", "--token", "sesame"});
   const std::string address = LiveProgram::address_in(program.line_with("rtsp://"));
   ASSERT_TRUE(address.starts_with("rtsp://ellipse:sesame@"));
@@ -91,7 +91,7 @@ TEST(LiveOutput, RtspAsksForTheTokenToo) {
 class EndOfRecording : public testing::TestWithParam<int> {};
 
 // SIGHUP is sent when the terminal closes, as at a lost ssh connection.
-TEST_P(EndOfRecording, LeavesAWholeFileWithItsLines) {
+TEST_P(EndOfRecording, LeavesACompleteFileWithItsLines) {
   const TemporaryFolder folder;
   LiveProgram program({"--record", folder.file("flight.mkv")});
   const Client client(program.url());
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(LiveOutput,
                          testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& info) { return std::string(sigabbrev_np(info.param)); });
 
-TEST(LiveOutput, ARecordingGoesOnInAnotherFileWhereTheSizeChanges) {
+TEST(LiveOutput, RecordingContinuesInANewFileAfterASizeChange) {
   const TemporaryFolder folder;
   LiveProgram program({"--record", folder.file("flight.mkv"), "--allow-source-change"});
   const Client client(program.url());
@@ -147,7 +147,7 @@ TEST(LiveOutput, ARecordingGoesOnInAnotherFileWhereTheSizeChanges) {
             0);
 }
 
-TEST(LiveOutput, ARecordingThatCannotBeWrittenIsSaidAtOnce) {
+TEST(LiveOutput, UnwritableRecordingsAreReportedAtTheStart) {
   LiveProgram program({"--record", "/nowhere/flight.mkv"}, false);
   EXPECT_NE(program.line_with("/nowhere/flight.mkv"), "");
   EXPECT_EQ(program.wait(), 1);
@@ -216,7 +216,7 @@ TEST(LiveOutput, SnapshotsMakeADataSet) {
 }
 
 // Nanoseconds since 1970 are not exact as doubles.
-TEST(LiveOutput, ALabelIsOfTheVeryFrameWhateverItsTime) {
+TEST(LiveOutput, LabelsMatchTheFrameForLargeTimestamps) {
   const TemporaryFolder folder;
   const LiveProgram program({"--labels",
                              folder.file("labels"),
@@ -238,7 +238,7 @@ TEST(LiveOutput, ALabelIsOfTheVeryFrameWhateverItsTime) {
   EXPECT_EQ(label("\"-1\""), 400U);
 }
 
-TEST(LiveOutput, WithoutAFolderThereAreNoSnapshots) {
+TEST(LiveOutput, SnapshotsRequireAFolder) {
   const LiveProgram program({});
   EXPECT_EQ(Client(program.url()).post("api/snapshot", R"({"choice":"none"})").status, 409U);
 }

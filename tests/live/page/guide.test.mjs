@@ -101,7 +101,7 @@ describe("the guide", () => {
     rmSync(labels, { recursive: true });
   });
 
-  it("is open at the first visit and closed at the second", async () => {
+  it("opens at the first visit only", async () => {
     const context = await browser.newContext();
     for (const isFirst of [true, false]) {
       const page = await context.newPage();
@@ -114,7 +114,7 @@ describe("the guide", () => {
     await context.close();
   });
 
-  it("says what is found", async () => {
+  it("reports the target", async () => {
     const page = await openGuide(browser, program);
     await page.waitForFunction(() => /test:orbit is playing. A target is tracked: \d+ × \d+ px/
       .test(document.querySelector("#guide-state").textContent));
@@ -125,7 +125,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("is left by Escape and Skip at any step, and plays on", async () => {
+  it("closes by Escape and Skip at any step and resumes playback", async () => {
     const page = await openGuide(browser, program);
     await isAtStep(page, "see");
     assert.ok(await page.evaluate(() => document.activeElement.id === "guide"));
@@ -171,7 +171,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("proposes a limit that keeps out what is taken for the target", async () => {
+  it("proposes a limit that rejects the wrong target", async () => {
     const page = await openGuide(browser, program);
     await beginMarks(page);
     for (let i = 1; i <= 3; ++i) {
@@ -192,7 +192,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("proposes a probability between the marks and all else", async () => {
+  it("proposes a probability between the marks and other ellipses", async () => {
     await program.ask("PUT", "/api/properties", { "min-probability": 0.999999 });
     const page = await openGuide(browser, program);
     await beginMarks(page);
@@ -219,7 +219,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("takes marks by hand and frames without a target, and saves them as labels", async () => {
+  it("saves hand-drawn marks and frames without a target as labels", async () => {
     await program.ask("PUT", "/api/properties", kTooStrict);
     const page = await openGuide(browser, program);
     await beginMarks(page);
@@ -238,7 +238,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("says why a mark is not found, and where to read on", async () => {
+  it("explains why a mark is not found and links to the documentation", async () => {
     const page = await openGuide(browser, program);
     await beginMarks(page);
     const nowhere = { cx: 60, cy: 50, semi_major: 40, semi_minor: 30, angle_rad: 0.3, width: 640, height: 360 };
@@ -251,7 +251,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("begins anew when the frames are gone", async () => {
+  it("restarts when the frames are no longer stored", async () => {
     const page = await openGuide(browser, program);
     await beginMarks(page);
     await program.ask("DELETE", "/api/history");
@@ -310,7 +310,7 @@ describe("the guide", () => {
     await page.close();
   });
 
-  it("leaves the video in view on a phone, and its buttons within reach", async () => {
+  it("keeps the video and its buttons in view on a phone", async () => {
     const page = await openGuide(browser, program, kPhone);
     const isInView = async (selector) => {
       const { x, y, width, height } = await page.locator(selector).boundingBox();
@@ -350,7 +350,7 @@ describe("the guide with a file", () => {
     await program.stop();
   });
 
-  it("plays it again where it has ended", async () => {
+  it("replays a file that has ended", async () => {
     const page = await openPage(browser, program.url, undefined, 1);
     await page.waitForSelector("#play[aria-label=Play]");
     await page.click("#guide-button");

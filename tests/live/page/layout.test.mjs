@@ -122,7 +122,7 @@ describe("a phone", () => {
     await program.stop();
   });
 
-  it("has the video and the tabs in view wherever the settings are scrolled to", async () => {
+  it("keeps the video and the tabs in view while the settings scroll", async () => {
     const page = await openPage(browser, program.url, kPhone);
     await page.locator("[data-setting=line-width]").evaluate((node) => {
       node.closest("details").open = true;
@@ -138,7 +138,7 @@ describe("a phone", () => {
     await page.close();
   });
 
-  it("shows another tab from its beginning", async () => {
+  it("scrolls to the top of a newly opened tab", async () => {
     const page = await openPage(browser, program.url, kPhone);
     await page.evaluate(() => scrollTo(0, 1e6));
     await page.click("#tab-stages");

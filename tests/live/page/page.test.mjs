@@ -93,7 +93,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await live.program.ask("PUT", "/api/properties", Object.fromEntries(others.map((p) => [p.name, p.default])));
   });
 
-  it("is shown frame after frame, with its figures", async () => {
+  it("is shown with its figures", async () => {
     const page = await live.open();
     const first = await shownBy(page);
     await page.waitForFunction((n) => document.querySelector("#screen").dataset.shown > n + 10, first);
@@ -105,7 +105,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("is there at once for who joins while it is paused", async () => {
+  it("shows its frame to clients that connect while it is paused", async () => {
     await live.program.ask("POST", "/api/pause");
     const page = await live.open(undefined, 1);
     await stateIs(page, "tracked");
@@ -119,7 +119,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("tells no rate by a clock that stands still", async () => {
+  it("shows no rate if the clock stands still", async () => {
     const page = await browser.newPage();
     page.setDefaultTimeout(kTimeoutMs);
     await page.addInitScript(() => { performance.now = () => 5; });
@@ -130,7 +130,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("obeys a slider at once: the property, and what is found", async () => {
+  it("applies a slider to the property and the result", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await setting(page, "tracking").getByText("none", { exact: true }).click();
@@ -153,7 +153,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("says why a value is refused, and shows the one in force", async () => {
+  it("shows why a value is rejected, and the value in force", async () => {
     const page = await live.open();
     const field = setting(page, "max-axis").locator("input[type=number]");
     const before = await field.inputValue();
@@ -167,7 +167,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("is searched only where a region is dragged on it", async () => {
+  it("is searched only inside a dragged region", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     const drag = async (from, to, beforeEnd = () => {}) => {
@@ -207,7 +207,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("is searched only where the fields say, by keys alone", async () => {
+  it("is searched only inside a region set by keyboard", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await page.evaluate(() => document.querySelector("[data-setting=roi]").closest("details").open = true);
@@ -244,7 +244,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("greys what has no effect, and says why, for the detector and the tracking of now", async () => {
+  it("greys settings without effect and shows the reason", async () => {
     const page = await live.open();
     const idle = (name) => setting(page, name).locator(".idle").textContent();
     const once = (name, text) => page.waitForFunction(([each, wanted]) => {
@@ -271,7 +271,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("shows in the box of a setting that is 0 what is in force", async () => {
+  it("shows the value in force in the field of a setting that is 0", async () => {
     const page = await live.open();
     const box = setting(page, "detect-ellipse-overlap").locator("input[type=number]");
     const holds = (value, placeholder) => page.waitForFunction(([content, behind]) => {
@@ -293,7 +293,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("names the reason of each rejection, and leads to the setting", async () => {
+  it("names the reason of each rejection and links to the setting", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await setting(page, "max-axis-ratio").locator("input[type=number]").fill("1.0001");
@@ -340,7 +340,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("looks at the stages again when it plays on", async () => {
+  it("resumes the analysis of the stages with playback", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await page.click("#tab-stages");
@@ -354,7 +354,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("lists the choices of the frame that it was paused at", async () => {
+  it("lists the choices of the paused frame", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await page.click("#tab-label");
@@ -374,7 +374,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("finds what is clicked on the screen in the list", async () => {
+  it("focuses the clicked candidate in the list", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     await page.click("#play");
@@ -392,7 +392,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("works by keys alone", async () => {
+  it("is usable by keyboard alone", async () => {
     const page = await live.open();
     await page.keyboard.press("Tab");
     assert.equal(await page.evaluate(() => document.activeElement.className), "skip");
@@ -413,7 +413,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("has a name for a screen reader on all that is worked with", async () => {
+  it("names every control for screen readers", async () => {
     const page = await live.open();
     await page.evaluate(() => document.querySelectorAll("details").forEach((each) => { each.open = true; }));
     const session = await page.context().newCDPSession(page);
@@ -426,7 +426,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.close();
   });
 
-  it("tells a screen reader when the state changes", async () => {
+  it("announces state changes to screen readers", async () => {
     const page = await live.open();
     await page.waitForFunction(() => document.querySelector("#announcer").textContent === "Target: tracked");
     await page.close();
@@ -472,7 +472,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
 }));
 
 // Squares, flowers and arcs: many rejected candidates.
-describe("a picture with much to refuse", () => withProgram(() => ["--source", "test:negative"], (live) => {
+describe("a picture with many rejected candidates", () => withProgram(() => ["--source", "test:negative"], (live) => {
   const countRed = (page) => page.evaluate(() => {
     const screen = document.querySelector("#screen");
     const { data } = screen.getContext("2d").getImageData(0, 0, screen.width, screen.height);
@@ -481,7 +481,7 @@ describe("a picture with much to refuse", () => withProgram(() => ["--source", "
     return count;
   });
 
-  it("shows the best few, and the rest on demand", async () => {
+  it("shows the closest candidates, and all on request", async () => {
     const page = await live.open();
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
@@ -514,7 +514,7 @@ describe("a picture with much to refuse", () => withProgram(() => ["--source", "
 
 // Seen from straight above, so that its whole edge is sharp.
 describe("a pad that stays in the middle", () => withProgram(() => ["--source", "test:hover"], (live) => {
-  it("is drawn on where the ring is: within 2 px of the screen", async () => {
+  it("is drawn within 2 px of the ring", async () => {
     const page = await live.open();
     await stateIs(page, "tracked");
     for (let i = 0; i < 3; ++i) {
@@ -533,7 +533,7 @@ describe("a pad that stays in the middle", () => withProgram(() => ["--source", 
 }));
 
 describe("presets", () => {
-  it("are said to be in force when they are", async () => {
+  it("are shown as in force after loading", async () => {
     const program = await startProgram("--source", "test:approach");
     const page = await openPage(browser, program.url);
     const once = (text) => page.waitForFunction((wanted) => {
@@ -557,7 +557,7 @@ describe("presets", () => {
     await program.stop();
   });
 
-  it("outlive the program", async () => {
+  it("persist across restarts", async () => {
     const first = await startProgram("--source", "test:approach");
     let page = await openPage(browser, first.url);
     await setting(page, "min-axis").locator("input[type=number]").fill("17");
@@ -588,7 +588,7 @@ describe("presets", () => {
 describe("a file", () => withProgram(() => {
   return ["--source", process.env.ELLIPSE_TEST_VIDEO, "--loop", "--labels", join(process.env.XDG_DATA_HOME, "labels")];
 }, (live) => {
-  it("is paused, stepped and sought", async () => {
+  it("can be paused, stepped and sought", async () => {
     const page = await live.open();
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
@@ -607,7 +607,7 @@ describe("a file", () => withProgram(() => {
     await page.close();
   });
 
-  it("shows at once what a setting changes while it is paused", async () => {
+  it("shows the effect of a setting while it is paused", async () => {
     const page = await live.open();
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Play]");
@@ -631,7 +631,7 @@ describe("a file", () => withProgram(() => {
     await page.close();
   });
 
-  it("becomes a data set, frame by frame", async () => {
+  it("is labelled frame by frame", async () => {
     const page = await live.open();
     await page.click("#tab-label");
     await standsStill(page, live.program);
@@ -650,7 +650,7 @@ describe("a file", () => withProgram(() => {
     await page.close();
   });
 
-  it("takes no choice between two frames, which would be of neither", async () => {
+  it("disables choices while the frame changes", async () => {
     const page = await live.open();
     await page.click("#tab-label");
     await standsStill(page, live.program);
@@ -674,7 +674,7 @@ describe("a file", () => withProgram(() => {
     await page.close();
   });
 
-  it("takes an ellipse drawn by hand into the data set", async () => {
+  it("saves an ellipse drawn by hand", async () => {
     const page = await live.open();
     await page.click("#tab-label");
     await standsStill(page, live.program);
@@ -698,7 +698,7 @@ describe("a file", () => withProgram(() => {
   });
 }));
 
-it("changes the source where that is allowed", async () => {
+it("changes the source if allowed", async () => {
   const program = await startProgram("--source", "test:approach", "--allow-source-change");
   const page = await openPage(browser, program.url);
   await page.click("#source-change");
@@ -713,7 +713,7 @@ it("changes the source where that is allowed", async () => {
   await program.stop();
 });
 
-it("plays a folder at the rate that is asked for", async () => {
+it("plays a folder at the requested rate", async () => {
   const folder = join(process.env.XDG_DATA_HOME, "pictures");
   mkdirSync(folder);
   const made = spawnSync("gst-launch-1.0", ["-q", "ellipsetestsrc", "num-buffers=20", "!", "videoconvert", "!",
@@ -735,7 +735,7 @@ it("plays a folder at the rate that is asked for", async () => {
   await program.stop();
 });
 
-it("leaves no program behind where the tests are killed", { timeout: kTimeoutMs }, async () => {
+it("leaves no program running when the tests are killed", { timeout: kTimeoutMs }, async () => {
   const script = `import { startProgram } from "./program.mjs";
     console.log((await startProgram("--source", "test:approach")).url);
     process.kill(process.pid, "SIGKILL");`;
@@ -745,7 +745,7 @@ it("leaves no program behind where the tests are killed", { timeout: kTimeoutMs 
   while (await isUp()) await setTimeout(50);
 });
 
-it("says that the program is gone", async () => {
+it("reports a lost connection", async () => {
   const program = await startProgram("--source", "test:approach");
   const page = await openPage(browser, program.url);
   await program.stop();

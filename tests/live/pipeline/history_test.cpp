@@ -60,7 +60,7 @@ TEST(FrameHistory, KeepsTheLastFramesUpToItsLimits) {
   EXPECT_EQ(by_bytes.frames().size(), 2U);
 }
 
-TEST(FrameHistory, HasItsOwnPixels) {
+TEST(FrameHistory, CopiesThePixels) {
   FrameHistory history;
   history.begin();
   const FramePtr frame = gray_frame(9);
@@ -147,7 +147,7 @@ class StoredFrame : public testing::TestWithParam<const char*> {
   TemporaryFolder folder_;
 };
 
-TEST_P(StoredFrame, IsShownAnalysedAndLeft) {
+TEST_P(StoredFrame, CanBeShownAnalysedAndLeft) {
   const LiveProgram program({"--source", source()});
   const Client client(program.url());
   const gint64 frame = number_of(stored_frames(client, 10), 3);
@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(LiveHistory,
                          testing::Values("file", "live"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(LiveHistory, SaysWhenFramesAreGone) {
+TEST(LiveHistory, ReportsDiscardedFrames) {
   const LiveProgram program({"--source", "test:orbit", "--allow-source-change"});
   const Client client(program.url());
   const gint64 frame = number_of(stored_frames(client, 5), 0);
@@ -184,7 +184,7 @@ TEST(LiveHistory, SaysWhenFramesAreGone) {
   EXPECT_EQ(client.post("api/history/replay", "{}").status, 410U);
 }
 
-TEST(LiveHistory, RejectsWhatItDoesNotUnderstand) {
+TEST(LiveHistory, RejectsInvalidRequests) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
   (void)stored_frames(client, 1);

@@ -61,7 +61,7 @@ TEST_P(SeekableSource, PausesStepsAndSeeksToTheFrame) {
 }
 
 // With a slow decoder a frame is still in transit at the pause.
-TEST(LivePlayback, WhatIsPausedStandsStill) {
+TEST(LivePlayback, PausedPlaybackStandsStill) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source",
                              "[filesrc location=" + make_video(folder, 300) +
@@ -96,7 +96,7 @@ bool steps_until(const Client& client, const std::function<bool()>& is_so) {
   });
 }
 
-TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
+TEST(LivePlayback, SteppingPastTheEndEndsAFile) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 30)});
   const Client client(program.url());
@@ -116,7 +116,7 @@ TEST(LivePlayback, AFileThatIsSteppedOverItsEndHasEnded) {
   EXPECT_EQ(client.stat("frames"), frames + 30);  // restarted from the beginning
 }
 
-TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
+TEST(LivePlayback, SeekingPastTheEndShowsTheLastFrame) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 30)});
   const Client client(program.url());
@@ -134,7 +134,7 @@ TEST(LivePlayback, ASeekBehindTheEndShowsTheLastFrame) {
 }
 
 // The sound track is much longer than the video.
-TEST(LivePlayback, WhatIsSoughtBehindItsLastFrameHasEnded) {
+TEST(LivePlayback, SeekingPastTheLastFrameEndsPlayback) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_mp4(folder, 10)});
   const Client client(program.url());
@@ -145,7 +145,7 @@ TEST(LivePlayback, WhatIsSoughtBehindItsLastFrameHasEnded) {
   EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
 }
 
-TEST(LivePlayback, AFolderOfOnePictureIsPlayedToItsEnd) {
+TEST(LivePlayback, PlaysAFolderOfOnePictureToItsEnd) {
   const TemporaryFolder folder;
   const std::string pictures = make_pictures(folder, 1);
   const LiveProgram program({"--source", pictures});
@@ -156,7 +156,7 @@ TEST(LivePlayback, AFolderOfOnePictureIsPlayedToItsEnd) {
   EXPECT_TRUE(wait_until([&] { return Client(looped.url()).stat("frames") > 5; }));
 }
 
-TEST(LivePlayback, OfWhatHasEndedASeekShowsOneFrame) {
+TEST(LivePlayback, SeekingAfterTheEndShowsOneFrame) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 10)});
   const Client client(program.url());
@@ -184,7 +184,7 @@ class LiveExchange : public testing::Test {
 };
 
 // Pauses again while the sink still waits at its first frame.
-TEST_F(LiveExchange, APauseRightAfterTheFirstFrameHolds) {
+TEST_F(LiveExchange, PauseHoldsRightAfterTheFirstFrame) {
   for (int i = 0; i < 40; ++i) {
     const double before = frames();
     ASSERT_EQ(open_again(), 200U);
@@ -197,7 +197,7 @@ TEST_F(LiveExchange, APauseRightAfterTheFirstFrameHolds) {
   }
 }
 
-TEST_F(LiveExchange, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
+TEST_F(LiveExchange, ReopenedSourcesCanSeekBeforeTheyPlay) {
   for (int i = 0; i < 5; ++i) {
     const double before = frames();
     ASSERT_TRUE(wait_until([&] { return frames() > before + 3; }));
@@ -216,7 +216,7 @@ TEST_F(LiveExchange, WhatIsOpenedAgainCanBeSoughtBeforeItPlays) {
 class LoopedSource : public testing::TestWithParam<const char*> {};
 
 // Two sources, of which only one supports seeking.
-TEST_P(LoopedSource, ThatIsSteppedOverItsEndBeginsAgainAndStandsStill) {
+TEST_P(LoopedSource, SteppingPastTheEndRestartsAndStaysPaused) {
   const TemporaryFolder folder;
   const std::string source =
       GetParam() == std::string("file")
@@ -273,7 +273,7 @@ void expect_greetings(const LiveProgram& program, const Client& client) {
   EXPECT_EQ(lines.waiting(), 0U);
 }
 
-TEST(LivePlayback, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
+TEST(LivePlayback, NewClientsGetTheFrameOfAPausedFile) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
@@ -281,7 +281,7 @@ TEST(LivePlayback, WhoJoinsWhileAFileIsPausedGetsItsFrameAtOnce) {
   expect_greetings(program, client);
 }
 
-TEST(LivePlayback, WhoJoinsWhileTheViewIsHeldGetsItsFrameAtOnce) {
+TEST(LivePlayback, NewClientsGetTheFrameOfAHeldView) {
   const LiveProgram program({});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
@@ -291,7 +291,7 @@ TEST(LivePlayback, WhoJoinsWhileTheViewIsHeldGetsItsFrameAtOnce) {
   expect_greetings(program, client);
 }
 
-TEST(LivePlayback, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
+TEST(LivePlayback, MjpegShowsTheSteppedFrame) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 900)});
   const Client client(program.url());
@@ -309,7 +309,7 @@ TEST(LivePlayback, AWatcherByMjpegSeesTheFrameThatWasSteppedTo) {
   EXPECT_NE(text.find(head), text.rfind(head)) << head;
 }
 
-TEST(LivePlayback, AnMp4WithSoundIsPlayedToItsEnd) {
+TEST(LivePlayback, PlaysAnMp4WithSoundToItsEnd) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_mp4(folder, 20)});
   const Client client(program.url());
@@ -317,14 +317,14 @@ TEST(LivePlayback, AnMp4WithSoundIsPlayedToItsEnd) {
   EXPECT_EQ(client.stat("frames"), 20.0);
 }
 
-TEST(LivePlayback, AFileIsPlayedAgainWhereAsked) {
+TEST(LivePlayback, LoopRepeatsAFile) {
   const TemporaryFolder folder;
   const LiveProgram program({"--source", make_video(folder, 10), "--loop"});
   const Client client(program.url());
   EXPECT_TRUE(wait_until([&] { return client.stat("frames") > 35; }));
 }
 
-TEST(LivePlayback, WhatHasNoFramesIsNotPlayedAgainAndAgain) {
+TEST(LivePlayback, LoopEndsWithoutFrames) {
   const LiveProgram program({"--source", "[videotestsrc num-buffers=0]", "--loop"});
   const Client client(program.url());
   EXPECT_TRUE(wait_until([&] { return text_in(client, "state") == "ended"; }));
@@ -333,7 +333,7 @@ TEST(LivePlayback, WhatHasNoFramesIsNotPlayedAgainAndAgain) {
 }
 
 // The last frame may still be in analysis when the first one arrives.
-TEST(LivePlayback, ALoopBeginsAgainWhileItsEndIsAnalysed) {
+TEST(LivePlayback, LoopRestartsWhileTheLastFrameIsAnalysed) {
   const TemporaryFolder folder;
   const LiveProgram program(
       {"--source", make_video(folder, 3, "width=1920,height=1080"), "--loop"});
@@ -345,7 +345,7 @@ TEST(LivePlayback, ALoopBeginsAgainWhileItsEndIsAnalysed) {
   }));
 }
 
-TEST(LivePlayback, OfALiveSourceTheViewIsHeldAndStepped) {
+TEST(LivePlayback, LiveSourcesHoldAndStepTheView) {
   const LiveProgram program({});
   const Client client(program.url());
   SocketClient lines(program.url(), "ws/meta");

@@ -47,7 +47,7 @@ std::string label_of(const Line& line) {
   return R"({"choice":)" + std::to_string(line.index_of("target")) + "}";
 }
 
-TEST_P(StandingPicture, IsAnalysedAgainWithOtherSettings) {
+TEST_P(StandingPicture, IsReanalysedAfterASettingChange) {
   const LiveProgram program({"--source", source(), "--labels", folder_.file("labels")});
   const Client client(program.url());
   ASSERT_TRUE(stands_at_target(client));
@@ -75,7 +75,7 @@ TEST_P(StandingPicture, IsAnalysedAgainWithOtherSettings) {
   EXPECT_GT(next.number("frame"), before.number("frame"));
 }
 
-TEST_P(StandingPicture, IsDrawnAgain) {
+TEST_P(StandingPicture, IsRedrawnAfterAnOverlayChange) {
   const LiveProgram program({"--source", source()});
   const Client client(program.url());
   ASSERT_TRUE(stands_at_target(client));
@@ -95,7 +95,7 @@ TEST_P(StandingPicture, IsDrawnAgain) {
 }
 
 // Like a slider. The final picture has the last settings.
-TEST_P(StandingPicture, ShowsTheLastOfManySettings) {
+TEST_P(StandingPicture, ShowsTheResultOfTheLastSetting) {
   const LiveProgram program({"--source", source()});
   const Client client(program.url());
   ASSERT_TRUE(stands_at_target(client));
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(LiveReview,
                          [](const auto& info) { return std::string(info.param); });
 
 // Tracking continues if no setting changes.
-TEST(LiveReview, WhatIsSetToWhatItIsChangesNothing) {
+TEST(LiveReview, UnchangedSettingsCauseNoAnalysis) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
   ASSERT_TRUE(stands_at_target(client));
@@ -130,7 +130,7 @@ TEST(LiveReview, WhatIsSetToWhatItIsChangesNothing) {
   EXPECT_EQ(lines.next(3), "");
 }
 
-TEST(LiveReview, APresetIsSeenOnAStandingPictureToo) {
+TEST(LiveReview, PresetsReanalyseTheStandingPicture) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
   ASSERT_TRUE(stands_at_target(client));

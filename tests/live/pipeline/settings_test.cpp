@@ -97,7 +97,7 @@ void write_calibration(const std::string& file) {
 
 // A client can open camera files in one folder only: no other file, and no pipe, which would block
 // the program.
-TEST(LiveSettings, ACameraFileComesFromItsFolderOrNotAtAll) {
+TEST(LiveSettings, OpensCameraFilesInTheirFolderOnly) {
   const support::TemporaryFolder folder;
   const std::string cameras = folder.file("cameras");
   std::filesystem::create_directory(cameras);
@@ -166,7 +166,7 @@ TEST(LiveSettings, SetsRegionsAndDirections) {
   EXPECT_EQ(client.put("api/properties", R"({"gravity":[1,2]})").status, 400U);
 }
 
-TEST(LiveSettings, SetsPairsThatPassEachOther) {
+TEST(LiveSettings, SetsBothValuesOfAPairAtOnce) {
   const LiveProgram program({});
   const Client client(program.url());
   for (const char* body :
@@ -228,7 +228,7 @@ std::string built_by(const std::string& line) {
 
 // gst-launch-1.0 sets properties one by one: no intermediate state may have a minimum above its
 // maximum.
-TEST(LiveSettings, TheLaunchLineBuildsThisVeryElement) {
+TEST(LiveSettings, LaunchLineReproducesTheSettings) {
   const LiveProgram program({"--source", "test:orbit"});
   const Client client(program.url());
   for (const char* body :

@@ -34,7 +34,7 @@ std::string trouble_with(const std::string& source) {
   return "";
 }
 
-TEST(LiveSource, WhatIsWrongIsSaid) {
+TEST(LiveSource, ErrorNamesTheProblem) {
   const TemporaryFolder folder;
   EXPECT_NE(trouble_with("test:moon").find("available: approach, oblique"), std::string::npos);
   EXPECT_NE(trouble_with(folder.file("none.mkv")).find("no such file"), std::string::npos);
@@ -47,7 +47,7 @@ TEST(LiveSource, WhatIsWrongIsSaid) {
   EXPECT_NE(trouble_with("").find("empty"), std::string::npos);
 }
 
-TEST(LiveSource, EachKindIsUnderstood) {
+TEST(LiveSource, ParsesEachKind) {
   const TemporaryFolder folder;
   const auto kind = [](const std::string& source) { return live::parse_source(source).kind; };
   EXPECT_EQ(kind("test:dusk"), live::SourceKind::kTest);
@@ -59,7 +59,7 @@ TEST(LiveSource, EachKindIsUnderstood) {
   EXPECT_FALSE(live::parse_source("file:///video.mkv").is_live);
 }
 
-TEST(LiveSource, FrameRatesAreWholeBrokenOrFractions) {
+TEST(LiveSource, ParsesFrameRatesAsIntegersDecimalsOrFractions) {
   const auto rate = [](const std::string& text) {
     const live::FrameRate rate = live::parse_rate(text);
     return std::to_string(rate.n) + "/" + std::to_string(rate.d);
@@ -86,7 +86,7 @@ TEST(LiveSource, FrameRatesAreWholeBrokenOrFractions) {
   }
 }
 
-TEST(LiveSource, AFolderIsPlayedAtTheRateThatItIsGiven) {
+TEST(LiveSource, PlaysFoldersAtTheGivenRate) {
   const TemporaryFolder folder;
   const std::string pictures = make_pictures(folder, 30);
   const LiveProgram program({"--source", pictures, "--fps", "10", "--allow-source-change"});
@@ -119,7 +119,7 @@ std::string line_of(const std::string& pictures) {
   return Client(program.url()).get("api/launch-line").body;
 }
 
-TEST(LiveSource, TheLaunchLineOfAFolderNamesItsPictures) {
+TEST(LiveSource, LaunchLineOfAFolderNamesItsPictures) {
   const TemporaryFolder folder;
   const std::string pictures = make_pictures(folder, 12);  // flight-0.jpg to flight-11.jpg
   const std::string line = line_of(pictures);
@@ -144,7 +144,7 @@ TEST(LiveSource, TheLaunchLineOfAFolderNamesItsPictures) {
 }
 
 // Pictures without a number in their names are linked in natural order, 9 before 10.
-TEST(LiveSource, TheLaunchLineOfAFolderOfOtherNamesMakesNumbersOfThem) {
+TEST(LiveSource, LaunchLineNumbersPicturesWithOtherNames) {
   const TemporaryFolder folder;
   const std::string pictures = make_pictures(folder, 3);
   const char* const names[] = {"it's 9.jpg", "it's 10.JPG", "it's 200.jpeg"};
@@ -177,7 +177,7 @@ TEST(LiveSource, TheLaunchLineOfAFolderOfOtherNamesMakesNumbersOfThem) {
   EXPECT_EQ(output, expected + "000001.jpg\n000002.jpg\n000003.jpg\n") << line;
 }
 
-TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
+TEST(LiveSource, InvalidFilesEndTheProgramWithTheirName) {
   const TemporaryFolder folder;
   const std::string file = folder.file("letter.mkv");
   std::ofstream(file) << "Dear robot,\n";
@@ -189,7 +189,7 @@ TEST(LiveSource, AFileThatIsNoVideoEndsTheProgramWithItsName) {
   EXPECT_EQ(other.wait(), 1);
 }
 
-TEST(LiveSource, OfOneThatFailsAfterAFewFramesTheErrorStays) {
+TEST(LiveSource, ErrorsAfterAFewFramesPersist) {
   const LiveProgram program({"--source", "[ellipsetestsrc ! identity error-after=5]"});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return text_in(client, "state") == "failed"; }));
@@ -198,7 +198,7 @@ TEST(LiveSource, OfOneThatFailsAfterAFewFramesTheErrorStays) {
   EXPECT_NE(text_in(client, "error"), "");
 }
 
-TEST(LiveSource, IsChangedOverHttpOnlyWhereAllowed) {
+TEST(LiveSource, ChangesOverHttpOnlyIfAllowed) {
   const LiveProgram closed({});
   EXPECT_EQ(Client(closed.url()).put("api/source", R"({"spec":"test:dusk"})").status, 403U);
   const LiveProgram open({"--allow-source-change"});
@@ -212,7 +212,7 @@ TEST(LiveSource, IsChangedOverHttpOnlyWhereAllowed) {
   EXPECT_NE(client.get("api/launch-line").body.find("max-axis=444"), std::string::npos);
 }
 
-TEST(LiveSource, WhatIsHeldAfterAnExchangeIsOfTheNewOne) {
+TEST(LiveSource, HeldFrameAfterAChangeIsOfTheNewSource) {
   const LiveProgram program({"--allow-source-change"});
   const Client client(program.url());
   ASSERT_TRUE(wait_until([&] { return client.stat("frames") > 3; }));
@@ -223,7 +223,7 @@ TEST(LiveSource, WhatIsHeldAfterAnExchangeIsOfTheNewOne) {
   EXPECT_EQ(text_in(client, "state"), "held");
 }
 
-TEST(LiveSource, ACameraHasTimeForItsFirstFrame) {
+TEST(LiveSource, WaitsForTheFirstFrameOfACamera) {
   const LiveProgram program(
       {"--source",
        "[videotestsrc is-live=true ! video/x-raw,width=64,height=48 ! queue max-size-buffers=0 "
@@ -234,7 +234,7 @@ TEST(LiveSource, ACameraHasTimeForItsFirstFrame) {
 }
 
 // This also tests that the RTSP output can be read.
-TEST(LiveSource, ComesBackAfterItDropped) {
+TEST(LiveSource, ReconnectsAfterALoss) {
   auto camera = std::make_unique<LiveProgram>(std::vector<std::string>{"--rtsp", "0"});
   const std::string address = LiveProgram::address_in(camera->line_with("rtsp://"));
   const std::string port =

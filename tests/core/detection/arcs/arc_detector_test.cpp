@@ -72,7 +72,7 @@ TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
 }
 
 // At the full size the noise hides the edge, which is no evidence against it.
-TEST(ArcDetector, FindsADiscThatOnlyReducedPicturesShow) {
+TEST(ArcDetector, FindsADiscVisibleOnlyInReducedPictures) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
   Scene scene = disc();
   scene.pad.paint_level = 90.0;
@@ -85,7 +85,7 @@ TEST(ArcDetector, FindsADiscThatOnlyReducedPicturesShow) {
   }
 }
 
-TEST(ArcDetector, JudgesAnOutlineThatOnlyReducedPicturesShow) {
+TEST(ArcDetector, JudgesAnOutlineVisibleOnlyInReducedPictures) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
   Scene scene = disc();
   scene.pad.paint_level = 90.0;
@@ -102,7 +102,7 @@ TEST(ArcDetector, JudgesAnOutlineThatOnlyReducedPicturesShow) {
   }
 }
 
-TEST(ArcDetector, JudgesAnOutlineAtAnySizeWithoutALookElsewhere) {
+TEST(ArcDetector, JudgesOnlyTheGivenOutlineAtAnySize) {
   for (const double radius : {9.0, 30.0, 70.0, 100.0}) {
     SCOPED_TRACE(radius);
     const Ellipse truth{160.2, 119.7, radius, 0.7 * radius, 0.6};
@@ -117,7 +117,7 @@ TEST(ArcDetector, JudgesAnOutlineAtAnySizeWithoutALookElsewhere) {
   EXPECT_LT(detector.log_odds_of({}, {10.0, 10.0, 5.0, 4.0, 0.0}, {}).value(), -5.0);
 }
 
-TEST(ArcDetector, FindsWhatIsPartlyHidden) {
+TEST(ArcDetector, FindsPartlyOccludedRings) {
   const Ellipse truth{160.2, 119.7, 70.0, 55.0, 0.6};
   Scene scene = plain_ring();
   scene.pad.gaps_rad = {0.3, 2.5};
@@ -126,7 +126,7 @@ TEST(ArcDetector, FindsWhatIsPartlyHidden) {
   EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.95);
 }
 
-TEST(ArcDetector, FindsWhatTheFrameCuts) {
+TEST(ArcDetector, FindsRingsCutByTheFrame) {
   const Ellipse truth{20.0, 119.7, 80.0, 60.0, 0.2};
   EXPECT_GT(best_iou(rendered(plain_ring(), truth), truth, detecting()), 0.95);
 }
@@ -167,7 +167,7 @@ TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
   for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
 }
 
-TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
+TEST(ArcDetector, FindsSmallDiscsWithASmallerMinContourSize) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
   const Picture picture = rendered(disc(), truth, 120, 100);
   EXPECT_EQ(best_iou(picture, truth, detecting()), 0.0);
@@ -176,7 +176,7 @@ TEST(ArcDetector, FindsSmallOnesWhereSmallContoursAreAskedFor) {
   EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
 }
 
-TEST(ArcDetector, FindsSmallOnesBesideTheTargetWhereAllAreWanted) {
+TEST(ArcDetector, FindsSmallDiscsWhenAllAreWanted) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
   const Picture picture = rendered(disc(), truth, 120, 100);
   Thresholds thresholds = detecting();
@@ -194,7 +194,7 @@ TEST(ArcDetector, FindsSmallOnesBesideTheTargetWhereAllAreWanted) {
   EXPECT_TRUE(select_target(detector.detect(picture.view(), thresholds)));
 }
 
-TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
+TEST(ArcDetector, FindsNearlyAllSmallTargetsUnderNoise) {
   Random random(11);
   Thresholds thresholds = detecting();
   thresholds.min_contour_size = 20;
@@ -214,7 +214,7 @@ TEST(ArcDetector, FindsNearlyAllSmallOnesUnderNoise) {
   }
 }
 
-TEST(ArcDetector, RejectsByEachThreshold) {
+TEST(ArcDetector, AppliesEachThreshold) {
   const Ellipse truth{160.0, 120.0, 60.0, 30.0, 0.2};
   const Picture picture = rendered(disc(), truth);
   ASSERT_GT(best_iou(picture, truth, detecting()), 0.95);
@@ -230,7 +230,7 @@ TEST(ArcDetector, RejectsByEachThreshold) {
   EXPECT_EQ(with([](Thresholds& t) { t.edge_high = 60.0; }), 0.0);
 }
 
-TEST(ArcDetector, IsExact) {
+TEST(ArcDetector, IsUnbiasedAndAccurate) {
   // Discs of 10 to 120 px under noise: the centre and both axes, without bias.
   Random random(4);
   std::vector<double> centre;
@@ -307,7 +307,7 @@ TEST(ArcDetector, SurvivesAnySizeAndStride) {
   EXPECT_TRUE(detector.detect({}, detecting()).empty());
 }
 
-TEST(ArcDetector, GivesTheSameForTheSame) {
+TEST(ArcDetector, IsDeterministic) {
   const Picture picture = rendered(plain_ring(), {160.0, 120.0, 70.0, 45.0, 0.6});
   ArcDetector used;
   (void)used.detect(Picture(500, 300, 90).view(), detecting());
@@ -318,7 +318,7 @@ TEST(ArcDetector, GivesTheSameForTheSame) {
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].ellipse, again[i].ellipse);
 }
 
-TEST(ArcDetector, GivesTheSameWithAllInstructions) {
+TEST(ArcDetector, GivesTheSameWithEachInstructionSet) {
   if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
   for (const double radius : {9.0, 30.0, 90.0}) {
     const Ellipse truth{160.0, 120.0, radius * 1.2, radius / 1.2, 0.6};

@@ -40,7 +40,7 @@ Scene disc(double paint = 55.0) {
   return scene;
 }
 
-TEST(GradientMap, IsTheConvolution) {
+TEST(GradientMap, EqualsTheConvolution) {
   const Picture picture = random_picture(61, 23, 3);
   constexpr int kSmooth[5] = {1, 4, 6, 4, 1};
   constexpr int kDifference[5] = {-1, -2, 0, 2, 1};
@@ -70,7 +70,7 @@ TEST(GradientMap, IsTheConvolution) {
   }
 }
 
-TEST(GradientMap, IsTheSameWithAllInstructions) {
+TEST(GradientMap, IsTheSameWithEachInstructionSet) {
   if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
   for (const int width : {1, 5, 31, 32, 33, 97, 321}) {
     const Picture picture = rendered(disc(), {width / 2.0, 20.0, 15.0, 10.0, 0.4}, width, 41);
@@ -103,7 +103,7 @@ TEST(GradientMap, MeasuresTheNoise) {
 }
 
 // Rounding turns slow shading into steps of one grey level.
-TEST(GradientMap, HasNoSeedOnAStepOfOneGreyLevel) {
+TEST(GradientMap, HasNoSeedsOnAStepOfOneGreyLevel) {
   Picture picture(64, 64, 100);
   for (int y = 0; y < 64; ++y) {
     for (int x = 32; x < 64; ++x) picture.at(x, y) = 101;
@@ -118,7 +118,7 @@ TEST(GradientMap, HasNoSeedOnAStepOfOneGreyLevel) {
   EXPECT_NE(map.maxima()[32 * map.stride() + 32] & maximum::kSeed, 0);
 }
 
-TEST(GradientMap, TakesThresholdsThatAreGiven) {
+TEST(GradientMap, UsesGivenThresholds) {
   const Picture picture = random_picture(40, 40, 1);
   GradientMap map;
   const auto expect = [&](EdgeThresholds given, double low, double high) {
@@ -131,7 +131,7 @@ TEST(GradientMap, TakesThresholdsThatAreGiven) {
   expect({0.0, 4.0}, 2.0, 4.0);
 }
 
-TEST(GradientMap, HasNoMaximumNearTheBorderNorInTinyPictures) {
+TEST(GradientMap, HasNoMaximaNearTheBorderOrInTinyPictures) {
   for (const int width : {1, 2, 6, 7, 40}) {
     for (const int height : {1, 2, 6, 7, 40}) {
       const Picture picture = random_picture(width, height, 5);
@@ -173,7 +173,7 @@ TEST(ChainTracer, MakesOneClosedChainOfADisc) {
 }
 
 // A vertical edge whose contrast falls from row to row.
-TEST(ChainTracer, GoesOnBelowTheThresholdThatItBeganAbove) {
+TEST(ChainTracer, ContinuesBelowTheHighThreshold) {
   Picture picture(60, 120, 100);
   for (int y = 0; y < 120; ++y) {
     for (int x = 30; x < 60; ++x) picture.at(x, y) = static_cast<std::uint8_t>(220 - y);
@@ -206,7 +206,7 @@ TEST(ChainTracer, BridgesAGapOfOnePixel) {
   EXPECT_FALSE(chains.chain(0).is_closed);
 }
 
-TEST(ArcSplitter, KnowsTheDarkSide) {
+TEST(ArcSplitter, DeterminesThePolarity) {
   const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
   for (const double paint : {40.0, 230.0}) {
     const Traced traced(rendered(disc(paint), e, 200, 160));
@@ -251,7 +251,7 @@ TEST(ArcSplitter, CutsWhereTheCurvatureChangesItsSign) {
   EXPECT_EQ(traced.arcs.size() - 2U, 2U);
 }
 
-TEST(MomentFit, AddsMomentsAndTellsTheResidual) {
+TEST(MomentFit, AddsMomentsAndReportsTheResidual) {
   const Ellipse e{120.0, 90.0, 60.0, 30.0, 0.4};
   Random random(9);
   Moments first(Eigen::Vector2d(100.0, 100.0));
@@ -271,7 +271,7 @@ TEST(MomentFit, AddsMomentsAndTellsTheResidual) {
   EXPECT_NEAR(fit->rms_px, 0.5, 0.06);  // a standard deviation of .5 along the radius
 }
 
-TEST(EdgeMeasurer, CountsWhatIsThereAndOnTheRightSide) {
+TEST(EdgeMeasurer, CountsEdgesOfTheRightPolarity) {
   const Ellipse e{100.0, 80.0, 50.0, 35.0, 0.3};
   const Traced traced(rendered(disc(), e, 200, 160));
   EdgeMeasurer measurer;

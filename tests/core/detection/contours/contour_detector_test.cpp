@@ -152,7 +152,7 @@ TEST(ContourDetector, AdaptsToTheLight) {
   EXPECT_GT(best_iou(rendered(noisy, truth), truth, tracking()), 0.95);
 }
 
-TEST(ContourDetector, TellsTheEdgeThresholdsThatItChose) {
+TEST(ContourDetector, ReportsItsEdgeThresholds) {
   ContourDetector detector;
   const auto of_noise = [&](double noise) {
     Scene scene = plain_ring();
@@ -173,7 +173,7 @@ TEST(ContourDetector, TellsTheEdgeThresholdsThatItChose) {
   EXPECT_EQ(detector.edge_thresholds().high, 7.0);
 }
 
-TEST(ContourDetector, RejectsByEachThreshold) {
+TEST(ContourDetector, AppliesEachThreshold) {
   const Ellipse truth{160.0, 120.0, 60.0, 20.0, 0.0};
   const Picture picture = rendered(plain_ring(), truth);
   const auto with = [&](auto change) {
@@ -189,7 +189,7 @@ TEST(ContourDetector, RejectsByEachThreshold) {
   EXPECT_FALSE(with([](Thresholds& t) { t.edge_high = 500.0; }));
 }
 
-TEST(ContourDetector, FindsNothingWhereNothingIs) {
+TEST(ContourDetector, FindsNothingWithoutEllipses) {
   ContourDetector detector;
   Picture checkers(200, 150);
   Picture noise(200, 150);
@@ -206,7 +206,7 @@ TEST(ContourDetector, FindsNothingWhereNothingIs) {
   EXPECT_TRUE(detector.detect(Picture(200, 150, 255).view(), detecting()).empty());
 }
 
-TEST(ContourDetector, TakesPicturesOfAnySize) {
+TEST(ContourDetector, AcceptsPicturesOfAnySize) {
   ContourDetector detector;
   EXPECT_TRUE(detector.detect(ImageView{}, detecting()).empty());
   for (const int width : {1, 2, 3, 5, 17, 64}) {
@@ -240,7 +240,7 @@ TEST(TargetSelection, PrefersConcentricSetsAndTheirOutermost) {
   EXPECT_EQ(select_target(found)->ellipse.semi_major, 40.0);
 }
 
-TEST(TargetSelection, TwoFitsToOneEdgeAreNoSet) {
+TEST(TargetSelection, TwoFitsToOneEdgeFormNoSet) {
   const std::vector<Detection> found = {
       {{100.0, 100.0, 40.0, 35.0, 0.1}, 1.0, 1.0, 100.0},
       {{100.1, 100.0, 40.4, 35.2, 0.1}, 1.0, 1.0, 90.0},
@@ -250,7 +250,7 @@ TEST(TargetSelection, TwoFitsToOneEdgeAreNoSet) {
   EXPECT_FALSE(select_target({}));
 }
 
-TEST(TargetSelection, LeavesOutWeakOutermost) {
+TEST(TargetSelection, SkipsWeakOutermostEllipses) {
   const std::vector<Detection> found = {
       {{100.0, 100.0, 60.0, 55.0, 0.1}, 0.7, 0.3, 20.0},
       {{100.0, 100.0, 40.0, 35.0, 0.1}, 1.0, 1.0, 300.0},
@@ -259,7 +259,7 @@ TEST(TargetSelection, LeavesOutWeakOutermost) {
   EXPECT_EQ(select_target(found)->ellipse.semi_major, 40.0);
 }
 
-TEST(TargetSelection, WhileTrackingOnlyWhatCanBeTheSame) {
+TEST(TargetSelection, AcceptsOnlySimilarEllipsesWhileTracking) {
   const std::vector<Detection> found = {{{100.0, 100.0, 40.0, 35.0, 0.1}, 1.0, 1.0, 100.0}};
   EXPECT_TRUE(select_target(found, Ellipse{120.0, 100.0, 38.0, 30.0, 0.0}));
   EXPECT_FALSE(select_target(found, Ellipse{160.0, 100.0, 38.0, 30.0, 0.0}));

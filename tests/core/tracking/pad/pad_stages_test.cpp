@@ -67,7 +67,7 @@ struct Circles {
 
 class LearnCircles : public testing::TestWithParam<Circles> {};
 
-TEST_P(LearnCircles, FindsAllOfThemInBothPolarities) {
+TEST_P(LearnCircles, FindsAllCirclesInBothPolarities) {
   for (const bool is_bright : {false, true}) {
     const Picture picture = rendered(scene_of(GetParam().pattern, is_bright), kPad);
     const auto model = learn_circles(picture.view(), image_from_pad(kPad));
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Circles{"h", Pattern::kRingH, {1.0, kInner}}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(LearnCirclesFrom, AnEdgeThatIsOffByAFewPercent) {
+TEST(LearnCirclesFrom, AnOutlineOffByAFewPercent) {
   const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
   for (const double factor : {0.96, 1.04}) {
     const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
@@ -108,7 +108,7 @@ TEST(LearnCirclesFrom, AnEdgeThatIsOffByAFewPercent) {
   }
 }
 
-TEST(LearnCirclesFrom, AThinRingsOuterEdge) {
+TEST(LearnCirclesFrom, TheOuterEdgeOfAThinRing) {
   for (const double ring_width : {0.1, 0.055}) {
     for (const bool is_bright : {false, true}) {
       Scene scene = scene_of(Pattern::kRing, is_bright);
@@ -125,7 +125,7 @@ TEST(LearnCirclesFrom, AThinRingsOuterEdge) {
   }
 }
 
-TEST(LearnCirclesFrom, AGivenRingRatioWins) {
+TEST(LearnCirclesFrom, AGivenRingRatio) {
   // Too coarse to resolve the ring.
   Scene scene = scene_of(Pattern::kRing, false);
   scene.pad.ring_width = 0.06;
@@ -146,7 +146,7 @@ TEST(LearnCirclesFrom, AGivenRingRatioWins) {
   EXPECT_EQ(model->circles[1].radius, kInner + 0.004);
 }
 
-TEST(LearnCirclesFrom, ThePartThatIsInThePicture) {
+TEST(LearnCirclesFrom, ThePartInsideThePicture) {
   const Ellipse half_out = translated(kPad, -150.0, 0.0);
   const Picture picture = rendered(scene_of(Pattern::kRing), half_out);
   const auto model = learn_circles(picture.view(), image_from_pad(half_out));
@@ -155,7 +155,7 @@ TEST(LearnCirclesFrom, ThePartThatIsInThePicture) {
   EXPECT_NEAR(model->circles[1].radius, kInner, 0.01);
 }
 
-TEST(LearnCirclesFrom, NothingWhereItIsFlatOrOutside) {
+TEST(LearnCirclesFrom, FlatOrOutsideRegionsGivesNothing) {
   const Matrix3d view = image_from_pad(kPad);
   EXPECT_FALSE(learn_circles(flat_picture().view(), view));
   const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
@@ -165,7 +165,7 @@ TEST(LearnCirclesFrom, NothingWhereItIsFlatOrOutside) {
   EXPECT_FALSE(learn_circles(Picture(1, 1, 90).view(), view));
 }
 
-TEST(LearnCirclesFrom, NothingFromAnEllipseBelowAPixel) {
+TEST(LearnCirclesFrom, AnEllipseBelowAPixelGivesNothing) {
   const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
   EXPECT_FALSE(learn_circles(picture.view(), image_from_pad({160.0, 120.0, 0.3, 0.2, 0.0})));
 }
@@ -220,7 +220,7 @@ double total_length(const PadModel& model) {
 
 class LearnLines : public testing::TestWithParam<Pattern> {};
 
-TEST_P(LearnLines, FindsTheStrokesAndNothingElse) {
+TEST_P(LearnLines, FindsOnlyTheStrokes) {
   constexpr double kBeside = 0.025;
   for (const bool is_bright : {false, true}) {
     const Learned learned(scene_of(GetParam(), is_bright));
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Marks,
                            return info.param == Pattern::kRingX ? "x" : "h";
                          });
 
-TEST(LineLearner, FindsNoLineWhereThereAreCirclesAlone) {
+TEST(LineLearner, FindsNoLineInCircles) {
   for (const Pattern pattern : {Pattern::kRing, Pattern::kDisc, Pattern::kBullseye}) {
     EXPECT_TRUE(Learned(scene_of(pattern)).model.lines.empty()) << static_cast<int>(pattern);
     const Ellipse half_out = translated(kPad, -150.0, 30.0);
@@ -262,7 +262,7 @@ TEST(LineLearner, FindsNoLineWhereThereAreCirclesAlone) {
   }
 }
 
-TEST(LineLearner, ReplacesTheLinesOfBefore) {
+TEST(LineLearner, ReplacesEarlierLines) {
   Learned learned(scene_of(Pattern::kRingX));
   ASSERT_FALSE(learned.model.lines.empty());
   const Picture ring = rendered(scene_of(Pattern::kRing), kPad);
@@ -271,7 +271,7 @@ TEST(LineLearner, ReplacesTheLinesOfBefore) {
 }
 
 // Each part is from a different frame, with the pad at another position.
-TEST(LineLearner, PutsThePadTogetherFromFramesInWhichItMoves) {
+TEST(LineLearner, CombinesFramesOfAMovingPad) {
   const Learned at_once(scene_of(Pattern::kRingX));
   Learned in_motion(scene_of(Pattern::kRingX));
   in_motion.learner.start();
@@ -288,7 +288,7 @@ TEST(LineLearner, PutsThePadTogetherFromFramesInWhichItMoves) {
   EXPECT_NEAR(total_length(in_motion.model), total_length(at_once.model), 0.1);
 }
 
-TEST(LineLearner, KeepsTheLongestOfMany) {
+TEST(LineLearner, KeepsTheLongestLines) {
   Scene scene = scene_of(Pattern::kRing);
   for (int i = -6; i <= 6; ++i) {
     const double x = 160.0 + 7.0 * i;
@@ -316,7 +316,7 @@ TEST(LineLearner, FindsNothingInEmptyAndTinyPictures) {
 
 // -- EdgeSearch
 
-TEST(EdgeSearch, PlacesInsideThePictureOnly) {
+TEST(EdgeSearch, PlacesSamplesInsideThePictureOnly) {
   const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
   EdgeSearch search;
   for (const double dx : {-160.0, -90.0, 120.0, 200.0}) {
@@ -332,7 +332,7 @@ TEST(EdgeSearch, PlacesInsideThePictureOnly) {
   }
 }
 
-TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
+TEST(EdgeSearch, DistributesSamplesByTheLengthOfTheEdges) {
   const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
   EdgeSearch search;
   search.sample(model, image_from_pad(kPad), Picture(320, 240).view());
@@ -359,7 +359,7 @@ TEST(EdgeSearch, SpreadsPlacesByTheLengthOfTheEdges) {
   }
 }
 
-TEST(EdgeSearch, PlacesAsManyAsItTells) {
+TEST(EdgeSearch, PlacesThePredictedNumberOfSamples) {
   PadModel model = ring_model();
   for (const double radius : {0.6, 0.4, 0.2}) model.circles.push_back({radius, true, 100.0});
   const Picture picture(2000, 2000);
@@ -371,7 +371,7 @@ TEST(EdgeSearch, PlacesAsManyAsItTells) {
   }
 }
 
-TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
+TEST(EdgeSearch, MeasuresTheOffsetsOfTheEdges) {
   for (const bool is_bright : {false, true}) {
     const Picture picture = rendered(scene_of(Pattern::kRing, is_bright), kPad);
     const auto model = learn_circles(picture.view(), image_from_pad(kPad)).value();
@@ -392,7 +392,7 @@ TEST(EdgeSearch, MeasuresHowFarTheEdgesAreOff) {
   }
 }
 
-TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
+TEST(EdgeSearch, IgnoresEdgesOfTheOtherSign) {
   const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
   PadModel model = disc_model();
   EdgeSearch search;
@@ -410,7 +410,7 @@ TEST(EdgeSearch, PassesByEdgesOfTheOtherSign) {
   EXPECT_EQ(matched_samples(), 0);
 }
 
-TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
+TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
   Scene faint = scene_of(Pattern::kDisc);
   faint.pad.paint_level = faint.ground.level - 20.0;
   const Picture picture = rendered(faint, kPad);
@@ -423,7 +423,7 @@ TEST(EdgeSearch, PassesByEdgesThatAreTooWeakForTheLight) {
 }
 
 // Of a disc as faint as the noise, chance matches are few.
-TEST(EdgeSearch, PassesByNoise) {
+TEST(EdgeSearch, IgnoresNoise) {
   Scene flat = scene_of(Pattern::kDisc);
   flat.pad.paint_level = flat.ground.level;
   PadModel model = disc_model();
@@ -442,7 +442,7 @@ TEST(EdgeSearch, PassesByNoise) {
   }
 }
 
-TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
+TEST(EdgeSearch, SearchesAsFarAsTheCovariance) {
   const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
   const Ellipse expected = translated(kPad, 7.0, 0.0);
   EdgeSearch search;
@@ -465,7 +465,7 @@ TEST(EdgeSearch, LooksAsFarAsTheCovarianceSays) {
   EXPECT_EQ(matched_at_sides(covariance, 12.0), 0);
 }
 
-TEST(EdgeSearch, KeepsTheStrongestOfManyEdgesFirst) {
+TEST(EdgeSearch, KeepsTheStrongestEdgesFirst) {
   Picture picture(120, 60, 20);
   const int steps[] = {30, 40, 50, 60, 70, 80};
   const int rises[] = {10, 60, 20, 40, 30, 15};
@@ -515,7 +515,7 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
   EXPECT_GT(matched, 100);
 }
 
-TEST(EdgeSearch, FindsNoPlaceInEmptyAndTinyPictures) {
+TEST(EdgeSearch, PlacesNoSampleInEmptyAndTinyPictures) {
   EdgeSearch search;
   for (const int size : {0, 1, 2, 6}) {
     const Picture picture(size, size, 90);
@@ -564,7 +564,7 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
   }
 }
 
-TEST(SolvePose, TellsHowWellItKnows) {
+TEST(SolvePose, ReportsItsInformation) {
   const SearchedRing searched(HomographyChange::Zero());
   const auto at = [&](double sigma_px) {
     return solve_homography(searched.search.samples(), weak_prior(), 6.0, 6.0, sigma_px)
@@ -588,14 +588,14 @@ TEST(SolvePose, RespectsAStrongPrior) {
   EXPECT_NEAR(estimate->change(1), 0.04, 0.005);
 }
 
-TEST(SolvePose, LeavesOutWhatIsOutOfReach) {
+TEST(SolvePose, IgnoresEdgesOutOfReach) {
   const SearchedRing searched(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
   const auto estimate = solve_homography(searched.search.samples(), weak_prior(), 2.0, 2.0, 0.6);
   ASSERT_TRUE(estimate);
   EXPECT_LT(estimate->change.norm(), 1e-6);
 }
 
-TEST(SolvePose, FailsWhereNothingIsKnown) {
+TEST(SolvePose, FailsWithoutInformation) {
   EXPECT_FALSE(solve_homography({}, {}, 5.0, 5.0, 0.6));
   const SearchedRing searched(HomographyChange::Zero());
   HomographyPrior broken = weak_prior();
@@ -603,7 +603,7 @@ TEST(SolvePose, FailsWhereNothingIsKnown) {
   EXPECT_FALSE(solve_homography(searched.search.samples(), broken, 5.0, 5.0, 0.6));
 }
 
-TEST(NearestCandidate, IsNextToThePrediction) {
+TEST(NearestCandidate, IsNearestToThePrediction) {
   EdgeSample sample;
   EXPECT_EQ(nearest_candidate(sample, 0.0), nullptr);
   sample.candidates = {{{4.0F, 50.0F}, {-2.0F, 40.0F}, {0.5F, 30.0F}}};
@@ -614,7 +614,7 @@ TEST(NearestCandidate, IsNextToThePrediction) {
   EXPECT_EQ(nearest_candidate(sample, 0.0), &sample.candidates[2]);
 }
 
-TEST(Support, FallsWithTheErrorOfTheView) {
+TEST(Support, DecreasesWithTheErrorOfTheView) {
   const SearchedRing searched(HomographyChange::Zero());
   const auto samples = searched.search.samples();
   double coverage = 2.0;
@@ -632,7 +632,7 @@ TEST(Support, FallsWithTheErrorOfTheView) {
   EXPECT_LT(coverage, 0.3);
 }
 
-TEST(Support, TellsTheCircleThatIsMissing) {
+TEST(Support, ReportsMissingCircles) {
   const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
   PadModel model = ring_model();
   model.circles.push_back({0.4, true, 145.0});
@@ -644,7 +644,7 @@ TEST(Support, TellsTheCircleThatIsMissing) {
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
 }
 
-TEST(Support, TellsTheLight) {
+TEST(Support, ReportsTheLight) {
   Scene scene = scene_of(Pattern::kRing);
   const PadModel model = learn_circles(rendered(scene, kPad).view(), image_from_pad(kPad)).value();
   for (const double gain : {1.0, 0.5, 0.25}) {

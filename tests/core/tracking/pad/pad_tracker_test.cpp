@@ -56,7 +56,7 @@ struct Look {
 
 class LockEdges : public testing::TestWithParam<Look> {};
 
-TEST_P(LockEdges, OnTheTruthAndStaysThere) {
+TEST_P(LockEdges, LocksOnTheTruthAndStaysThere) {
   Scene scene = pad_scene(GetParam().pattern);
   scene.pad.paint_level = GetParam().paint;
   scene.ground.level = GetParam().ground;
@@ -96,7 +96,7 @@ TEST(PadTracker, LocksFromAnEllipseThatIsOffByAPixel) {
   EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.2);
 }
 
-TEST(PadTracker, RefusesWhatHasNoEdges) {
+TEST(PadTracker, RefusesToLockWithoutEdges) {
   PadTracker tracker;
   EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
   EXPECT_FALSE(tracker.is_locked());
@@ -109,7 +109,7 @@ TEST(PadTracker, RefusesWhatHasNoEdges) {
   EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 1000.0, 0.0)));
 }
 
-TEST(PadTracker, ForgetsThePadThatItIsToRelease) {
+TEST(PadTracker, ForgetsTheReleasedPad) {
   PadTracker tracker;
   const Picture picture = frame_of(kPad);
   ASSERT_TRUE(tracker.lock(whole(picture), kPad));
@@ -125,7 +125,7 @@ TEST(PadTracker, ARefusedLockReleasesTheLastOne) {
   EXPECT_FALSE(tracker.is_locked());
 }
 
-TEST(PadTracker, LocksOnAnotherPadAfterOne) {
+TEST(PadTracker, LocksOnASecondPad) {
   PadTracker tracker;
   const Scene x = pad_scene(Pattern::kRingX);
   ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, x)), kPad));
@@ -147,7 +147,7 @@ Ellipse dashing(int i, double px_per_frame, double radius_px) {
   return {320.0 + swing * at, 180.0 + 10.0 * at, radius_px, 0.9 * radius_px, 0.3};
 }
 
-TEST(PadTracker, FollowsToAndFroAtARadiusAFrame) {
+TEST(PadTracker, TracksOscillationsOfARadiusPerFrame) {
   for (const Pattern pattern : {Pattern::kRing, Pattern::kRingX}) {
     Scene scene = pad_scene(pattern);
     scene.ground.contrast = 1.0;
@@ -171,7 +171,7 @@ TEST(PadTracker, FollowsToAndFroAtARadiusAFrame) {
   }
 }
 
-TEST(PadTracker, FollowsGrowthAndTilt) {
+TEST(PadTracker, TracksGrowthAndTilt) {
   const Scene scene = pad_scene(Pattern::kRingH);
   PadTracker tracker;
   const auto truth_at = [](int i) {
@@ -187,7 +187,7 @@ TEST(PadTracker, FollowsGrowthAndTilt) {
   }
 }
 
-TEST(PadTracker, FollowsAsTheLightFails) {
+TEST(PadTracker, TracksInFadingLight) {
   Scene scene = pad_scene();
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
@@ -200,7 +200,7 @@ TEST(PadTracker, FollowsAsTheLightFails) {
   }
 }
 
-TEST(PadTracker, FollowsBehindABar) {
+TEST(PadTracker, TracksBehindABar) {
   Scene scene = pad_scene();
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
@@ -213,7 +213,7 @@ TEST(PadTracker, FollowsBehindABar) {
   }
 }
 
-TEST(PadTracker, ForgetsLinesThatAreNotThePads) {
+TEST(PadTracker, ForgetsLinesOfOtherObjects) {
   Scene scene = pad_scene();
   PadTracker tracker;
   const auto bar_at = [](double x) {
@@ -237,7 +237,7 @@ TEST(PadTracker, ForgetsLinesThatAreNotThePads) {
 }
 
 // Bars that stay where they are while the pad moves behind them, as lids do in front of a pupil.
-TEST(PadTracker, IsNotMisledByLinesThatDoNotMoveWithThePad) {
+TEST(PadTracker, IgnoresLinesThatDoNotMoveWithThePad) {
   Scene scene = pad_scene();
   scene.pad.pattern = Pattern::kDisc;
   for (const double y : {130.0, 215.0}) {
@@ -256,7 +256,7 @@ TEST(PadTracker, IsNotMisledByLinesThatDoNotMoveWithThePad) {
   }
 }
 
-TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
+TEST(PadTracker, PredictsAVanishedPadThenLosesIt) {
   PadTracker tracker;
   const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
@@ -280,7 +280,7 @@ TEST(PadTracker, PredictsAPadThatIsGoneAndLosesIt) {
   EXPECT_FALSE(tracker.is_locked());
 }
 
-TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyRateOfFrames) {
+TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
   PadTracker locked;
   ASSERT_TRUE(locked.lock(whole(frame_of(kPad)), kPad));
   const Picture ground = empty_frame();
@@ -293,7 +293,7 @@ TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyRateOfFrames) {
   }
 }
 
-TEST(PadTracker, FindsAPadAgainThatWasHiddenForAWhile) {
+TEST(PadTracker, FindsAPadAgainAfterOcclusion) {
   PadTracker tracker;
   const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
@@ -308,7 +308,7 @@ TEST(PadTracker, FindsAPadAgainThatWasHiddenForAWhile) {
   }
 }
 
-TEST(PadTracker, TakesAGapForALongerStep) {
+TEST(PadTracker, TreatsAGapAsALongerStep) {
   const auto truth_at = [](int i) { return translated(kPad, -150.0 + 7.0 * i, 0.0); };
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
@@ -330,7 +330,7 @@ TEST(PadTracker, TakesAGapForALongerStep) {
       0.4);
 }
 
-TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
+TEST(PadTracker, ContinuesWithLittleOfTheRingInView) {
   SceneRenderer renderer(scene_by_name("touchdown", 201));
   Picture picture(kWidth, kHeight);
   PadTracker tracker;
@@ -363,7 +363,7 @@ TEST(PadTracker, CarriesOnWhereLittleOfTheRingIsLeft) {
   EXPECT_EQ(tracked, nearly_hidden);
 }
 
-TEST(PadTracker, TellsTheSameOfTheSameFrames) {
+TEST(PadTracker, IsDeterministic) {
   PadTracker trackers[2];
   SceneRenderer renderer(scene_by_name("approach", 201));
   Picture picture(kWidth, kHeight);
@@ -384,7 +384,7 @@ TEST(PadTracker, TellsTheSameOfTheSameFrames) {
   }
 }
 
-TEST(PadTracker, TellsTheSameAfterAnotherPad) {
+TEST(PadTracker, GivesTheSameAfterAnotherPad) {
   PadTracker fresh;
   PadTracker used;
   const Scene x = pad_scene(Pattern::kRingX);
@@ -403,7 +403,7 @@ TEST(PadTracker, TellsTheSameAfterAnotherPad) {
   }
 }
 
-TEST(PadTracker, NeedsNoMoreThanItsRegion) {
+TEST(PadTracker, NeedsOnlyItsRegion) {
   PadTracker of_frames;
   PadTracker of_parts;
   SceneRenderer renderer(scene_by_name("oblique", 201));
