@@ -65,14 +65,14 @@ void Session::step() {
   if (pipeline_.source().is_live) {
     store_.step();
   } else {
-    store_.release();  // from a frame of the history
+    store_.release();  // a frame of the history may be held
     pipeline_.step();
   }
 }
 
 bool Session::seek(GstClockTime position) {
   if (!pipeline_.is_seekable()) return false;
-  store_.release();  // from a frame of the history
+  store_.release();  // a frame of the history may be held
   return pipeline_.seek(position);
 }
 

@@ -10,7 +10,7 @@
 
 namespace live {
 
-/// Tracks the open connections of a server, limits their number and the time for a request. Main
+/// Tracks the open connections of a server. Limits their number and the time for a request. Main
 /// loop only.
 class Connections {
  public:

@@ -16,7 +16,8 @@ class HttpGate {
   /// @param token  Empty = no token required, and only local clients are accepted.
   explicit HttpGate(std::string token) : token_(std::move(token)) {}
 
-  /// Answers a request that is rejected, or that exchanges the link's token for a cookie.
+  /// Checks a request. Replies if it rejects the request, and if the request exchanges the link's
+  /// token for a cookie.
   /// @return Whether the request was rejected.
   bool refuses(SoupServerMessage* message, const std::string& path);
 

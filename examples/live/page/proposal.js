@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Settings for marked frames: each trial is judged by a new analysis of these frames.
+// Proposes settings for marked frames. Judges each trial by a new analysis of these frames.
 import { analyze, ellipseText } from "./analysis.js";
 import { replay } from "./history.js";
 import { admittingTrial, isPartOf, isSame, overlapOf, ringRatioOf, trialsFor } from "./trials.js";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Candidate changes of settings for marked frames, each with its reason in figures.
+// Derives changes of settings from marked frames. Each change has a reason with figures.
 //
 // A trial is {changes: {name: value}, why: {name: sentence}}. A sentence can be a function of the
 // numbers of right marks with and without the trial. proposal.js judges the trials.

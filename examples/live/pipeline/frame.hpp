@@ -31,8 +31,8 @@ using FramePtr = std::shared_ptr<const Frame>;
                                   guint64 index,
                                   gint64 arrived_us);
 
-/// A copy with pixels of its own, which holds no buffer of the source's pool. Shows the tracker's
-/// input with the metadata of its output. Thread-safe.
+/// A copy with its own pixels. It holds no buffer of the source's pool. The pixels are those of the
+/// tracker's input, the metadata are those of its output. Thread-safe.
 [[nodiscard]] FramePtr detached_copy(const Frame& frame);
 
 }  // namespace live

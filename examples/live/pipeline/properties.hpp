@@ -28,11 +28,11 @@ class Properties {
   /// property and its accepted values.
   bool set(const std::string& json);
 
-  /// The current settings with the changes in such an object, or without changes if the text is
-  /// empty. Throws as set().
+  /// The current settings with the changes of an object as for set(). An empty text means no
+  /// changes. Throws as set().
   [[nodiscard]] ellipse::TrackerSettings settings_with(const std::string& json) const;
 
-  /// The search region with such changes: `roi` where `roi-source` selects it; nullopt = the whole
+  /// The search region with the same changes: `roi` if `roi-source` selects it; nullopt = the whole
   /// frame. Throws as set().
   [[nodiscard]] std::optional<ellipse::Rect> region_with(const std::string& json) const;
 
