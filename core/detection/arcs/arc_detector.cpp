@@ -13,11 +13,12 @@
 namespace ellipse {
 namespace {
 
-constexpr int kScales[] = {2, 4, 1};  // in order of the search
-constexpr int kMaxPairs = 50;         // tried at each scale
-constexpr double kConvexSlack = 0.1;  // tolerance of the convexity test, share of the distance
-constexpr double kSame = 0.05;        // tolerance for duplicates, share of the semi-major axis
-constexpr double kSameInside = 0.8;   // IoU inside the picture of an ellipse before and after a fit
+constexpr int kScales[] = {2, 4, 1};    // in order of the search
+constexpr int kMaxPairs = 50;           // tried at each scale
+constexpr double kConvexSlack = 0.1;    // tolerance of the convexity test, share of the distance
+constexpr double kSame = 0.05;          // tolerance for duplicates, share of the semi-major axis
+constexpr double kMinReducedPx = 10.0;  // semi-minor axis below which reduction hides corners
+constexpr double kSameInside = 0.8;  // IoU inside the picture of an ellipse before and after a fit
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -82,6 +83,7 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   limits.ellipse_overlap = thresholds.ellipse_overlap;
   std::optional<Found> best;
   for (const int scale : kScales) {
+    if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
     find_edges(picture, scale, limits);
     const auto measured = judged_at(scale, e, limits);
     if (!measured) continue;
