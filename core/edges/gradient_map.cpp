@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <numbers>
 
 #include "core/edges/noise.hpp"
 

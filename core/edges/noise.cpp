@@ -32,7 +32,7 @@ double pixel_noise(const ImageView& luma) {
       ++samples;
     }
   }
-  // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6.
+  // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6 [Immerkaer1996].
   const double mean = static_cast<double>(sum) / std::max(1, samples);
   return std::max(std::sqrt(0.5 * std::numbers::pi) / 6.0 * mean, 1.0 / std::sqrt(12.0));
 }

@@ -52,7 +52,8 @@ Block cosine_transform() {
   return transform;
 }
 
-// Eigen's product fuses multiplication and addition where the processor can, which rounds otherwise.
+// Eigen's product fuses multiplication and addition where the processor can, which rounds
+// otherwise.
 Block product(const Block& a, const Block& b) {
   Block result;
   for (int column = 0; column < 8; ++column) {

@@ -19,8 +19,8 @@ int main(int argc, char** argv) {
   const int height = std::atoi(argv[3]);
   const int frames = std::atoi(argv[4]);
   ellipse::TrackerSettings settings;
-  settings.tracking = argv[1] == std::string("none") ? ellipse::TrackingMode::kNone
-                                                     : ellipse::TrackingMode::kEdges;
+  settings.tracking =
+      argv[1] == std::string("none") ? ellipse::TrackingMode::kNone : ellipse::TrackingMode::kEdges;
   ellipse::Tracker tracker(settings);
   const support::IntegerDisc disc{width / 2, height / 2, width / 8, height / 6};
   const support::Picture picture = disc.draw(width, height, 6);

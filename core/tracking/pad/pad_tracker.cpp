@@ -208,8 +208,8 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   return make_track(&*attempt);
 }
 
-// A camera sees a circle of angular radius r with a relative change of depth across it of at most
-// r.
+// From the centre of a circle to its edge, the depth changes by at most the circle's radius:
+// relative to the depth of the centre, by at most its angular radius.
 bool PadTracker::is_possible(const Eigen::Matrix3d& view) const {
   const auto outer = project_circle(view, 1.0);
   if (!outer) return false;
