@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "examples/evaluate/program.hpp"
+#include "examples/evaluate/variants.hpp"
 #include "examples/finite_number.hpp"
 
 namespace evaluate {
@@ -77,6 +78,13 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(finite_number() & CLI::PositiveNumber)
       ->needs(datasets);
+  CLI::Option* variants = app.add_option("--variants",
+                                         options.variants,
+                                         "Comma-separated. Also evaluate altered copies of each "
+                                         "data set: " +
+                                             describe_variants())
+                              ->delimiter(',')
+                              ->needs(datasets);
   app.add_option("--set", options.settings, "PROPERTY=VALUE of the element ellipsetrack")
       ->allow_extra_args(false);
   app.add_option("--rule", options.rule, "Criterion for a correct answer")
@@ -98,7 +106,7 @@ void add_options(CLI::App& app, Options& options) {
                                      "Write the twin to this folder: pictures and gt.csv")
                           ->excludes(datasets)
                           ->excludes(sweep);
-  leave->excludes(sweep)->excludes(make);
+  leave->excludes(sweep)->excludes(make)->excludes(variants);
   app.add_option("--methods",
                  options.methods,
                  "Comma-separated; default: all methods that find the target themselves, with "

@@ -24,6 +24,7 @@
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "examples/evaluate/variants.hpp"
 #include "examples/evaluate/wild.hpp"
 
 namespace evaluate {
@@ -115,6 +116,8 @@ class Program {
     for (const std::string& argument : options_.datasets) {
       for (const fs::path& name : dataset_folders(argument)) gather(name.string());
     }
+    const std::vector<Sequence> variants = variants_of(sequences_, options_.variants);
+    sequences_.insert(sequences_.end(), variants.begin(), variants.end());
   }
 
   void gather(const std::string& name) {

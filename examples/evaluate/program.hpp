@@ -11,6 +11,7 @@ namespace evaluate {
 /// The options of the command line.
 struct Options {
   std::vector<std::string> datasets;
+  std::vector<std::string> variants;
   std::vector<std::string> methods;
   std::vector<std::string> peers;
   std::vector<std::string> settings;
