@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMemory = 50.0;         // of the inner edges' evidence [frames]
+constexpr double kMemory_s = 1.7;        // of the inner edges' evidence
 constexpr double kErrorOverSigma = 0.4;  // measured .25 to .6: stated sigmas are too large
 constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
 constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
@@ -219,17 +219,21 @@ void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
   last_ = poses;
 }
 
-double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
+double PoseEstimator::OddsAverage::add(double frame_odds,
+                                       double deviation,
+                                       double separation,
+                                       double elapsed_s) {
+  const double kept = std::exp(-elapsed_s / kMemory_s);
   if (information > 0.0) {
-    differences = std::min(differences + 1.0, kMemory);
+    differences += 1.0;
     const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));
-    noise_share += (squared - noise_share) / differences;
+    noise_share += std::max(1.0 / differences, 1.0 - kept) * (squared - noise_share);
   }
   last_deviation = deviation;
-  information = (1.0 - 1.0 / kMemory) * information + separation;
+  information = kept * information + separation;
   odds += separation / information * (frame_odds - odds);
   const double frames = std::max(1.0, information / separation);
-  const double noise = std::min(noise_share, 1.0 - 1.0 / kMemory);
+  const double noise = std::min(noise_share, kept);
   return odds / (1.0 - noise + noise / frames);
 }
 
@@ -237,7 +241,8 @@ double PoseEstimator::update_odds(const Camera& camera,
                                   const std::array<CirclePose, 2>& poses,
                                   const RingUncertainty& uncertainty,
                                   std::span<const FittedEllipse> inner_edges,
-                                  const Vector3d& gravity) {
+                                  const Vector3d& gravity,
+                                  double elapsed_s) {
   InnerMisfit misfit;
   for (const FittedEllipse& inner : inner_edges) {
     add_misfit(camera, poses, uncertainty, inner, misfit);
@@ -249,7 +254,7 @@ double PoseEstimator::update_odds(const Camera& camera,
   const bool has_gravity = gravity.squaredNorm() > 0.0;
   if (!has_inner && !has_gravity) return odds_;
   double odds = inner_.odds;
-  if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation);
+  if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation, elapsed_s);
   if (has_gravity) {
     odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
                    std::pow(from_level(poses[0], gravity), 2));
@@ -262,12 +267,13 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
                                                   const RingUncertainty& uncertainty,
                                                   std::span<const FittedEllipse> inner_edges,
                                                   double radius_m,
-                                                  const Vector3d& gravity) {
+                                                  const Vector3d& gravity,
+                                                  double elapsed_s) {
   const Camera& camera = lens.camera();
   const auto poses = circle_poses(camera, ideal);
   if (!poses) return std::nullopt;
   follow_solutions(*poses);
-  const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity);
+  const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity, elapsed_s);
   odds_ = std::isfinite(odds) ? odds : 0.0;
   if (odds_ != 0.0) is_first_ = odds_ > 0.0;  // without evidence, keeps the previous selection
   const CirclePose& chosen = (*poses)[is_first_ ? 0 : 1];

@@ -68,12 +68,14 @@ class PoseEstimator {
   /// @param radius_m     0 = unknown.
   /// @param gravity      Downwards in the camera frame, of any length; assumes a level target.
   ///                     0 = unknown.
+  /// @param elapsed_s    Since the last call.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
                                                    const RingUncertainty& uncertainty,
                                                    std::span<const FittedEllipse> inner_edges,
                                                    double radius_m,
-                                                   const Eigen::Vector3d& gravity);
+                                                   const Eigen::Vector3d& gravity,
+                                                   double elapsed_s);
 
   /// Call before a new target, or the same one after a gap.
   void reset() { *this = {}; }
@@ -84,7 +86,8 @@ class PoseEstimator {
                                    const std::array<CirclePose, 2>& poses,
                                    const RingUncertainty& uncertainty,
                                    std::span<const FittedEllipse> inner_edges,
-                                   const Eigen::Vector3d& gravity);
+                                   const Eigen::Vector3d& gravity,
+                                   double elapsed_s);
 
   // Mean of the frames' log odds from inner edges, weighted by information. Averaging reduces only
   // the error that is independent between frames. Successive differences measure that part
@@ -98,7 +101,7 @@ class PoseEstimator {
 
     // Adds a frame in which the solutions are separation^(1/2) standard deviations apart. Returns
     // the log odds from all frames so far.
-    double add(double frame_odds, double deviation, double separation);
+    double add(double frame_odds, double deviation, double separation, double elapsed_s);
   };
 
   // Log odds of the first solution against the second, in the order of the last frame.

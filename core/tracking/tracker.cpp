@@ -13,10 +13,7 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinPredicted = 0.4;     // min matched share of a reported prediction
 constexpr double kDetectedSigmaPx = 0.3;  // edge sigma of an ellipse that is not tracked
-
-constexpr Tolerance kSameOutline{2.0, 0.1};  // between a detection and the followed outline
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -67,7 +64,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   target->pts_ns = pts_ns;
   target->uncertainty = uncertainty_of(*target);
   target->covariance = parameter_covariance(target->ellipse, target->uncertainty);
-  if (lens_) locate(*target);
+  if (lens_) locate(*target, elapsed_s);
   return target;
 }
 
@@ -155,7 +152,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   const auto track = pad_tracker_->track(window, elapsed);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(frame.lens, track->ellipse, width, height);
-  const bool is_likely = visible >= kMajority && track->coverage >= kMinPredicted;
+  const bool is_likely = visible >= kMajority && track->coverage >= kMajority;
   if (!track->is_visible && !is_likely) return std::nullopt;
   Target target;
   target.ellipse = track->ellipse;
@@ -190,7 +187,7 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   }
   const std::optional<Target> chosen = detect(frame);
   if (is_rival(chosen)) return acquire(frame, *chosen);
-  if (chosen && is_same(chosen->ellipse, followed->ellipse, kSameOutline)) {
+  if (chosen && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
     judge_->confirm(log_odds(chosen->probability));
   }
   return followed;
@@ -210,10 +207,10 @@ bool Tracker::is_too_large(const Ellipse& e) const {
 // Replaces or confirms the hypothesis by a detection. Locks only if most of the perimeter is
 // visible.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
-  if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameOutline)) {
+  if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameTarget)) {
     judge_->confirm(log_odds(target.probability));
   } else {
-    const bool is_back = absence_s_ < kMaxAbsence_s && is_near(last_ellipse_, target.ellipse);
+    const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, target.ellipse);
     judge_->start(log_odds(target.probability), is_back);
     id_ = is_back ? last_id_ : last_id_ + 1;
   }
@@ -247,7 +244,7 @@ RingUncertainty Tracker::uncertainty_of(const Target& target) const {
 }
 
 // Adds the pose, which needs a camera.
-void Tracker::locate(Target& target) {
+void Tracker::locate(Target& target, double elapsed_s) {
   const bool is_followed = pad_tracker_->is_locked();
   if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
@@ -257,7 +254,8 @@ void Tracker::locate(Target& target) {
       target.uncertainty,
       is_followed ? pad_tracker_->inner_edges() : std::span<const FittedEllipse>(),
       0.5 * settings_.target_diameter_m,
-      Eigen::Vector3d::Map(settings_.gravity.data()));
+      Eigen::Vector3d::Map(settings_.gravity.data()),
+      elapsed_s);
 }
 
 std::span<const Detection> Tracker::candidates() const {

@@ -88,7 +88,7 @@ class Tracker {
   [[nodiscard]] std::optional<Target> detect(const ScopedFrame& frame);
   void remember(const std::optional<Target>& target);
   [[nodiscard]] RingUncertainty uncertainty_of(const Target& target) const;
-  void locate(Target& target);
+  void locate(Target& target, double elapsed_s);
 
   [[nodiscard]] std::optional<Target> follow(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;

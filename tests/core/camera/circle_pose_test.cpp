@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/tracking/frame_clock.hpp"
 
 namespace ellipse {
 namespace {
@@ -195,8 +196,13 @@ std::optional<TargetPose> pose_of(PoseEstimator& estimator,
                                   const View& view,
                                   const std::vector<FittedEllipse>& inner_edges,
                                   const Vector3d& gravity = Vector3d::Zero()) {
-  return estimator.estimate(
-      Lens(camera_640()), view.ideal, uncertainty_of(view.ideal, 1e-3), inner_edges, 0.75, gravity);
+  return estimator.estimate(Lens(camera_640()),
+                            view.ideal,
+                            uncertainty_of(view.ideal, 1e-3),
+                            inner_edges,
+                            0.75,
+                            gravity,
+                            kFrame_s);
 }
 
 TEST(PoseEstimator, ResolvesTheAmbiguityByOneInnerCircle) {
@@ -287,7 +293,8 @@ TEST(PoseEstimator, ReportsDirectionsOnlyWithoutADiameter) {
                                        uncertainty_of(view.ideal, 1e-3),
                                        {},
                                        0.0,
-                                       -view.truth.normal);
+                                       -view.truth.normal,
+                                       kFrame_s);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->radius_m, 0.0);
   EXPECT_LT(angle(pose->bearing, view.truth.position), 1e-6);
