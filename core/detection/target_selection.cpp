@@ -18,8 +18,7 @@ constexpr double kMaxGrowth = 2.0;
 
 constexpr double kMinShareOfBestScore = 0.25;
 
-// Minimum advantage of a new target: ratio of the major axes, or of the scores.
-constexpr double kFartherOut = 1.1;
+// Minimum advantage of a new target: ratio of the scores.
 constexpr double kMuchBetter = 1.5;
 
 // Evidence of all detections that are concentric with one ellipse.
@@ -143,7 +142,8 @@ bool is_better_target(const Ellipse& chosen,
                       const Ellipse& followed,
                       std::span<const Detection> detections) {
   // A concentric edge farther out: an inner edge of the same target was tracked.
-  if (are_concentric(chosen, followed) && chosen.semi_major > kFartherOut * followed.semi_major) {
+  if (are_concentric(chosen, followed) && chosen.semi_major > followed.semi_major &&
+      !is_same(chosen, followed, kSameTarget)) {
     return true;
   }
   const ConcentricSet other = set_around(chosen, detections);

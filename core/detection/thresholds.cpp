@@ -5,14 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/edges/chains.hpp"
+
 namespace ellipse {
-namespace {
-
-// Floor of a scaled min_contour_size: shorter contours do not determine an ellipse.
-constexpr int kMinContourSizePx = 12;
-
-}  // namespace
-
 void check_range(const char* field, double value, const Range& range) {
   if (range.contains(value)) return;
   std::ostringstream message;
@@ -45,7 +40,8 @@ Thresholds Thresholds::at_scale(int scale) const {
   result.min_axis_px /= scale;
   result.max_axis_px /= scale;
   result.min_contour_size =
-      std::max(min_contour_size / scale, std::min(min_contour_size, kMinContourSizePx));
+      std::max(min_contour_size / scale,
+               std::min(min_contour_size, static_cast<int>(ChainTracer::kMinLength)));
   return result;
 }
 

@@ -9,8 +9,7 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kLongestWalk = 16384;  // sizes a buffer [pixels]
-constexpr int kClosingGap = 3;               // between the ends of a closed chain [pixels]
+constexpr int kClosingGap = 3;  // between the ends of a closed chain [pixels]
 
 // For each octant of an edge, the codes that may follow, as a bit set: free gradient maxima whose
 // edge direction differs by at most one octant.
@@ -38,9 +37,8 @@ class ChainTracer::Walk {
     }
   }
 
-  // Writes the pixels after the seed to `out`; returns their end.
-  std::int32_t* run(std::int32_t seed, std::int32_t* out) const {
-    const std::int32_t* const last = out + kLongestWalk;
+  // Writes the pixels after the seed to [out, last); returns their end.
+  std::int32_t* run(std::int32_t seed, std::int32_t* out, const std::int32_t* last) const {
     std::int32_t at = seed;
     unsigned octant = maxima_[seed] & maximum::kOctant;
     while (out != last) {
@@ -120,14 +118,15 @@ void ChainTracer::add_chain(std::int32_t seed,
                             const Walk& along) {
   maxima[seed] = static_cast<std::uint8_t>((maxima[seed] & maximum::kOctant) | maximum::kChained);
   std::int32_t* const begin = pixels_.data() + count_;
-  std::int32_t* out = against.run(seed, begin);
+  const std::int32_t* const last = pixels_.data() + pixels_.size();
+  std::int32_t* out = against.run(seed, begin, last - 1);
   std::reverse(begin, out);
   *out++ = seed;
-  out = along.run(seed, out);
+  out = along.run(seed, out, last);
   const auto length = static_cast<std::size_t>(out - begin);
   if (length < kMinLength) {
     for (const std::int32_t* pixel = begin; pixel != out; ++pixel) {
-      maxima[*pixel] ^= maximum::kChained;
+      maxima[*pixel] &= maximum::kOctant;
     }
     return;
   }
@@ -144,8 +143,7 @@ void ChainTracer::reserve(std::size_t chains) {
 void ChainTracer::trace(GradientMap& map) {
   const auto pixels =
       static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());
-  const std::size_t max_pixels = pixels / 4 + 64;
-  pixels_.resize(max_pixels + 2 * kLongestWalk + 1);
+  pixels_.resize(pixels / 4 + 64);
   count_ = 0;
   begins_.assign(1, 0);
   is_closed_.clear();
@@ -154,7 +152,7 @@ void ChainTracer::trace(GradientMap& map) {
   const Walk along(map, true);
   for_each_seed(map, [&](std::int32_t pixel) {
     add_chain(pixel, map.maxima(), against, along);
-    return count_ < max_pixels;
+    return count_ < pixels_.size();
   });
 }
 

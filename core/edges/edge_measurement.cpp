@@ -8,10 +8,7 @@
 namespace ellipse {
 namespace {
 
-constexpr float kMinSquaredCosine = 0.75F;  // 30 degrees
-constexpr int kReachOnPicture = 2;          // pixels to each side
-constexpr float kVertexError = 0.017F;      // sigma of an edge in focus without noise [px]
-constexpr auto kShift = static_cast<float>(kMaximumShift);
+constexpr int kReachOnPicture = 2;  // pixels to each side
 
 // A gradient maximum near a sample, on the pixel row or column closest to the normal.
 struct FoundMaximum {
@@ -62,9 +59,10 @@ EdgeMeasurement measured(const OutlineSamples& outline,
   // The outline curves away from its tangent to both sides of the sample.
   const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
   const float curvature = outline.curvature(k);
-  const float distance = from_sample.dot(normal) + curvature * (0.5F * aside * aside + kShift);
+  const float distance =
+      from_sample.dot(normal) + curvature * (0.5F * aside * aside + kMaximumShift);
   return {static_cast<int>(k),
-          outline.point(k) + from_sample + kShift * curvature * normal,
+          outline.point(k) + from_sample + kMaximumShift * curvature * normal,
           normal,
           {outline.anomaly(k), outline.px_per_unit(k), distance},
           0.0F,
@@ -143,9 +141,9 @@ class PictureSearch {
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
                                                  bool is_flat,
                                                  const Eigen::Vector2f& to_bright) const {
-    constexpr int kFirst = -kReachOnPicture - 1;
-    const int x = pixel.x() + origin_.x() + (is_flat ? kFirst : 0);
-    const int y = pixel.y() + origin_.y() + (is_flat ? 0 : kFirst);
+    const int first = -kReachOnPicture - 1;
+    const int x = pixel.x() + origin_.x() + (is_flat ? first : 0);
+    const int y = pixel.y() + origin_.y() + (is_flat ? 0 : first);
     std::array<Gradient, 2 * kReachOnPicture + 3> line;
     gradients_along(luma_, x, y, is_flat, line);
     const auto height_of = [&](const Gradient& g) {
@@ -156,7 +154,7 @@ class PictureSearch {
           return height_of(a) < height_of(b);
         });
     if (height_of(*top) < min_gradient_ || !agrees(*top, to_bright)) return std::nullopt;
-    const FoundMaximum found = maximum_at(&*top, 1, (top - line.begin()) + kFirst);
+    const FoundMaximum found = maximum_at(&*top, 1, (top - line.begin()) + first);
     return found.sharpness > 0.0F ? std::optional(found) : std::nullopt;
   }
 

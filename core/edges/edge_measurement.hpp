@@ -17,6 +17,13 @@ namespace ellipse {
 /// Minimum number of edges to fit and judge an ellipse, which has five parameters.
 inline constexpr std::size_t kMinEdgesOfEllipse = 8;
 
+/// Squared cosine of the largest angle between the gradient of an outline's edge and the outline's
+/// normal: 30 degrees.
+inline constexpr float kMinSquaredCosine = 0.75F;
+
+/// Standard deviation of an edge in focus without noise [px].
+inline constexpr float kVertexError = 0.017F;
+
 /// An edge matched to a sample of an outline, in the distorted picture.
 struct EdgeMeasurement {
   int sample = 0;                    ///< Index of the sample.

@@ -9,7 +9,6 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinVariance = 1e-4;  // prior of an edge's offset, of weight 1 [px^2]
 constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // of each step [px]
 
 }  // namespace
@@ -32,7 +31,7 @@ std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
   }
   for (const double reach_px : kTukeyReach) {
     GeometricFit fit(refined.ellipse);
-    double squares = kMinVariance;
+    double squares = kVertexError * kVertexError;  // a prior of weight 1
     double weights = 1.0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
       PerimeterOffset offset = fit.offset_of(ideal[i]);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "core/edges/noise.hpp"
 
@@ -14,15 +15,10 @@ namespace {
 
 using Int = std::int16_t;
 
-constexpr int kPadLeft = 16;   // padding of rows before the first pixel,
-constexpr int kPadRight = 64;  // and after the last one, so that blocks may overrun
-
 // Found by experiment, see docs/provenance.md.
 constexpr double kLowOverNoise = 3.0;
-constexpr double kHighOverLow = 2.0;      // [Canny1986]: two to three
-constexpr int kHistogramBins = 1536;      // of magnitudes
-constexpr int kHistogramShift = 4;        // log2 of a bin [units of Gradient]
-constexpr double kMaxGradient = 24480.0;  // keeps thresholds in 16 bits [units of Gradient]
+constexpr double kHighOverLow = 2.0;  // [Canny1986]: two to three
+constexpr int kHistogramShift = 4;    // log2 of a bin of magnitudes [units of Gradient]
 
 // Sigma of a gradient's component if that of the pixels is 1: the norm of the kernel.
 const double kGradientOfNoise = std::sqrt(70.0 * 10.0);
@@ -180,50 +176,26 @@ void grow(std::vector<T>& values, std::size_t size) {
 
 }  // namespace
 
-void gradients_along(
-    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients) {
-  const std::ptrdiff_t along = is_row ? 1 : luma.stride;
-  const std::ptrdiff_t across = is_row ? luma.stride : 1;
-  std::array<int, kLongestLine + 4> smooth{};
-  std::array<int, kLongestLine + 4> difference{};
-  const std::uint8_t* c = luma.row(y) + x - 2 * along;
-  for (std::size_t i = 0; i < gradients.size() + 4; ++i, c += along) {
-    const int a = c[-2 * across];
-    const int b = c[-across];
-    const int d = c[across];
-    const int e = c[2 * across];
-    smooth[i] = a + e + 4 * (b + d) + 6 * *c;
-    difference[i] = (e - a) + 2 * (d - b);
-  }
-  for (std::size_t i = 0; i < gradients.size(); ++i) {
-    const int* s = smooth.data() + i;
-    const int* t = difference.data() + i;
-    const auto in_line = static_cast<Int>(s[4] - s[0] + 2 * (s[3] - s[1]));
-    const auto athwart = static_cast<Int>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
-    gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
-  }
-}
-
 std::int16_t* GradientMap::row_of(std::vector<std::int16_t>& rows, int y) {
-  const std::ptrdiff_t length = kPadLeft + width_ + kPadRight;
-  return rows.data() + length * ((y + kRows) % kRows) + kPadLeft;
+  const std::ptrdiff_t length = kBlock + width_ + kBlock;
+  return rows.data() + length * ((y + kRows) % kRows) + kBlock;
 }
 
 void GradientMap::resize(const ImageView& luma) {
   width_ = luma.width;
   height_ = luma.height;
-  stride_ = (width_ + kPadRight) / GradientMap::kBlock * GradientMap::kBlock;
+  stride_ = (width_ + 2 * kBlock) / kBlock * kBlock;  // the last block of a row may overrun it
   const auto pixels = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
-  const auto length = static_cast<std::size_t>(width_) + kPadLeft + kPadRight;
+  const auto length = static_cast<std::size_t>(kBlock + width_ + kBlock);
   grow(gradients_, pixels);
-  grow(maxima_, pixels + kPadRight);
-  grow(blocks_, pixels / GradientMap::kBlock);
+  grow(maxima_, pixels + kBlock);
+  grow(blocks_, pixels / kBlock);
   grow(smooth_, length);
   grow(difference_, length);
   grow(x_, kRows * length);
   grow(y_, kRows * length);
   grow(magnitude_, kRows * length);
-  histogram_.resize(kHistogramBins);
+  histogram_.resize((std::numeric_limits<Int>::max() >> kHistogramShift) + 1);
 }
 
 void GradientMap::compute_row(const ImageView& luma, int y) {
@@ -231,8 +203,8 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
   for (int k = 0; k < 5; ++k) {
     rows[static_cast<std::size_t>(k)] = luma.row(std::clamp(y + k - 2, 0, height_ - 1));
   }
-  Int* smooth = smooth_.data() + kPadLeft;
-  Int* difference = difference_.data() + kPadLeft;
+  Int* smooth = smooth_.data() + kBlock;
+  Int* difference = difference_.data() + kBlock;
   const Kernels& kernels = kernels_of(simd_);
   kernels.columns(rows.data(), smooth, difference, width_);
   for (int k = 1; k <= 2; ++k) {  // the border repeats its last pixel
@@ -259,7 +231,7 @@ void GradientMap::measure_noise(const ImageView& luma) {
     const std::uint8_t* levels = luma.row(y);
     for (int x = 2; x < width_ - 2; x += 2) {
       if (is_saturated(levels[x])) continue;
-      ++histogram_[static_cast<std::size_t>(std::min(m[x] >> kHistogramShift, kHistogramBins - 1))];
+      ++histogram_[static_cast<std::size_t>(m[x] >> kHistogramShift)];
       ++samples;
     }
   }
@@ -277,7 +249,9 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
   if (luma.empty()) return;
   measure_noise(luma);
   const auto used = [](double level, double by_default) {
-    return std::min(level > 0.0 ? level : by_default, kMaxGradient / kGradientGain);
+    // Thresholds have 16 bits.
+    return std::min(level > 0.0 ? level : by_default,
+                    std::numeric_limits<Int>::max() / kGradientGain);
   };
   // Rounding makes steps of one grey level along any slow shading; they are no edges.
   const double by_noise = std::max(kLowOverNoise * noise_, kGradientOfStep) / kGradientGain;

@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,17 +28,40 @@ inline constexpr double kGradientOfStep = 48.0;
 /// of the edge, which is the gradient turned by 90 degrees from x to y, in eighths of a turn from
 /// +x to +y.
 namespace maximum {
-inline constexpr std::uint8_t kOctant = 0x07;
-inline constexpr std::uint8_t kFree = 0x08;     ///< Not visited by a walk.
-inline constexpr std::uint8_t kSeed = 0x10;     ///< Above the high threshold, and free.
-inline constexpr std::uint8_t kChained = 0x40;  ///< In a chain.
+enum Code : std::uint8_t {
+  kOctant = 0x07,
+  kFree = 0x08,     ///< Not visited by a walk.
+  kSeed = 0x10,     ///< Above the high threshold, and free.
+  kChained = 0x40,  ///< In a chain.
+};
 }  // namespace maximum
 
 /// Computes the gradients of a line of pixels as GradientMap does: from (x, y) to the right, or
-/// down. At most kLongestLine pixels, all at least two pixels from the border.
+/// down. All pixels are at least two pixels from the border.
+template <std::size_t kPixels>
 void gradients_along(
-    const ImageView& luma, int x, int y, bool is_row, std::span<Gradient> gradients);
-inline constexpr std::size_t kLongestLine = 16;
+    const ImageView& luma, int x, int y, bool is_row, std::array<Gradient, kPixels>& gradients) {
+  const std::ptrdiff_t along = is_row ? 1 : luma.stride;
+  const std::ptrdiff_t across = is_row ? luma.stride : 1;
+  std::array<int, kPixels + 4> smooth;
+  std::array<int, kPixels + 4> difference;
+  const std::uint8_t* c = luma.row(y) + x - 2 * along;
+  for (std::size_t i = 0; i < kPixels + 4; ++i, c += along) {
+    const int a = c[-2 * across];
+    const int b = c[-across];
+    const int d = c[across];
+    const int e = c[2 * across];
+    smooth[i] = a + e + 4 * (b + d) + 6 * *c;
+    difference[i] = (e - a) + 2 * (d - b);
+  }
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    const int* s = smooth.data() + i;
+    const int* t = difference.data() + i;
+    const auto in_line = static_cast<std::int16_t>(s[4] - s[0] + 2 * (s[3] - s[1]));
+    const auto athwart = static_cast<std::int16_t>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
+    gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
+  }
+}
 
 /// Hysteresis [Canny1986]: an edge begins above the high threshold and continues above the low one
 /// [grey levels / px].

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "core/edges/gradient_map.hpp"
+
 namespace ellipse {
 namespace {
-
-constexpr int kMargin = 3;  // from the border, as of gradient maxima [px]
 
 // Along both axes.
 int second_difference(const ImageView& luma, int x, int y) {
@@ -24,9 +24,10 @@ double pixel_noise(const ImageView& luma) {
   std::int64_t sum = 0;
   int samples = 0;
   const int step = std::max(1, luma.height / kNoiseRows);
-  for (int y = kMargin; y < luma.height - kMargin; y += step) {
+  const int border = GradientMap::kBorder;
+  for (int y = border; y < luma.height - border; y += step) {
     const std::uint8_t* levels = luma.row(y);
-    for (int x = kMargin - 1; x < luma.width - kMargin + 1; x += 2) {
+    for (int x = border - 1; x < luma.width - border + 1; x += 2) {
       if (is_saturated(levels[x])) continue;
       sum += std::abs(second_difference(luma, x, y));
       ++samples;

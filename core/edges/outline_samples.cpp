@@ -8,8 +8,9 @@ namespace {
 
 constexpr std::array<std::size_t, 6> kCounts = {32, 48, 64, 96, 128, 256};
 
-// Evenly spaced eccentric anomalies.
-std::span<const Eigen::Vector2f> directions(std::size_t count) {
+}  // namespace
+
+std::span<const Eigen::Vector2f> circle_directions(std::size_t count) {
   using Circle = std::array<Eigen::Vector2f, OutlineSamples::kMaxSamples>;
   static const auto kCircles = [] {
     std::array<Circle, kCounts.size()> circles{};
@@ -22,14 +23,12 @@ std::span<const Eigen::Vector2f> directions(std::size_t count) {
     return circles;
   }();
   const auto at = std::lower_bound(kCounts.begin(), kCounts.end() - 1, count);
-  return kCircles[static_cast<std::size_t>(at - kCounts.begin())];
+  return {kCircles[static_cast<std::size_t>(at - kCounts.begin())].data(), count};
 }
-
-}  // namespace
 
 OutlineSamples::OutlineSamples(const Ellipse& e, std::size_t samples, const LensView& lens)
     : size_(std::min(samples, kMaxSamples)),
-      around_(directions(size_)),
+      around_(circle_directions(size_)),
       step_rad_(static_cast<float>(kTwoPi / static_cast<double>(size_))),
       axes_product_(static_cast<float>(e.semi_major * e.semi_minor)),
       origin_(static_cast<int>(std::lround(e.cx)), static_cast<int>(std::lround(e.cy))),

@@ -11,6 +11,10 @@
 
 namespace ellipse {
 
+/// Unit vectors at evenly spaced angles.
+/// @param count  32, 48, 64, 96, 128 or 256.
+[[nodiscard]] std::span<const Eigen::Vector2f> circle_directions(std::size_t count);
+
 /// Samples an ellipse of the ideal plane at evenly spaced eccentric anomalies, distorted by a lens.
 ///
 /// Coordinates are relative to the pixel nearest to the ellipse's centre, so that single precision

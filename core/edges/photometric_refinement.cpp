@@ -17,14 +17,13 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr int kLanes = 12;               // pixels across the edge: kPhotometricBandPx at 45 degrees
-constexpr std::size_t kMaxSectors = 72;  // fewer if they would be too short
-constexpr double kShortestSector = 6.0;  // lines
-constexpr double kMaxLines = 480.0;      // of a pass; above it, lines are subsampled
-constexpr std::size_t kNeighbours = 3;   // sectors on each side that share the two levels
-constexpr double kTypicalStepPx = 2.3;   // half the width of the blurred step; others are within
-                                         // half and twice of it
-constexpr double kTukeyOfSigma = 4.7;    // reach over the scatter
+constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
+constexpr int kLinesOfSector = 6;
+constexpr std::size_t kMaxSectors = 80;    // of a long outline, whose lines are subsampled
+constexpr std::size_t kNeighbours = 3;     // sectors on each side that share the two levels
+constexpr double kTypicalStepPx = 2.3;     // half the width of the blurred step; others are within
+                                           // half and twice of it
+constexpr double kTukeyOfSigma = 4.7;      // reach over the scatter
 constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
 
 // Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
@@ -170,9 +169,7 @@ class Band {
         conic_(shape_.inverse()),
         luma_(luma) {
     const double lines = std::min(kFarPx, perimeter_px(e));
-    stride_ = static_cast<int>(std::ceil(lines / kMaxLines));
-    lines_of_sector_ =
-        static_cast<int>(std::max(kShortestSector, std::ceil(lines / stride_ / kMaxSectors)));
+    stride_ = static_cast<int>(std::ceil(lines / (kMaxSectors * kLinesOfSector)));
     for (int quarter = 0; quarter < 4; ++quarter) read(quarter);
     close_sector();
   }
@@ -238,13 +235,13 @@ class Band {
                       static_cast<float>(offset),
                       static_cast<float>(outwards[1 - axis]),
                       static_cast<float>(0.5 * curvature * outwards[axis] * outwards[axis])});
-    if (++sector.lines >= lines_of_sector_) close_sector();
+    if (++sector.lines >= kLinesOfSector) close_sector();
   }
 
   void close_sector() {
     Sector& sector = sectors_[count_];
     sector.sums = accumulator_.take();
-    if (2 * sector.lines >= lines_of_sector_ && count_ < kMaxSectors) {
+    if (2 * sector.lines >= kLinesOfSector && count_ < kMaxSectors) {
       ++count_;
     } else {
       sector = {};
@@ -259,7 +256,6 @@ class Band {
   std::size_t count_ = 0;
   ImageView luma_;
   int stride_ = 1;
-  int lines_of_sector_ = 0;
 };
 
 // Least-squares fit of two levels and the step between them to a sector's pixels.

@@ -26,13 +26,12 @@ inline constexpr double kLensVariance = 0.36;
 /// variance v moves the maximum of an edge of curvature k inwards by v k / 2, to first order (own
 /// derivation from the mean of a disc's edge over a Gaussian).
 /// The 5 x 5 kernels have a variance of 1 along the edge.
-inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
+inline constexpr auto kMaximumShift = static_cast<float>(0.5 * (1.0 + kLensVariance));
 
 /// The vertex of the parabola through three pixels along the axis closest to the gradient
 /// [Devernay1995] 2. Projects the neighbours' gradients on the middle one.
 /// @param here  The middle gradient in a map; its neighbours are `step` before and after.
 [[nodiscard]] inline SubpixelMaximum subpixel_maximum(const Gradient* here, int step) {
-  constexpr float kFarthest = 0.7F;  // offset of a vertex [px]
   const float gx = here->x;
   const float gy = here->y;
   const float before = here[-step].x * gx + here[-step].y * gy;
@@ -40,7 +39,7 @@ inline constexpr double kMaximumShift = 0.5 * (1.0 + kLensVariance);
   const float after = here[step].x * gx + here[step].y * gy;
   const float curvature = before - 2.0F * height + after;
   const float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
-  return {std::clamp(offset, -kFarthest, kFarthest), height > 0.0F ? -curvature / height : 0.0F};
+  return {std::clamp(offset, -0.5F, 0.5F), height > 0.0F ? -curvature / height : 0.0F};
 }
 
 }  // namespace ellipse

@@ -13,11 +13,9 @@ namespace {
 
 constexpr std::size_t kDirections = 8;  // over half a turn, see maxima_distances()
 constexpr double kWidest = 6.0;         // largest corrected gap [px]
-constexpr std::size_t kWidths = 31;     // in the table, from 0 to kWidest
 constexpr int kPhases = 8;              // sub-pixel positions of the bar to average over
-constexpr int kHalvings = 20;           // bisection steps
 
-using PerWidth = std::array<double, kWidths>;
+using PerWidth = std::array<double, 31>;  // for widths from 0 to kWidest
 
 Eigen::Vector2d direction(std::size_t i) {
   const double angle = std::numbers::pi * static_cast<double>(i) / kDirections;
@@ -72,9 +70,9 @@ const std::array<PerWidth, 3>& maxima_distances() {
   static const auto kTable = [] {
     std::array<PerWidth, 3> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
-      for (std::size_t k = 0; k < kWidths; ++k) {
-        const double width = kWidest * std::max(0.01, static_cast<double>(k)) / (kWidths - 1);
-        table[i][k] = 2.0 * maximum_of_bar(direction(i), width);
+      for (std::size_t k = 0; k < table[i].size(); ++k) {
+        const double steps = std::max(0.01, static_cast<double>(k));
+        table[i][k] = 2.0 * maximum_of_bar(direction(i), kWidest * steps / (table[i].size() - 1));
       }
     }
     return table;
@@ -83,11 +81,11 @@ const std::array<PerWidth, 3>& maxima_distances() {
 }
 
 double maxima_distance(double width, std::size_t direction) {
-  const double at = width / kWidest * (kWidths - 1);
-  if (at >= kWidths - 1) return width;
-  const auto k = static_cast<std::size_t>(at);
   const std::size_t from_axis = std::min(direction % 4, 4 - direction % 4);
   const PerWidth& table = maxima_distances()[from_axis];
+  const double at = width / kWidest * (table.size() - 1);
+  const auto k = static_cast<std::size_t>(at);
+  if (k + 1 >= table.size()) return width;
   return std::lerp(table[k], table[k + 1], at - static_cast<double>(k));
 }
 
@@ -99,8 +97,8 @@ Eigen::Matrix2d stretch_of(const Ellipse& e) {
 
 }  // namespace
 
-void prepare_blur_bias() {
-  (void)maxima_distances();
+double min_maxima_distance() {
+  return maxima_distances()[0][0];
 }
 
 RingEdges without_blur_bias(const RingEdges& maxima) {
@@ -122,8 +120,7 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
   // Bisects the ring's width over its middle radius; the predicted gaps grow with it.
   double low = 0.0;
   double high = 2.0;
-  for (int step = 0; step < kHalvings; ++step) {
-    const double share = 0.5 * (low + high);
+  for (double share = 1.0; low < share && share < high; share = 0.5 * (low + high)) {
     double predicted = 0.0;
     for (std::size_t i = 0; i < kDirections; ++i) {
       predicted += maxima_distance(share * radii[i], i);

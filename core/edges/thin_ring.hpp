@@ -21,8 +21,9 @@ struct RingEdges {
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 [[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);
 
-/// Computes the table that the first call of without_blur_bias() needs.
-void prepare_blur_bias();
+/// Distance of the two gradient maxima of a very thin bar along an axis [px]. The first call of
+/// this or of without_blur_bias() computes a table, which takes a few milliseconds.
+[[nodiscard]] double min_maxima_distance();
 
 /// Largest ratio of inner to outer radius at which a ring is distinguished from a line.
 inline constexpr double kMaxRingRatio = 0.97;

@@ -135,9 +135,8 @@ bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolera
 }
 
 bool are_concentric(const Ellipse& a, const Ellipse& b) {
-  constexpr Tolerance kCentre{2.0, 0.1};
   const Ellipse& larger = a.semi_major > b.semi_major ? a : b;
-  return (a.center() - b.center()).norm() <= kCentre.of(larger);
+  return (a.center() - b.center()).norm() <= kSameTarget.of(larger);
 }
 
 double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {

@@ -112,8 +112,12 @@ struct Tolerance {
 /// Whether no centre coordinate and no semi-axis differs by more than the tolerance of `reference`.
 [[nodiscard]] bool is_same(const Ellipse& e, const Ellipse& reference, const Tolerance& tolerance);
 
-/// Whether two ellipses may be images of concentric circles. The tolerance covers the perspective
-/// offset of their centres and the uncertainty of small fits.
+/// Of two ellipses of one target. Covers the perspective offset of the centres of concentric
+/// circles and the uncertainty of small fits.
+inline constexpr Tolerance kSameTarget{2.0, 0.1};
+
+/// Whether two ellipses may be images of concentric circles: whether their centres agree within
+/// kSameTarget of the larger one.
 [[nodiscard]] bool are_concentric(const Ellipse& a, const Ellipse& b);
 
 /// Intersection over union of two ellipses inside a frame; 0 if both are outside.

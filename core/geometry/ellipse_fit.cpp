@@ -10,16 +10,12 @@
 namespace ellipse {
 namespace {
 
-constexpr int kMinPoints = 5;  // A conic has five degrees of freedom.
-
 // Min product of the principal variances of standardized points, which sum to 1: below it the
 // points are collinear.
 constexpr double kMinVariance = 1e-6;
 
 // Keeps the reduced scatter invertible when the points lie on the ellipse exactly.
 constexpr double kRegularization = 1e-13;
-
-constexpr int kMaxNewtonSteps = 40;
 
 constexpr int kBinomial[5][5] = {
     {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
@@ -60,14 +56,13 @@ Cubic characteristic(const Eigen::Matrix3d& m) {
 // Largest root, by Newton's method from above: beyond the largest of three real roots all
 // derivatives of a cubic have one sign, so the steps converge monotonically.
 double largest_root(const Cubic& c, double above) {
-  double x = above;
-  for (int step = 0; step < kMaxNewtonSteps; ++step) {
+  const auto step_from = [&c](double x) {
     const double value = ((c[0] * x + c[1]) * x + c[2]) * x + c[3];
     const double slope = (3.0 * c[0] * x + 2.0 * c[1]) * x + c[2];
-    const double next = x - value / slope;
-    if (!(next < x)) break;
-    x = next;
-  }
+    return x - value / slope;
+  };
+  double x = above;
+  for (double next = step_from(x); next < x; next = step_from(x)) x = next;
   return x;
 }
 
@@ -198,7 +193,7 @@ std::optional<Ellipse> fit_ellipse(const Moments& moments) {
 }
 
 std::optional<MomentFit> fit_with_residual(const Moments& moments) {
-  if (moments.count() < kMinPoints) return std::nullopt;
+  if (moments.count() < 5.0) return std::nullopt;  // a conic has five degrees of freedom
   const double spread = moments.spread_px();
   if (!(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
   const Moments standardized = moments.standardized();
@@ -243,7 +238,7 @@ void GeometricFit::add(const PerimeterOffset& offset, double weight) {
 }
 
 std::optional<Ellipse> GeometricFit::solve() const {
-  if (equations_.samples() < kMinPoints) return std::nullopt;
+  if (equations_.samples() < LeastSquares<5>::Vector::SizeAtCompileTime) return std::nullopt;
   const auto solution = equations_.solve();
   if (!solution) return std::nullopt;
   const LeastSquares<5>::Vector step = std::min(1.0, kLongestStep / solution->norm()) * *solution;

@@ -89,7 +89,6 @@ RingMatrix ring_changes(const Matrix3d& from_view, const Matrix3d& to_view) {
 // With image = c + M (I + [S+E1, E2; E2, S-E1]) (x + T), M = R diag(a, b): dc = M T, da = a (S +
 // E1), db = b (S - E1), and the axes turn by 2 a b E2 / (a^2 - b^2).
 RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge) {
-  constexpr double kUnknownAngle = std::numbers::pi * std::numbers::pi / 12.0;
   const double a = e.semi_major;
   const double b = e.semi_minor;
   const Matrix3d view = image_from_pad(e);
@@ -102,7 +101,8 @@ RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge) {
   const RingMatrix changes = edge.information.ldlt().solve(RingMatrix::Identity());
   RingMatrix covariance = jacobian * changes * jacobian.transpose();
   const double difference = a * a - b * b;
-  const double max_turn = std::sqrt(kUnknownAngle / covariance(4, 4));
+  // An unknown angle is uniform over half a turn.
+  const double max_turn = std::numbers::pi / std::sqrt(12.0 * covariance(4, 4));
   const double turn = 2.0 * a * b < max_turn * difference ? 2.0 * a * b / difference : max_turn;
   covariance.row(4) *= turn;
   covariance.col(4) *= turn;

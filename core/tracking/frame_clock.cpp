@@ -7,23 +7,26 @@
 namespace ellipse {
 namespace {
 
-constexpr double kFrame_ns = 1e9 * kFrame_s;
-constexpr double kShortest_ns = 1e3;  // shorter intervals are of equal time stamps
-constexpr double kLongestGap_ns = 1e9;
+constexpr double kLongestGap_s = 1.0;
+
+// Sources round time stamps differently.
+double whole_microseconds(double seconds) {
+  return std::round(1e6 * seconds);
+}
 
 }  // namespace
 
 double FrameClock::advance_to(std::int64_t pts_ns) {
   if (pts_ns < 0) {
-    now_ns_ += interval_ns_;
+    now_ns_ += 1e9 * interval_s_;
   } else {
     const auto pts = static_cast<double>(pts_ns);
-    const double elapsed = pts - now_ns_;
+    const double elapsed_s = 1e-9 * (pts - now_ns_);
     now_ns_ = pts;
-    interval_ns_ = elapsed >= kShortest_ns ? std::min(elapsed, kLongestGap_ns) : kFrame_ns;
+    const bool is_later = whole_microseconds(elapsed_s) > 0.0;
+    interval_s_ = is_later ? std::min(elapsed_s, kLongestGap_s) : kFrame_s;
   }
-  // In whole microseconds, so that sources that round time stamps differently give the same result.
-  return std::round(1e-3 * interval_ns_) / (1e-3 * kFrame_ns);
+  return whole_microseconds(interval_s_) / (1e6 * kFrame_s);
 }
 
 }  // namespace ellipse

@@ -7,8 +7,9 @@ namespace ellipse {
 
 inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Unit of FrameClock and PadTracker.
 
-/// Longest time without a match after which a target is still the same.
-inline constexpr double kMaxAbsence_s = 0.4;
+/// Correlation time of the evidence in a stream, measured on footage. Also the longest time without
+/// a match after which a target is still the same.
+inline constexpr double kMemory_s = 0.3;
 
 /// Time between frames. Depacketizers and decoders omit some time stamps: a frame without one
 /// repeats the previous interval.
@@ -22,7 +23,7 @@ class FrameClock {
 
  private:
   double now_ns_ = std::numeric_limits<double>::quiet_NaN();
-  double interval_ns_ = 1e9 * kFrame_s;
+  double interval_s_ = kFrame_s;
 };
 
 }  // namespace ellipse

@@ -56,7 +56,7 @@ constexpr auto kLimits = &TrackerSettings::limits;
 
 // Lower bound on the contour overlap of ellipses reported by `arcs`: thresholds below it reject
 // none. The lowest measured is .953 of 333, over all scenes of the catalog, once a second.
-constexpr double kMinOnEllipse = 0.7;
+constexpr double kMinOnEllipse = 0.65;
 
 // Tests compare each effect with the tracker's behaviour.
 constexpr SettingEffect kOfContours{.detector = DetectorKind::kContours,

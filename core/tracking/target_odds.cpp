@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tracking/frame_clock.hpp"
+
 namespace ellipse {
 namespace {
 
 // Measured or chosen in docs/provenance.md, "Evidence over time".
-constexpr double kMemory_s = 0.3;  // correlation time of the evidence
-constexpr double kPrior = -0.4;    // log odds of a new target
+constexpr double kPrior = -0.4;  // log odds of a new target
 
 double bounded(double log_odds) {
   return std::clamp(log_odds, -TargetOdds::kMax, TargetOdds::kMax);

@@ -90,7 +90,7 @@ TEST(Thresholds, ScaleWithThePicture) {
   const Thresholds at_four = Thresholds{}.at_scale(4);
   EXPECT_EQ(at_four.max_axis_px, kAxisRangePx.max / 4.0);
   EXPECT_EQ(at_four.min_axis_px, 1.25);
-  EXPECT_EQ(at_four.min_contour_size, 12);
+  EXPECT_EQ(at_four.min_contour_size, 14);
   EXPECT_EQ(at_four.contour_overlap, 0.95);
 }
 

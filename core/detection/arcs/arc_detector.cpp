@@ -14,7 +14,6 @@ namespace ellipse {
 namespace {
 
 constexpr int kScales[] = {2, 4, 1};    // in order of the search
-constexpr int kMaxPairs = 50;           // tried at each scale
 constexpr double kConvexSlack = 0.1;    // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;          // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;  // semi-minor axis below which reduction hides corners
@@ -149,16 +148,14 @@ void ArcDetector::search(const Picture& picture, const Thresholds& full, int sca
 
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
-    const Arc& arc = arcs_[i];
-    if (is_used_[i] != 0 || arc.turn_rad < ArcSplitter::kMinSingleTurn) continue;
-    try_arcs({&arc}, thresholds);
+    if (is_used_[i] == 0) try_arcs({&arcs_[i]}, thresholds);
   }
 }
 
 // Tries pairs in ascending sum of ranks, so that the best arcs come first.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
-  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxPairedArcs);
-  int pairs = 0;
+  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxTried);
+  std::size_t pairs = 0;
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
@@ -166,7 +163,7 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
       const Arc& b = arcs_[k];
       if (is_used_[i] != 0 || is_used_[k] != 0 || a.polarity != b.polarity) continue;
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
-      if (++pairs > kMaxPairs) return;
+      if (++pairs > ArcSplitter::kMaxTried) return;
       try_arcs({&a, &b}, thresholds);
     }
   }

@@ -14,8 +14,6 @@ constexpr std::size_t kEnoughPoints = 32;  // maximum per arc in its moments
 constexpr std::size_t kCornerReach = 3;    // [px] on each side of a corner
 constexpr double kCornerTurn = 0.9;        // [rad] across both sides
 constexpr double kRetreatOverNoise = 5.0;  // reverse turn that ends an arc, in sigma
-constexpr double kMinTurn = 0.25;          // [rad]; straighter pieces only cost time
-constexpr double kClosingChord = 0.35;     // largest chord over length of a chain tried whole
 
 // Replaces x by atan2(y, x), within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47,
 // shortened. Branch-free, so that the compiler vectorizes it. The strength is |x| + |y|.
@@ -97,13 +95,9 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map,
 
 void ArcSplitter::keep_best_pieces(bool wants_all) {
   const auto ranks_before = [](const Piece& a, const Piece& b) { return a.rank() > b.rank(); };
-  const auto paired = pieces_.begin() + std::ptrdiff_t(std::min(pieces_.size(), kMaxPairedArcs));
-  std::partial_sort(pieces_.begin(), paired, pieces_.end(), ranks_before);
-  const auto single = std::partition(paired, pieces_.end(), [&](const Piece& piece) {
-    return wants_all && std::abs(piece.turn_rad) >= kMinSingleTurn;
-  });
-  const auto end = pieces_.begin() + std::min(single - pieces_.begin(), std::ptrdiff_t(kMaxArcs));
-  std::partial_sort(paired, end, single, ranks_before);
+  const std::size_t count = std::min(pieces_.size(), wants_all ? kMaxArcs : kMaxTried);
+  const auto end = pieces_.begin() + std::ptrdiff_t(count);
+  std::partial_sort(pieces_.begin(), end, pieces_.end(), ranks_before);
   pieces_.erase(end, pieces_.end());
 }
 
@@ -131,11 +125,11 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   return moments;
 }
 
-// Adds a nearly closed chain as a whole: an outline too rough for arcs may still be an ellipse.
-void ArcSplitter::add_whole(const GradientMap& map, std::size_t begin, std::size_t end) {
-  const double chord = (map.point_of(pixels_[end - 1]) - map.point_of(pixels_[begin])).norm();
-  if (!(chord < kClosingChord * static_cast<double>(end - begin))) return;
-  pieces_.push_back({begin, end, angles_[end - 1] - angles_[begin]});
+// Adds a chain that turns by more than half a turn as a whole: an outline too rough for arcs may
+// still be an ellipse.
+void ArcSplitter::add_whole(std::size_t begin, std::size_t end) {
+  const double turn = angles_[end - 1] - angles_[begin];
+  if (std::abs(turn) > std::numbers::pi) pieces_.push_back({begin, end, turn});
 }
 
 void ArcSplitter::split_chain(const GradientMap& map,
@@ -143,7 +137,7 @@ void ArcSplitter::split_chain(const GradientMap& map,
                               std::size_t end,
                               bool is_closed) {
   unwrap(begin, end);
-  add_whole(map, begin, end);
+  add_whole(begin, end);
   // In a run of sharply turning pixels, the sharpest one is the corner.
   std::size_t part = begin;
   std::size_t corner = end;

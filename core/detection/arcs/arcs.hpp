@@ -30,17 +30,16 @@ struct Arc {
 /// Cuts chains into arcs: at corners, and where the curvature changes its sign.
 class ArcSplitter {
  public:
-  /// The best arcs by length and turn, at most kMaxPairedArcs. Valid until the next call.
-  /// @param wants_all  Appends all other arcs that turn by at least kMinSingleTurn, up to kMaxArcs
-  ///                   in total.
+  /// The best arcs by length times turn: kMaxTried, or kMaxArcs. Valid until the next call.
+  /// @param wants_all  Whether to return kMaxArcs.
   /// Allocates only when pixels or arcs outnumber those of every earlier call.
   [[nodiscard]] std::span<Arc> split(const GradientMap& map,
                                      const ChainTracer& chains,
                                      bool wants_all = false);
 
-  static constexpr double kMinSingleTurn = 0.8;      ///< Smallest turn of an arc tried alone [rad].
-  static constexpr std::size_t kMaxPairedArcs = 50;  ///< The number of pairs grows with its square.
-  static constexpr std::size_t kMaxArcs = 2048;      ///< Bounds the time spent on one image.
+  static constexpr double kMinTurn = 0.3;        ///< Of an arc [rad].
+  static constexpr std::size_t kMaxTried = 50;   ///< Arcs of which pairs are made; pairs tried.
+  static constexpr std::size_t kMaxArcs = 2048;  ///< Bounds the time spent on one image.
 
  private:
   struct Piece {
@@ -54,7 +53,7 @@ class ArcSplitter {
   [[nodiscard]] double min_reverse_turn(double noise, std::size_t begin, std::size_t end) const;
   void split_smooth_part(double noise, std::size_t begin, std::size_t end);
   void unwrap(std::size_t begin, std::size_t end);
-  void add_whole(const GradientMap& map, std::size_t begin, std::size_t end);
+  void add_whole(std::size_t begin, std::size_t end);
   [[nodiscard]] Moments moments_of(const GradientMap& map,
                                    std::size_t begin,
                                    std::size_t end) const;

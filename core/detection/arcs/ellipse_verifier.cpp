@@ -19,8 +19,7 @@ constexpr double kOnEllipseRad = 0.3;    // and largest direction error
 constexpr double kTurnWindow = 0.2;      // half-width of the window of the outline's turn [rad]
 constexpr double kStraightSlope = -0.5;  // halfway between an ellipse's 0 and a line's -1
 
-constexpr std::size_t kFewSamples = 32;  // of the early steps,
-constexpr std::size_t kSamples = 64;     // of the last step and the final measurement
+constexpr std::size_t kSamples = 64;  // of the last step and the final measurement
 
 // A Gauss-Newton step. For 99 % of the true ellipses of the sources, the log odds grow by at most
 // max_growth from this step on.
@@ -29,9 +28,9 @@ struct Step {
   double part_of_reach;
   double max_growth;
 };
-constexpr std::array<Step, 4> kSteps = {{{kFewSamples, 1.0, 7.0},
-                                         {kFewSamples, 0.7, 5.0},
-                                         {kFewSamples, 0.5, 2.5},
+constexpr std::array<Step, 4> kSteps = {{{kSamples / 2, 1.0, 7.0},
+                                         {kSamples / 2, 0.7, 5.0},
+                                         {kSamples / 2, 0.5, 2.5},
                                          {kSamples, 0.5, 1.0}}};
 
 double radius_of(const Ellipse& e) {
@@ -250,12 +249,11 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   verdict = at_least(Reason::kContourOverlap, measured.on_ellipse, thresholds.contour_overlap);
   if (!verdict.is_accepted()) return verdict;
   const Ellipse& e = measured.ellipse;
-  // Contour pixels per pixel of length: mean of max(|cos|, |sin|) over all directions.
-  constexpr double kPixelsOfLength = 2.0 * std::numbers::sqrt2 / std::numbers::pi;
   const double visible_px = perimeter_px(e) * visible_fraction(e, map.width(), map.height());
-  measured.as_target = at_least(Reason::kContourTooShort,
-                                kPixelsOfLength * visible_px * measured.support,
-                                thresholds.min_contour_size);
+  // Contour pixels per pixel of length: mean of max(|cos|, |sin|) over all directions.
+  const double contour_px =
+      2.0 * std::numbers::sqrt2 / std::numbers::pi * visible_px * measured.support;
+  measured.as_target = at_least(Reason::kContourTooShort, contour_px, thresholds.min_contour_size);
   return thresholds.wants_all ? Verdict{} : measured.as_target;
 }
 

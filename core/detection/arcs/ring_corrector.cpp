@@ -9,16 +9,13 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMaxPx = 30.0;  // largest semi-minor axis of a corrected ring
-constexpr double kGapPx = 2.4;   // typical gap of a thin ring's maxima, in the refinement's reach
 constexpr double kMinSupport = 0.7;         // matched share of the next edge
 constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
 
 }  // namespace
 
-RingCorrector::RingCorrector() {
-  prepare_blur_bias();  // takes a few milliseconds; kept out of the first frame
-}
+// Keeps the table of blur out of the first frame.
+RingCorrector::RingCorrector() : min_gap_px_(min_maxima_distance()) {}
 
 void RingCorrector::correct(const Picture& picture,
                             double min_gradient,
@@ -28,7 +25,6 @@ void RingCorrector::correct(const Picture& picture,
   for (const Detection& detection : detections) maxima_.push_back(detection.ellipse);
   for (std::size_t i = 0; i < maxima_.size(); ++i) {
     const Ellipse& maximum = maxima_[i];
-    if (maximum.semi_minor > kMaxPx) continue;
     const auto edge = refined_on_picture(picture, maximum, polarities[i], min_gradient);
     const auto next = edge ? next_edge(picture, min_gradient, polarities, i) : std::nullopt;
     if (!next || next->support < kMinSupport) continue;
@@ -59,7 +55,7 @@ std::optional<RefinedEllipse> RingCorrector::next_edge(const Picture& picture,
     }
   }
   if (closest != nullptr) return look_at(*closest);
-  for (const double gap : {-kGapPx, kGapPx}) {
+  for (const double gap : {-min_gap_px_, min_gap_px_}) {
     Ellipse guess = edge;
     guess.semi_major += gap;
     guess.semi_minor += gap;

@@ -16,7 +16,7 @@ class RingCorrector {
  public:
   RingCorrector();
 
-  /// Finds the ring's other edge for each small detection, among the detections or else on the
+  /// Finds the ring's other edge for each detection, among the detections or else on the
   /// picture. If both have similar contrast, replaces the detection's ellipse by the unbiased edge.
   /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
   /// @param polarities    Of the detections.
@@ -32,6 +32,7 @@ class RingCorrector {
                                                         std::span<const Polarity> polarities,
                                                         std::size_t i) const;
 
+  double min_gap_px_;            // between the gradient maxima of a ring
   std::vector<Ellipse> maxima_;  // the detections before correction
 };
 

@@ -9,6 +9,8 @@
 
 #include "core/detection/contours/overlap.hpp"
 #include "core/detection/detection_trace.hpp"
+#include "core/edges/chains.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 
@@ -17,30 +19,22 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kSmoothingPx = 1.0;
-constexpr int kNoiseRowStep = 6;  // samples every second pixel of every sixth row
 constexpr double kHighOverNoise = 5.0;
 constexpr double kLowOverHigh = 0.4;
 constexpr double kMinHigh = 1.0;  // [grey levels / px], above quantization noise
 
-// Cosine of the largest angle between an edge's gradient and the ellipse's normal: 30 degrees.
-constexpr double kMinCosine = 0.87;
-
 // At a corner, the chords over this many pixels before and after it differ by more than 45 degrees.
 constexpr std::size_t kCornerReach = 5;
 constexpr double kCornerCosine = 0.7;
-constexpr int kMinPartPx = 16;
 
 constexpr std::size_t kMaxDetections = 256;  // bounds the time
 
 constexpr Tolerance kSameFit{.px = 0.75};
 
-constexpr int kContourSteps = 2;  // Gauss-Newton steps on the own contour,
-constexpr int kEdgeSteps = 2;     // and on all edges along the ellipse
-constexpr int kBorderPx = 3;      // reach of the smoothing and gradient kernels
+constexpr int kSteps = 2;  // Gauss-Newton steps on the own contour, and on all edges
 
 // Response of the 3 x 3 Sobel kernels to a slope of one grey level per pixel.
 constexpr double kSobelGain = 8.0;
-constexpr int kHistogramBins = 2048;
 
 // max(|x|, |y|) + 3/8 min(|x|, |y|): the Euclidean norm within 7 %.
 int approximate_norm(int x, int y) {
@@ -50,16 +44,17 @@ int approximate_norm(int x, int y) {
 }
 
 double gradient_noise(const cv::Mat& gx, const cv::Mat& gy, std::vector<int>& histogram) {
-  histogram.assign(kHistogramBins, 0);
+  histogram.assign(static_cast<std::size_t>(kSobelGain * 255.0), 0);
   int samples = 0;
-  for (int y = 0; y < gx.rows; y += kNoiseRowStep) {
+  const int step = std::max(1, gx.rows / kNoiseRows);
+  for (int y = 0; y < gx.rows; y += step) {
     const auto* row_x = gx.ptr<short>(y);
     const auto* row_y = gy.ptr<short>(y);
-    for (int x = y / kNoiseRowStep % 2; x < gx.cols; x += 2, ++samples) {
-      ++histogram[std::min(approximate_norm(row_x[x], row_y[x]), kHistogramBins - 1)];
+    for (int x = y / step % 2; x < gx.cols; x += 2, ++samples) {
+      ++histogram[static_cast<std::size_t>(approximate_norm(row_x[x], row_y[x]))];
     }
   }
-  return noise_of(static_cast<double>(noise_bin(histogram, samples)));
+  return noise_of(static_cast<double>(noise_bin(histogram, samples)) + 0.5);
 }
 
 // The edge map and its gradient.
@@ -70,8 +65,8 @@ struct EdgeField {
 
   // Smoothing displaces the edges nearer to the border.
   [[nodiscard]] bool is_inside(const cv::Point& p) const {
-    return p.x >= kBorderPx && p.y >= kBorderPx && p.x < edges.cols - kBorderPx &&
-           p.y < edges.rows - kBorderPx;
+    const int border = GradientMap::kBorder;  // these kernels reach as far
+    return p.x >= border && p.y >= border && p.x < edges.cols - border && p.y < edges.rows - border;
   }
   [[nodiscard]] Eigen::Vector2d gradient(const cv::Point& p) const {
     return {gradient_x.at<short>(p), gradient_y.at<short>(p)};
@@ -127,7 +122,8 @@ std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field
       const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
       if (!field.is_inside(pixel) || field.edges.at<std::uint8_t>(pixel) == 0) continue;
       const Eigen::Vector2d gradient = field.gradient(pixel);
-      if (std::abs(gradient.dot(step.normal())) < kMinCosine * gradient.norm()) continue;
+      const double along = gradient.dot(step.normal());
+      if (along * along < kMinSquaredCosine * gradient.squaredNorm()) continue;
       fit.add(maximum(field, pixel, gradient));
     }
   });
@@ -137,10 +133,8 @@ std::optional<Ellipse> refined_on_edges(const Ellipse& e, const EdgeField& field
 // Refines an ellipse to sub-pixel accuracy: ignores attached branches of its contour and includes
 // its edges in other contours.
 Ellipse refined(Ellipse e, std::span<const cv::Point> contour, const EdgeField& field) {
-  for (int i = 0; i < kContourSteps; ++i) {
-    e = refined_on_contour(e, contour, field).value_or(e);
-  }
-  for (int i = 0; i < kEdgeSteps; ++i) e = refined_on_edges(e, field).value_or(e);
+  for (int i = 0; i < kSteps; ++i) e = refined_on_contour(e, contour, field).value_or(e);
+  for (int i = 0; i < kSteps; ++i) e = refined_on_edges(e, field).value_or(e);
   return e;
 }
 
@@ -294,7 +288,8 @@ void ContourDetector::try_contour(std::span<const cv::Point> contour,
 void ContourDetector::try_parts(const Thresholds& thresholds) {
   for (const auto& contour : contours_) {
     for_each_smooth_part(contour, [&](std::span<const cv::Point> part) {
-      if (std::ssize(part) >= kMinPartPx) try_contour(part, thresholds, &TracedPass::arcs);
+      if (std::ssize(part) >= static_cast<int>(ChainTracer::kMinLength))
+        try_contour(part, thresholds, &TracedPass::arcs);
     });
   }
 }

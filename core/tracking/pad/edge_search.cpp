@@ -17,23 +17,13 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr int kMaxSteps = 24;  // to each side of the expected position
 constexpr int kMaxBox = 3;     // max samples averaged on each side of an edge
-constexpr int kLongestProfile = 2 * (kMaxSteps + kMaxBox) + 3;
 
-const Eigen::Vector2d& direction(std::size_t step) {
-  static const auto kTurn = [] {
-    std::array<Eigen::Vector2d, EdgeSearch::kCircleSteps> turn;
-    for (std::size_t i = 0; i < turn.size(); ++i) {
-      const double angle = kTwoPi * static_cast<double>(i) / EdgeSearch::kCircleSteps;
-      turn[i] = {std::cos(angle), std::sin(angle)};
-    }
-    return turn;
-  }();
-  return kTurn[step];
-}
+// One value per pixel of the longest profile, and one more.
+using PerPixel = std::array<float, 2 * (kMaxSteps + kMaxBox) + 4>;
 
 // Pixel levels across an edge.
 struct Profile {
-  std::array<float, kLongestProfile + 1> sums;  // prefix sums of the levels
+  PerPixel sums;  // prefix sums of the levels
   std::size_t count = 0;
   std::size_t box = 1;
   float first = 0.0F;      // first pixel relative to the middle one [steps]
@@ -53,7 +43,7 @@ void keep_edges(const Profile& profile, float min_contrast, double reach_px, Edg
   const auto& sums = profile.sums;
   const std::size_t half = profile.box;
   const float scale = 1.0F / static_cast<float>(half);
-  std::array<float, kLongestProfile + 1> rises;  // box differences between samples i - 1 and i
+  PerPixel rises;  // box differences between samples i - 1 and i
   for (std::size_t i = half; i + half <= profile.count; ++i) {
     rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
   }
@@ -97,7 +87,7 @@ struct EdgeSearch::Placement {
   double spacing_px = 0.0;
 
   [[nodiscard]] double step_px(const PadCircle& circle) const {
-    return kTwoPi * circle.radius * px_per_radius / kCircleSteps;
+    return kTwoPi * circle.radius * px_per_radius / OutlineSamples::kMaxSamples;
   }
   [[nodiscard]] double length_px(const PadLine& line, const Interval& part) const {
     return part.length() * (line.to - line.from).norm() * px_per_radius;
@@ -110,17 +100,18 @@ void EdgeSearch::sample(const PadModel& model, const PadView& view, const ImageV
   pixel_noise_ = pixel_noise(luma);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
   std::array<VisibleSteps, kMaxCircles> visible;
+  const auto directions = circle_directions(OutlineSamples::kMaxSamples);
   double total_px = 0.0;
   const std::size_t circles = std::min(model.circles.size(), visible.size());
   narrowest_ = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < circles; ++c) {
     const PadCircle& circle = model.circles[c];
-    for (std::size_t i = 0; i < kCircleSteps; ++i) {
-      visible[c][i] = placement.visible.has(circle.radius * direction(i));
+    for (std::size_t i = 0; i < OutlineSamples::kMaxSamples; ++i) {
+      visible[c][i] = placement.visible.has(circle.radius * directions[i].cast<double>());
     }
     const auto count = static_cast<double>(visible[c].count());
     total_px += count * placement.step_px(circle);
-    if (c == 0) visible_fraction_ = count / kCircleSteps;
+    if (c == 0) visible_fraction_ = count / OutlineSamples::kMaxSamples;
     if (c == 0) continue;
     narrowest_ = std::min(narrowest_, std::abs(model.circles[c - 1].radius - circle.radius));
   }
@@ -146,13 +137,14 @@ void EdgeSearch::sample_circle(const Placement& placement,
   const double step_px = placement.step_px(circle);
   const double spacing_px = placement.spacing_px;
   const double sign = circle.is_bright_outside ? 1.0 : -1.0;
+  const auto directions = circle_directions(OutlineSamples::kMaxSamples);
   double since_px = 0.5 * spacing_px;
-  for (std::size_t i = 0; i < kCircleSteps; ++i) {
+  for (std::size_t i = 0; i < OutlineSamples::kMaxSamples; ++i) {
     if (!visible[i]) continue;
     since_px += step_px;
     if (since_px < spacing_px) continue;
     since_px = std::min(since_px - spacing_px, spacing_px);
-    const Eigen::Vector2d& outwards = direction(i);
+    const Eigen::Vector2d outwards = directions[i].cast<double>();
     add(placement.view.ideal_from_pad,
         circle.radius * outwards,
         sign * outwards,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/edges/outline_samples.hpp"
 #include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_model.hpp"
@@ -55,10 +56,9 @@ class EdgeSearch {
 
   static constexpr int kSamples = 96;               ///< Of a search.
   static constexpr int kMaxSamples = 2 * kSamples;  ///< Capacity: each edge rounds up.
-  static constexpr std::size_t kCircleSteps = 256;  ///< Resolution of a circle's visible part.
 
  private:
-  using VisibleSteps = std::bitset<kCircleSteps>;
+  using VisibleSteps = std::bitset<OutlineSamples::kMaxSamples>;
   struct Placement;
 
   void sample_circle(const Placement& placement,

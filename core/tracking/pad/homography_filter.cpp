@@ -9,16 +9,15 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kFocalOverWidth = 0.8;      // if no camera is known
-constexpr double kUnmodelledSigma = 0.0015;  // of a view's change that is no camera motion
+constexpr double kFocalOverWidth = 0.8;  // if no camera is known
+constexpr double kTurnNoise = 0.002;     // sigma of the camera's rotation per frame [rad]
+constexpr double kShiftNoise = 0.0015;   // sigma of its translation [radii], and of other changes
 
 // Changes of a view by one-sigma camera motions, one per column.
 Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pad,
-                                            const Camera& camera,
-                                            double turn_rad,
-                                            double shift) {
+                                            const Camera& camera) {
   Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << turn_rad, turn_rad, turn_rad, shift, shift, shift;
+  sigmas << Eigen::Vector3d::Constant(kTurnNoise), Eigen::Vector3d::Constant(kShiftNoise);
   return change_by_camera(image_from_pad, camera.matrix()) * sigmas.asDiagonal();
 }
 
@@ -34,11 +33,8 @@ HomographyCovariance inverse_of(const HomographyCovariance& matrix) {
   return matrix.ldlt().solve(HomographyCovariance::Identity());
 }
 
-HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
-                                  const Camera& camera,
-                                  double turn_rad,
-                                  double shift) {
-  const auto changes = typical_changes(image_from_pad, camera, turn_rad, shift);
+HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad, const Camera& camera) {
+  const auto changes = typical_changes(image_from_pad, camera);
   return changes * changes.transpose();
 }
 
@@ -46,13 +42,11 @@ HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
 HomographyChange carried(const HomographyChange& velocity,
                          const Eigen::Matrix3d& from,
                          const Eigen::Matrix3d& to,
-                         const Camera& camera,
-                         double turn_rad,
-                         double shift) {
-  const auto here = typical_changes(from, camera, turn_rad, shift);
-  const auto there = typical_changes(to, camera, turn_rad, shift);
+                         const Camera& camera) {
+  const auto here = typical_changes(from, camera);
+  const auto there = typical_changes(to, camera);
   Eigen::Matrix<double, 6, 6> normal = here.transpose() * here;
-  normal.diagonal().array() += kUnmodelledSigma * kUnmodelledSigma;
+  normal.diagonal().array() += kShiftNoise * kShiftNoise;
   const Eigen::Matrix<double, 6, 1> motion = normal.ldlt().solve(here.transpose() * velocity);
   return velocity + (there - here) * motion;
 }
@@ -69,7 +63,7 @@ HomographyFilter HomographyFilter::after(double frames,
   next.homography_velocity =
       homography_velocity + frames * velocity_variance + 0.5 * frames * noise;
   next.velocity_variance = velocity_variance + noise;
-  next.pose.diagonal().array() += kUnmodelledSigma * kUnmodelledSigma;
+  next.pose.diagonal().array() += kShiftNoise * kShiftNoise;
   return next;
 }
 

@@ -12,13 +12,10 @@ namespace ellipse {
 /// Transports a homography velocity to another view, assuming constant camera motion.
 /// @param velocity  Change of the view `from` per frame. The part that camera motion does not
 ///                  explain is kept.
-/// Parameters as for camera_noise().
 [[nodiscard]] HomographyChange carried(const HomographyChange& velocity,
                                        const Eigen::Matrix3d& from,
                                        const Eigen::Matrix3d& to,
-                                       const Camera& camera,
-                                       double turn_rad,
-                                       double shift);
+                                       const Camera& camera);
 
 /// Kalman filter [Kalman1960] of a moving view. The state is the view's change and its velocity,
 /// the change per frame. A value.
@@ -46,12 +43,8 @@ struct HomographyFilter {
 
 [[nodiscard]] HomographyCovariance inverse_of(const HomographyCovariance& matrix);
 
-/// Covariance of a view's change under random camera motion.
-/// @param turn_rad  Standard deviation of the rotation about each axis.
-/// @param shift     That of the shift along each axis [radii].
+/// Covariance of a view's change under random camera motion, per frame.
 [[nodiscard]] HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
-                                                const Camera& camera,
-                                                double turn_rad,
-                                                double shift);
+                                                const Camera& camera);
 
 }  // namespace ellipse

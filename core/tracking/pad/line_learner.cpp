@@ -11,7 +11,6 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr int kParts = 8;            // of a top view, one per frame
 constexpr double kStraightPx = 1.2;  // max distance of a line from its chord
-constexpr double kMinLength = 0.1;   // [radii]
 
 }  // namespace
 
@@ -103,11 +102,12 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
   const Eigen::Vector2d from = pad_point_of(pixels.front());
   const Eigen::Vector2d to = pad_point_of(pixels.back());
   const double length = (to - from).norm();
-  if (length < kMinLength) return;
+  const double min_length = kPixel * ChainTracer::kMinLength;
+  if (length < min_length) return;
   const Eigen::Vector2d middle = 0.5 * (from + to);
   for (const PadCircle& circle : model.circles) {
     const auto is_beside = [&](const Eigen::Vector2d& point) {
-      return std::abs(point.norm() - circle.radius) < 0.5 * kMinLength;
+      return std::abs(point.norm() - circle.radius) < 0.5 * min_length;
     };
     if (is_beside(from) && is_beside(middle) && is_beside(to)) return;
   }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/edges/noise.hpp"
+#include "core/edges/outline_samples.hpp"
 #include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
@@ -14,7 +15,6 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kRadiusStep = 0.005;  // of the radial profile [radii]
-constexpr int kRadii = 250;            // of the profile
 constexpr int kAngles = 128;           // per radius
 constexpr int kApart = 5;              // min distance between circles [steps]
 constexpr int kOuterSlack = 15;        // search range to each side of radius 1 [steps]
@@ -31,12 +31,9 @@ int index_of(double radius) {
 class RadialProfile {
  public:
   // Both are borrowed.
-  RadialProfile(const ImageView& luma, const PadView& view) : luma_(luma), view_(view) {
-    for (std::size_t k = 0; k < kAngles; ++k) {
-      const double angle = kTwoPi * static_cast<double>(k) / kAngles;
-      directions_[k] = {std::cos(angle), std::sin(angle)};
-    }
-    for (int i = 0; i < kRadii; ++i) medians_[static_cast<std::size_t>(i)] = median(i);
+  RadialProfile(const ImageView& luma, const PadView& view)
+      : luma_(luma), view_(view), directions_(circle_directions(kAngles)) {
+    for (std::size_t i = 0; i < medians_.size(); ++i) medians_[i] = median(static_cast<int>(i));
   }
 
   // Median brightness outside minus inside; 0 if it is unknown.
@@ -44,7 +41,7 @@ class RadialProfile {
   [[nodiscard]] double step(int i) const {
     double sum = 0.0;
     for (int j = 1; j <= kApart; ++j) {
-      if (i - j < 0 || i + j >= kRadii) return 0.0;
+      if (i - j < 0 || i + j >= std::ssize(medians_)) return 0.0;
       const double outside = *(medians_.begin() + i + j);
       const double inside = *(medians_.begin() + i - j);
       sum += outside - inside;
@@ -58,7 +55,7 @@ class RadialProfile {
     int visible = 0;
     int agreed = 0;
     for (int k = 0; k < kAngles; ++k) {
-      const auto outside = level(std::min(i + kApart, kRadii - 1), k);
+      const auto outside = level(std::min(i + kApart, static_cast<int>(medians_.size()) - 1), k);
       const auto inside = level(std::max(i - kApart, 0), k);
       if (!outside || !inside) continue;
       ++visible;
@@ -69,7 +66,7 @@ class RadialProfile {
 
  private:
   [[nodiscard]] std::optional<float> level(int i, int k) const {
-    return view_.level_at(luma_, radius_at(i) * *(directions_.begin() + k));
+    return view_.level_at(luma_, radius_at(i) * (directions_.begin() + k)->cast<double>());
   }
 
   // NaN if no angle is visible.
@@ -88,8 +85,8 @@ class RadialProfile {
 
   const ImageView& luma_;
   const PadView& view_;
-  std::array<Eigen::Vector2d, kAngles> directions_;
-  std::array<double, kRadii> medians_;
+  std::span<const Eigen::Vector2f> directions_;
+  std::array<double, 250> medians_;  // from radius 0
 };
 
 bool is_peak(const RadialProfile& profile, int i) {

@@ -17,8 +17,6 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kTurnNoise = 0.002;       // sigma of the camera's rotation per frame [rad]
-constexpr double kShiftNoise = 0.0015;     // sigma of its translation [radii]
 constexpr double kUnknownMotion = 400.0;   // variance of an unknown motion over that of the noise
 constexpr double kAdaptation = 0.25;       // smoothing factor of noise, contrast, radii per 1/30 s
 constexpr double kEdgeSigmaPx = 0.6;       // of one edge candidate
@@ -29,7 +27,6 @@ constexpr int kMaxSteps = 3;               // searches of a frame, and before a 
 constexpr double kEnoughVisible = 0.15;    // share of the outer circle that determines the centre
 constexpr double kMaxCentreSigma = 0.035;  // [radii], if less is visible
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
-constexpr int kTrialsOfLine = 24;          // samples before a line is judged
 constexpr double kSharedVariance = 1.3;    // of the refined edge: errors of samples are correlated
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
@@ -117,8 +114,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     learn_radii(attempt->last, 1.0);
   }
   motion_.pose = inverse_of(attempt->estimate.information);
-  motion_.velocity_variance =
-      kUnknownMotion * camera_noise(view_, camera_, kTurnNoise, kShiftNoise);
+  motion_.velocity_variance = kUnknownMotion * camera_noise(view_, camera_);
   is_locked_ = true;
   if (window.camera) {
     refine(window, attempt->visible);
@@ -128,7 +124,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
 }
 
 HomographyFilter PadTracker::predicted(double frames, double looseness) const {
-  return motion_.after(frames, looseness * camera_noise(view_, camera_, kTurnNoise, kShiftNoise));
+  return motion_.after(frames, looseness * camera_noise(view_, camera_));
 }
 
 PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
@@ -203,7 +199,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double fram
   accept(*attempt, before, looseness, frames);
   refine(window, attempt->visible);
   if (window.camera) measure_inner_edges(window);
-  motion_.velocity = carried(motion_.velocity, last_view, view_, camera_, kTurnNoise, kShiftNoise);
+  motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
   learn_lines(window, *attempt);
   return make_track(&*attempt);
 }
@@ -313,7 +309,8 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   learned_radius_px_ = radius;
 }
 
-// Removes lines that are often unmatched, such as edges of shadows or occluders.
+// Removes lines that are unmatched significantly more often than not, such as edges of shadows or
+// occluders.
 void PadTracker::judge_lines(const HomographyChange& change) {
   const auto circles = static_cast<int>(model_.circles.size());
   const double max_px = tolerance_px(radius_px());
@@ -324,7 +321,8 @@ void PadTracker::judge_lines(const HomographyChange& change) {
     line.matched += is_matched(sample, change, max_px) ? 1 : 0;
   }
   std::erase_if(model_.lines, [](const PadLine& line) {
-    return line.visible >= kTrialsOfLine && line.matched < kMajority * line.visible;
+    const double sigma = 0.5 * std::sqrt(line.visible);  // of the matches, if half are expected
+    return line.matched + 2.0 * sigma < kMajority * line.visible;
   });
 }
 
@@ -334,7 +332,7 @@ void PadTracker::coast(const Eigen::Matrix3d& prediction,
   view_ = prediction;
   motion_ = before;
   missed_ += frames;
-  if (missed_ * kFrame_s > kMaxAbsence_s) is_locked_ = false;
+  if (missed_ * kFrame_s > kMemory_s) is_locked_ = false;
 }
 
 std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {

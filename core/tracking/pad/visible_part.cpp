@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/edges/gradient_map.hpp"
+
 namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMarginPx = 3.0;  // from the border
-constexpr int kSteps = 8;          // per side of the undistorted border; bisections of a line
+constexpr int kSteps = 8;  // per side of the undistorted border; bisections of a line
 
 // A rectangle of the ideal plane.
 struct IdealRect {
@@ -22,16 +23,16 @@ struct IdealRect {
 // An upright rectangle that is entirely visible: bounded by the innermost point of each undistorted
 // image side.
 IdealRect inner_rect(const LensView& lens, double right, double bottom) {
-  if (!lens.is_distorted()) return {kMarginPx, kMarginPx, right, bottom};
+  if (!lens.is_distorted()) return {GradientMap::kBorder, GradientMap::kBorder, right, bottom};
   IdealRect rect{-kFarPx, -kFarPx, kFarPx, kFarPx};
   for (int i = 0; i <= kSteps; ++i) {
     const double at = static_cast<double>(i) / kSteps;
-    const double x = std::lerp(kMarginPx, right, at);
-    const double y = std::lerp(kMarginPx, bottom, at);
+    const double x = std::lerp(GradientMap::kBorder, right, at);
+    const double y = std::lerp(GradientMap::kBorder, bottom, at);
     // Points without an inverse are NaN, which std::max and std::min ignore as second argument.
-    rect.left = std::max(rect.left, lens.approximate_ideal({kMarginPx, y}).x());
+    rect.left = std::max(rect.left, lens.approximate_ideal({GradientMap::kBorder, y}).x());
     rect.right = std::min(rect.right, lens.approximate_ideal({right, y}).x());
-    rect.top = std::max(rect.top, lens.approximate_ideal({x, kMarginPx}).y());
+    rect.top = std::max(rect.top, lens.approximate_ideal({x, GradientMap::kBorder}).y());
     rect.bottom = std::min(rect.bottom, lens.approximate_ideal({x, bottom}).y());
   }
   return rect;
@@ -40,7 +41,9 @@ IdealRect inner_rect(const LensView& lens, double right, double bottom) {
 }  // namespace
 
 VisiblePart::VisiblePart(const PadView& view, const ImageView& luma)
-    : view_(view), right_px_(luma.width - 1 - kMarginPx), bottom_px_(luma.height - 1 - kMarginPx) {
+    : view_(view),
+      right_px_(luma.width - 1 - GradientMap::kBorder),
+      bottom_px_(luma.height - 1 - GradientMap::kBorder) {
   const IdealRect rect = inner_rect(view.lens, right_px_, bottom_px_);
   const Eigen::Matrix3d& h = view.ideal_from_pad;
   borders_.row(0) = h.row(0) - rect.left * h.row(2);
@@ -51,8 +54,9 @@ VisiblePart::VisiblePart(const PadView& view, const ImageView& luma)
 
 bool VisiblePart::is_visible_distorted(const Eigen::Vector2d& pad_point) const {
   const auto projected = view_.at(pad_point);
-  return projected && projected->point.x() >= kMarginPx && projected->point.y() >= kMarginPx &&
-         projected->point.x() <= right_px_ && projected->point.y() <= bottom_px_;
+  return projected && projected->point.x() >= GradientMap::kBorder &&
+         projected->point.y() >= GradientMap::kBorder && projected->point.x() <= right_px_ &&
+         projected->point.y() <= bottom_px_;
 }
 
 Interval VisiblePart::clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {

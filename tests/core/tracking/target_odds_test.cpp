@@ -9,11 +9,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/tracking/frame_clock.hpp"
+
 namespace ellipse {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMemory_s = 0.3;  // measured on footage
 
 TEST(TargetOdds, StartHigherNearARecentTarget) {
   TargetOdds unknown;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/scene/catalog.hpp"
+#include "core/tracking/frame_clock.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -288,8 +289,8 @@ TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
     PadTracker tracker = locked;
     double unseen = frames;
     while (tracker.track(whole(ground), frames)) unseen += frames;
-    EXPECT_GT(unseen, 12.0) << frames;
-    EXPECT_LE(unseen, 12.0 + frames) << frames;
+    EXPECT_GT(unseen, kMemory_s / kFrame_s) << frames;
+    EXPECT_LE(unseen, kMemory_s / kFrame_s + frames) << frames;
   }
 }
 
