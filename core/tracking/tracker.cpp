@@ -13,6 +13,7 @@
 namespace ellipse {
 namespace {
 
+constexpr double kMinPredicted = 0.4;     // min matched share of a reported prediction
 constexpr double kDetectedSigmaPx = 0.3;  // edge sigma of an ellipse that is not tracked
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
@@ -152,7 +153,7 @@ std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double ela
   const auto track = pad_tracker_->track(window, elapsed);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(frame.lens, track->ellipse, width, height);
-  const bool is_likely = visible >= kMajority && track->coverage >= kMajority;
+  const bool is_likely = visible >= kMajority && track->coverage >= kMinPredicted;
   if (!track->is_visible && !is_likely) return std::nullopt;
   Target target;
   target.ellipse = track->ellipse;

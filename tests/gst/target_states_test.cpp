@@ -28,19 +28,19 @@ struct Shot {
 
 // The last hidden shot exceeds the time for which a target is kept.
 const std::vector<Shot> kShots{{Sight::kClear, 20},
-                               {Sight::kHalfHidden, 10},
+                               {Sight::kHalfHidden, 8},
                                {Sight::kClear, 10},
                                {Sight::kHidden, 4},
                                {Sight::kClear, 16},
                                {Sight::kHidden, 20},
                                {Sight::kClear, 10}};
 
-// A drifting pad; a bar hides half of it on request.
+// A drifting pad; a bar hides more than half of it on request.
 Picture picture_of(Sight sight, int frame) {
   if (sight == Sight::kHidden) return Picture(320, 240, 90);
   ellipse::Scene scene;
   if (sight == Sight::kHalfHidden) {
-    scene.bars.push_back(support::bar_px({0.0, 120.0}, {320.0, 120.0}, 40.0, 60.0));
+    scene.bars.push_back(support::bar_px({0.0, 120.0}, {320.0, 120.0}, 39.5, 60.0));
   }
   const ellipse::Ellipse pad{120.0 + 0.5 * frame, 110.0 + 0.2 * frame, 40.0, 32.0, 0.4};
   return support::rendered(scene, pad, 320, 240, static_cast<std::uint64_t>(frame));
@@ -142,7 +142,7 @@ TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
   EXPECT_EQ(summary_of(story()),
             "1 x detected 1, following\n"
             "19 x tracked 1, following\n"
-            "10 x predicted 1, coasting\n"
+            "8 x predicted 1, coasting\n"
             "10 x tracked 1, following\n"
             "4 x lost, searching\n"
             "16 x tracked 1, following\n"
