@@ -304,7 +304,7 @@ TEST(DetectionTrace, OfArcsReportsReasonsOfArcsOnly) {
   } kCases[] = {
       {Reason::kPoorFit, "glare", 4.0, 50},
       {Reason::kDuplicateOfRejected, "negative", 0.5, 20},
-      {Reason::kTooFewEdges, "negative", 0.5, 20},
+      {Reason::kTooFewEdges, "glare", 4.0, 50},
       {Reason::kUnlikely, "oblique", 2.0, 50},
   };
   for (const auto& one : kCases) {
