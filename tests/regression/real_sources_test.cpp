@@ -33,18 +33,18 @@ struct Source {
 
 constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
-    {"airlab-deformed", {172, 1}, {173, 1}},
-    {"airlab-gascola", {454, 0}, {454, 0}},
-    {"pupil-infrared", {1042, 12}, {1021, 1}},
+    {"airlab-deformed", {173, 0}, {174, 0}},
+    {"airlab-gascola", {455, 0}, {455, 0}},
+    {"pupil-infrared", {1093, 9}, {1017, 1}},
     {"pupil-blinks", {258, 0}, {256, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {140, 1}, {140, 1}},
+    {"octagon-negative", {141, 0}, {140, 1}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 
 /// All ellipses of calibration-discs, on single frames.
-constexpr int kMinRightDiscs = 2441;
+constexpr int kMinRightDiscs = 2442;
 constexpr int kMaxMistakenDiscs = 5;
 
 void PrintTo(const Source& source, std::ostream* out) {

@@ -254,7 +254,7 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const greyed = await page.$$eval(".setting.idle", (nodes) => nodes.map((node) => node.dataset.setting));
     assert.deepEqual(greyed.sort(), ["detect-contour-overlap", "max-scale", "max-target-size", "min-target-size",
       "roi-expansion", "track-contour-overlap", "track-ellipse-overlap"]);
-    assert.equal(await idle("detect-contour-overlap"), "No effect with detector=arcs up to 0.7");
+    assert.equal(await idle("detect-contour-overlap"), "No effect with detector=arcs up to 0.65");
     assert.equal(await idle("track-contour-overlap"), "No effect with detector=arcs and tracking=edges");
     assert.equal(await idle("max-scale"), "No effect with tracking=edges unless max-processing-time is set");
     assert.equal(await idle("ring-ratio"), "");
