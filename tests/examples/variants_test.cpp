@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <opencv2/imgproc.hpp>
+#include <cstdint>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 
 #include "core/camera/camera.hpp"
@@ -18,30 +18,26 @@ namespace {
 const ellipse::Ellipse kBright{110.3, 61.7, 40.0, 22.0, 0.4};
 const ellipse::Ellipse kOther{300.0, 160.0, 18.0, 12.0, -0.7};
 
+// Distance of a pixel from the centre of an ellipse; 1 on its perimeter.
+double radius_in(const ellipse::Ellipse& e, int x, int y) {
+  const double dx = x - e.cx;
+  const double dy = y - e.cy;
+  const double c = std::cos(e.angle_rad);
+  const double s = std::sin(e.angle_rad);
+  return std::hypot((c * dx + s * dy) / e.semi_major, (c * dy - s * dx) / e.semi_minor);
+}
+
 // A bright and a darker filled ellipse, on black.
 class TwoEllipses : public PictureSource {
  public:
   [[nodiscard]] cv::Mat picture(const Frame& /*frame*/) override {
-    cv::Mat picture(240, 390, CV_8U, cv::Scalar(0));
-    draw(picture, kBright, 220);
-    draw(picture, kOther, 90);
+    cv::Mat picture(240, 390, CV_8U);
+    picture.forEach<std::uint8_t>([](std::uint8_t& level, const int* at) {
+      const bool is_bright = radius_in(kBright, at[1], at[0]) <= 1.0;
+      const bool is_other = radius_in(kOther, at[1], at[0]) <= 1.0;
+      level = is_bright ? 220 : is_other ? 90 : 0;
+    });
     return picture;
-  }
-
- private:
-  // Antialiased with 1/16 px.
-  static void draw(cv::Mat& picture, const ellipse::Ellipse& e, int level) {
-    const auto fixed = [](double px) { return cvRound(16.0 * px); };
-    cv::ellipse(picture,
-                {fixed(e.cx), fixed(e.cy)},
-                {fixed(e.semi_major), fixed(e.semi_minor)},
-                e.angle_rad * 180.0 / std::numbers::pi,
-                0.0,
-                360.0,
-                cv::Scalar(level),
-                cv::FILLED,
-                cv::LINE_AA,
-                4);
   }
 };
 
@@ -65,18 +61,13 @@ Sequence variant(const std::string& name) {
   return variants_of({sequence()}, {name}).front();
 }
 
-// Mean level inside an ellipse scaled about its centre by `from`, but not by `to`.
+// Mean level between `from` and `to` times an ellipse.
 double level_between(const cv::Mat& picture, const ellipse::Ellipse& e, double from, double to) {
   double sum = 0.0;
   int count = 0;
   for (int y = 0; y < picture.rows; ++y) {
     for (int x = 0; x < picture.cols; ++x) {
-      const double dx = x - e.cx;
-      const double dy = y - e.cy;
-      const double c = std::cos(e.angle_rad);
-      const double s = std::sin(e.angle_rad);
-      const double radius =
-          std::hypot((c * dx + s * dy) / e.semi_major, (c * dy - s * dx) / e.semi_minor);
+      const double radius = radius_in(e, x, y);
       if (radius < from || radius > to) continue;
       sum += picture.at<std::uint8_t>(y, x);
       ++count;
@@ -111,6 +102,18 @@ TEST(Variants, RotateClockwise) {
   EXPECT_NEAR(target.cx, 239.0 - kBright.cy, 1e-9);
   EXPECT_NEAR(target.cy, kBright.cx, 1e-9);
   EXPECT_EQ(altered.pictures->picture(altered.frames.front()).size(), cv::Size(240, 390));
+}
+
+TEST(Variants, MoveCentresExactly) {
+  const auto centre = [](const std::string& name) {
+    return variant(name).frames.front().truth.target->center();
+  };
+  const Eigen::Vector2d here = kBright.center();
+  EXPECT_TRUE(centre("flip-x").isApprox(Eigen::Vector2d(389.0 - here.x(), here.y())));
+  EXPECT_TRUE(centre("flip-y").isApprox(Eigen::Vector2d(here.x(), 239.0 - here.y())));
+  const Eigen::Vector2d half(0.5, 0.5);
+  EXPECT_TRUE(centre("third").isApprox((here + half) / 3.0 - half));
+  EXPECT_EQ(centre("noise"), here);
 }
 
 TEST(Variants, AreTheSameAtEachRequest) {
