@@ -37,13 +37,13 @@ void OutlineJudge::start(double log_odds, bool is_known) {
   odds_.start(log_odds, is_known);
   since_judged_s_ = 0.0;
   max_visible_ = 0.0;
-  judged_overlap_ = 0.0;
+  judged_overlap_ = 1.0;
 }
 
 void OutlineJudge::confirm(double log_odds) {
   add(log_odds);
   max_visible_ = 0.0;
-  judged_overlap_ = 0.0;
+  judged_overlap_ = 1.0;
 }
 
 void OutlineJudge::judge(Detector& detector,

@@ -36,6 +36,8 @@ class OutlineJudge {
 
   /// Log odds from all frames so far.
   [[nodiscard]] double log_odds() const { return odds_.value(); }
+  /// Log odds from the last frame that was evaluated.
+  [[nodiscard]] double last_log_odds() const { return odds_.last(); }
   /// Whether the odds are high enough for periodic evaluation.
   [[nodiscard]] bool is_sure() const;
 

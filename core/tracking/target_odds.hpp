@@ -26,6 +26,8 @@ class TargetOdds {
   void add(double log_odds, double elapsed_s);
 
   [[nodiscard]] double value() const { return sum_; }
+  /// Of the last frame that was added.
+  [[nodiscard]] double last() const { return last_; }
 
  private:
   double sum_ = 0.0;

@@ -131,10 +131,12 @@ double Tracker::required_log_odds() const {
 }
 
 // Detects unless a visible target has sufficient odds; then only periodically, since a better
-// target may have come into view.
+// target may have come into view, and while an uncertain outline looks wrong in this frame.
 bool Tracker::needs_detection(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  return !is_visible || judge_->log_odds() < required_log_odds() || is_detection_due();
+  const double required = required_log_odds();
+  const bool looks_wrong = !judge_->is_sure() && judge_->last_log_odds() < required;
+  return !is_visible || judge_->log_odds() < required || looks_wrong || is_detection_due();
 }
 
 bool Tracker::is_detection_due() const {
@@ -196,7 +198,11 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {
   if (is_too_large(followed.ellipse) && lies_in(chosen.ellipse, followed.ellipse)) return false;
-  return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
+  // A certain detection corrects an uncertain outline of the same target.
+  const bool is_correction = !judge_->is_sure() &&
+                             log_odds(chosen.probability) >= kCertainLogOdds &&
+                             is_same(chosen.ellipse, followed.ellipse, kSameTarget);
+  return is_correction || is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
 }
 
 // Whether the detector can find only the inner edges of a target of this size.

@@ -15,7 +15,6 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr std::size_t kSamples = 48;    // half of the detector's, since this runs in each frame
 constexpr double kBlurBiasShare = 0.2;  // sigma of the blur correction, share of it
-constexpr Tolerance kNear{1.0, 0.03};   // max distance from the predicted outline
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;

@@ -11,6 +11,9 @@
 
 namespace ellipse {
 
+/// Max difference of an outer edge and its prediction, or of a locked edge and its detection.
+inline constexpr Tolerance kNear{1.0, 0.03};
+
 /// Refines the outer edge of a pad whose view is accurate to about a pixel.
 ///
 /// @param gain  Ratio of image contrast to model contrast.

@@ -120,7 +120,8 @@ std::optional<int> outer_circle(const RadialProfile& profile, double noise) {
 
 std::optional<PadModel> learn_circles(const ImageView& luma,
                                       const PadView& view,
-                                      double ring_ratio) {
+                                      double ring_ratio,
+                                      double min_apart) {
   const RadialProfile profile(luma, view);
   const std::optional<int> found = outer_circle(profile, pixel_noise(luma));
   if (!found) return std::nullopt;
@@ -138,7 +139,11 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
   const int last = index_of(model.circles.back().radius * radius_at(outer));
   for (int i = last - kApart; i >= kApart && model.circles.size() < kMaxCircles; --i) {
     const bool is_strong = profile.strength(i) >= kMajority * profile.strength(outer);
-    if (is_strong && is_peak(profile, i) && profile.agreement(i) >= kMinCoverage) add(i);
+    if (!is_strong || !is_peak(profile, i) || profile.agreement(i) < kMinCoverage) continue;
+    const PadCircle& previous = model.circles.back();
+    const bool is_other_way = previous.is_bright_outside != (profile.step(i) > 0.0);
+    const double apart = previous.radius - radius_at(i) / radius_at(outer);
+    if (is_other_way || apart >= min_apart) add(i);
   }
   return model;
 }

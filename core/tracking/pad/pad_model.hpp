@@ -53,9 +53,12 @@ struct PadModel {
 /// @param view        Projects the outer circle to the target's outer edge, within a few percent.
 /// @param ring_ratio  Radius of the next circle inside the outer one, if known: it is added even if
 ///                    the image is too coarse to resolve it. 0 = learned.
+/// @param min_apart   Min distance of neighbouring circles of the same polarity [radii]. The search
+///                    would take the edge of one for the other if they were closer.
 /// @return nullopt if there is no step at the outer circle. Allocates only the model.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
                                                     const PadView& view,
-                                                    double ring_ratio = 0.0);
+                                                    double ring_ratio = 0.0,
+                                                    double min_apart = 0.0);
 
 }  // namespace ellipse

@@ -78,7 +78,9 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
   }
   double max_contrast = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    auto model = learn_circles(window.luma, view_in(window, views[i]), ring_ratio_);
+    const PadView view = view_in(window, views[i]);
+    const double min_apart = tolerance_px(view.radius_px()) / view.radius_px();
+    auto model = learn_circles(window.luma, view, ring_ratio_, min_apart);
     if (!model) continue;
     double contrast = 0.0;
     for (const PadCircle& circle : model->circles) contrast += circle.contrast;
@@ -113,6 +115,8 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
   }
+  const auto locked = project_circle(view_, 1.0);
+  if (!locked || !is_same(*locked, outer_edge, kNear)) return false;  // another edge
   motion_.pose = inverse_of(attempt->estimate.information);
   motion_.velocity_variance = kUnknownMotion * camera_noise(view_, camera_);
   is_locked_ = true;
