@@ -197,12 +197,14 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
 }
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {
+  // A certain detection replaces an uncertain outline, unless it may be its inner edge.
+  if (!judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds) {
+    return is_same(chosen.ellipse, followed.ellipse, kSameTarget) ||
+           !are_concentric(chosen.ellipse, followed.ellipse) ||
+           chosen.ellipse.semi_major > followed.ellipse.semi_major;
+  }
   if (is_too_large(followed.ellipse) && lies_in(chosen.ellipse, followed.ellipse)) return false;
-  // A certain detection corrects an uncertain outline of the same target.
-  const bool is_correction = !judge_->is_sure() &&
-                             log_odds(chosen.probability) >= kCertainLogOdds &&
-                             is_same(chosen.ellipse, followed.ellipse, kSameTarget);
-  return is_correction || is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
+  return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
 }
 
 // Whether the detector can find only the inner edges of a target of this size.

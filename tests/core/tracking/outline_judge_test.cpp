@@ -78,13 +78,21 @@ TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
   EXPECT_EQ(detector_.calls, before + 1);
 }
 
-TEST_F(OutlineJudgeTest, IgnoresShortArcsOfTargetsSeenWhole) {
-  judge_.start(0.0, false);
+TEST_F(OutlineJudgeTest, IgnoresShortArcsOfSureTargetsSeenWhole) {
+  judge_.start(5.0, true);
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 0);
-  judge_.start(0.0, false);  // a new target, of which no more has been visible
+  judge_.start(5.0, true);  // a new target, of which no more has been visible
   EXPECT_GT(calls_in_a_second(), 0);
+}
+
+TEST_F(OutlineJudgeTest, JudgesShortArcsOfUncertainTargets) {
+  detector_.answer = 0.0;
+  judge_.start(0.0, false);
+  judge_.judge(detector_, window_, target_, {});
+  target_.visible_fraction = 0.3;
+  EXPECT_EQ(calls_in_a_second(), 30);
 }
 
 TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
