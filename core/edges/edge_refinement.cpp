@@ -44,11 +44,11 @@ std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
       weights += weight;
     }
     const double independent_px = std::max(kIndependentPx, weights / count);
-    refined.uncertainty = {image_from_pad(refined.ellipse),
-                           weights / squares / independent_px * fit.information()};
     const auto better = fit.solve();
     if (!better) return std::nullopt;
     refined.ellipse = *better;
+    refined.uncertainty = {image_from_pad(*better),
+                           weights / squares / independent_px * fit.information()};
   }
   return refined;
 }

@@ -370,10 +370,9 @@ std::optional<double> fit_edges(const Band& band,
       fit.add(band.point_with_normal(outwards) + (edge.offset_px + drawn_in_px) * outwards, weight);
     }
   }
-  refined.uncertainty = {image_from_pad(refined.ellipse), fit.information()};
   const auto better = fit.solve();
   if (!better) return std::nullopt;
-  refined.ellipse = *better;
+  refined = {*better, {image_from_pad(*better), fit.information()}};
   return kTypicalStepPx * std::exp(-narrower / weights);
 }
 

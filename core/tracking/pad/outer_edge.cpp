@@ -59,7 +59,8 @@ std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
   exact->ellipse = without_blur_bias({blurred, inner->ellipse}).outer;
   const double sigma_px = kBlurBiasShare * max_difference_px(exact->ellipse, blurred);
   const double radius_px = std::sqrt(blurred.semi_major * blurred.semi_minor);
-  exact->uncertainty.information = widened(exact->uncertainty.information, sigma_px / radius_px);
+  exact->uncertainty = {image_from_pad(exact->ellipse),
+                        widened(exact->uncertainty.information, sigma_px / radius_px)};
   return exact;
 }
 
