@@ -142,7 +142,7 @@ TEST(PoseRegression, ErrorsStayWithinLimitsFromFifteenMetresToOne) {
   const auto inside = std::count_if(
       errors.squared.begin(), errors.squared.end(), [](double e) { return e < 7.8147; });
   std::printf(
-      "%d of %d frames; aside %.5f, depth %.5f, normal %.4f rad (median); wrong %d of %d; "
+      "%d of %d frames; lateral %.5f, depth %.5f, normal %.4f rad (median); wrong %d of %d; "
       "normalised error squared: median %.2f, %.3f within 95 %%\n",
       errors.estimates,
       errors.frames,
@@ -160,6 +160,7 @@ TEST(PoseRegression, ErrorsStayWithinLimitsFromFifteenMetresToOne) {
   EXPECT_LE(quantile(errors.depth, 0.95), 0.02);
   EXPECT_LE(quantile(errors.normal_rad, 0.5), 1.5 * std::numbers::pi / 180.0);
   EXPECT_LE(errors.wrong, errors.tilted / 100);
+  EXPECT_GE(inside, 0.92 * static_cast<double>(errors.squared.size()));
 }
 
 }  // namespace

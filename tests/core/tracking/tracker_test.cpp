@@ -195,6 +195,70 @@ TEST(FollowingTracker, ReportsItsState) {
   EXPECT_EQ(tracker.state(), TrackerState::kSearching);
 }
 
+// Detects the inner edge of a ring in the first frame and the outer edge from then on.
+class InnerEdgeFirst : public testing::Test {
+ protected:
+  static constexpr double kRingWidth = 0.1;
+
+  class Judge final : public Detector {
+   public:
+    std::span<const Detection> detect(const ellipse::Picture& picture,
+                                      const Thresholds&) override {
+      Detection& detection = answer_.front();
+      detection = {Film::truth_at(0), 1.0, 1.0, 100.0};
+      detection.probability = is_first_ ? 0.9 : 0.99;
+      if (is_first_) detection.ellipse.semi_major *= 1.0 - kRingWidth;
+      if (is_first_) detection.ellipse.semi_minor *= 1.0 - kRingWidth;
+      is_first_ = false;
+      const int scale = picture.luma.empty() ? 1 : 320 / picture.luma.width;
+      detection.ellipse = to_region(detection.ellipse, {}, scale);
+      return answer_;
+    }
+    std::optional<double> log_odds_of(const ellipse::Picture&,
+                                      const Ellipse&,
+                                      const Thresholds&) override {
+      return judged;
+    }
+    Overlaps detecting_overlaps() const override { return {0.95, 0.94}; }
+    Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
+
+    std::optional<double> judged;
+
+   private:
+    bool is_first_ = true;
+    std::vector<Detection> answer_{1};
+  };
+
+  void SetUp() override {
+    Scene scene = plain_ring();
+    scene.pad.ring_width = kRingWidth;
+    picture_ = rendered(scene, Film::truth_at(0));
+  }
+  // The frame whose ellipse is the outer edge.
+  int corrected_at(std::optional<double> judged) {
+    auto detector = std::make_unique<Judge>();
+    detector->judged = judged;
+    Tracker tracker({}, std::move(detector));
+    for (int frame = 0; frame < 60; ++frame) {
+      const auto target = tracker.process(picture_.view(), frame * kFrameNs);
+      if (target && max_difference_px(target->ellipse, Film::truth_at(0)) < 1.0) return frame;
+    }
+    return 60;
+  }
+
+  support::Picture picture_{320, 240};
+};
+
+TEST_F(InnerEdgeFirst, IsCorrectedByTheNextDetection) {
+  const int frame = corrected_at(std::nullopt);
+  EXPECT_GT(frame, 1);
+  EXPECT_LE(frame, 16);  // half a second
+}
+
+TEST_F(InnerEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
+  EXPECT_EQ(corrected_at(-1.0), 1);
+}
+
 // Half a disc alone is ambiguous; the probability grows as more of it becomes visible.
 TEST(FollowingTracker, ConfirmsOverSeveralFrames) {
   Scene scene = plain_ring();

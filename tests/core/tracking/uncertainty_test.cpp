@@ -56,7 +56,7 @@ Shares shares_in(const char* name, int frames) {
 // Scenes without motion blur. Independent frames would give 95 %; consecutive errors are
 // correlated.
 TEST(Uncertainty, ContainsTheTruthInMostFrames) {
-  for (const char* name : {"approach", "glare", "noise"}) {
+  for (const char* name : {"approach", "glare", "noise", "thin"}) {
     const Shares shares = shares_in(name, 150);
     EXPECT_GT(shares.frames, 140) << name;
     EXPECT_GT(shares.inside, 0.88 * shares.frames) << name;

@@ -146,6 +146,26 @@ TEST(LearnCirclesFrom, AGivenRingRatio) {
   EXPECT_EQ(model->circles[1].radius, kInner + 0.004);
 }
 
+// Two steps in the same direction: the search could take one edge for the other.
+TEST(LearnCirclesFrom, StepsThatAreFarEnoughApart) {
+  Picture picture(320, 240, 200);
+  const Matrix3d from_picture = image_from_pad(kPad).inverse();
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double radius = (from_picture * Eigen::Vector3d(x, y, 1.0)).hnormalized().norm();
+      if (radius < 1.0) picture.at(x, y) = radius < 0.85 ? 60 : 130;
+    }
+  }
+  const auto both = learn_circles(picture.view(), image_from_pad(kPad), 0.0, 0.14);
+  ASSERT_TRUE(both);
+  ASSERT_EQ(both->circles.size(), 2U);
+  EXPECT_NEAR(both->circles[1].radius, 0.85, 0.01);
+  EXPECT_EQ(both->circles[1].is_bright_outside, both->circles[0].is_bright_outside);
+  const auto one = learn_circles(picture.view(), image_from_pad(kPad), 0.0, 0.16);
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->circles.size(), 1U);
+}
+
 TEST(LearnCirclesFrom, ThePartInsideThePicture) {
   const Ellipse half_out = translated(kPad, -150.0, 0.0);
   const Picture picture = rendered(scene_of(Pattern::kRing), half_out);

@@ -110,6 +110,16 @@ TEST(PadTracker, RefusesToLockWithoutEdges) {
   EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 1000.0, 0.0)));
 }
 
+TEST(PadTracker, RefusesToLockOnAnotherEdgeThanTheDetectedOne) {
+  const Picture picture = frame_of(kPad);
+  PadTracker tracker;
+  Ellipse rough = kPad;
+  rough.semi_major *= 0.95;  // by 3 px; the tolerance is 2.7 px
+  EXPECT_FALSE(tracker.lock(whole(picture), rough));
+  rough.semi_major = 0.97 * kPad.semi_major;
+  EXPECT_TRUE(tracker.lock(whole(picture), rough));
+}
+
 TEST(PadTracker, ForgetsTheReleasedPad) {
   PadTracker tracker;
   const Picture picture = frame_of(kPad);
