@@ -253,7 +253,7 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
     return std::min(level > 0.0 ? level : by_default,
                     std::numeric_limits<Int>::max() / kGradientGain);
   };
-  // Rounding makes steps of one grey level along any slow shading; they are no edges.
+  // Quantization turns slow shading into steps of one grey level, which are not edges.
   const double by_noise = std::max(kLowOverNoise * noise_, kGradientOfStep) / kGradientGain;
   thresholds_.low =
       used(thresholds.low, thresholds.high > 0.0 ? thresholds.high / kHighOverLow : by_noise);

@@ -41,6 +41,6 @@ class MappedFrame {
   bool is_mapped_;
 };
 
-/// A view of a mapped frame in one of these formats. Copies no pixel; valid while it is mapped. All
-/// memory but the system's counts as slow to read.
+/// A view of a mapped frame in one of these formats. Copies no pixel; valid while it is mapped.
+/// Memory other than system memory is treated as slow to read.
 [[nodiscard]] ellipse::PixelView pixel_view_of(const GstVideoFrame& frame, bool is_mosaic = false);
