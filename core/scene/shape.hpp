@@ -54,7 +54,7 @@ class ShapeEdge {
   [[nodiscard]] Nearness at(const Eigen::Vector2d& point) const;
 
   /// Share of the light at a point that comes from the shape.
-  /// @param point_per_px  Derivative of the place by the picture's pixels.
+  /// @param point_per_px  Derivative of the point by the picture's pixels.
   [[nodiscard]] double coverage(const Eigen::Vector2d& point,
                                 const Eigen::Matrix2d& point_per_px,
                                 double blur_px) const;

@@ -244,7 +244,7 @@ void track_frame(GstEllipseTrack* self, GstBuffer* buffer) {
 }
 
 void reset_stream(GstEllipseTrack* self) {
-  GST_DEBUG_OBJECT(self, "starts over");
+  GST_DEBUG_OBJECT(self, "tracker reset");
   succeeds(self, "Cannot reset the tracker", [self] {
     GST_OBJECT_LOCK(self);
     const TrackProperties properties = self->shared->properties;

@@ -256,7 +256,7 @@ void install_files(const Installer& install) {
   install(PROP_CAMERA_FILE,
           g_param_spec_string("camera-file",
                               "Camera file",
-                              "Camera calibration from OpenCV or ROS; overrides fx and hfov; "
+                              "Camera calibration file, OpenCV or ROS format; overrides fx and hfov; "
                               "empty = none",
                               "",
                               kPlaying));

@@ -211,7 +211,7 @@ namespace {
 struct Crossing {
   int axis;         // along which pixels are read
   int line;         // index of the row or column
-  double place_px;  // position along it
+  double position_px;  // along it
   double slope;     // distance from the edge per pixel along it
 };
 

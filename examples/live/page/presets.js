@@ -90,9 +90,9 @@ export function setUpPresets(settings, notify) {
   return showState;
 }
 
-// Names the preset in force and counts the settings changed since.
+// Names the active preset and counts the settings changed since.
 function stateOf({ name, values }, now) {
   const changed = Object.keys(values).filter((each) => JSON.stringify(values[each]) !== JSON.stringify(now[each]));
-  if (changed.length === 0) return `In force: ${name}`;
-  return `In force: ${name}, ${changed.length} ${changed.length === 1 ? "setting" : "settings"} changed since`;
+  if (changed.length === 0) return `Active preset: ${name}`;
+  return `Active preset: ${name}; ${changed.length} ${changed.length === 1 ? "setting" : "settings"} changed since`;
 }

@@ -6,12 +6,12 @@ import { make, makeControl } from "./controls.js";
 const kPollMs = 3000;
 const kGroups = {
   detection: ["Detection", "criteria for an ellipse"],
-  edges: ["Edges", "criteria for an edge"],
+  edges: ["Edges", "edge thresholds"],
   tracking: ["Tracking", "from frame to frame"],
   scale: ["Scale", "resolution of the search"],
   ROI: ["Region", "search region"],
   camera: ["Camera", "lens and pose of the target"],
-  load: ["Load", "selection of frames"],
+  load: ["Load", "time limit and frame skipping"],
   output: ["Output", "metadata, messages, overlay"],
   other: ["Other", ""],
 };

@@ -545,14 +545,14 @@ describe("presets", () => {
     await page.selectOption("#preset", "Keipour 2021");
     await once("Keipour 2021 is selected, not loaded");
     await page.click("#preset-load");
-    await once("In force: Keipour 2021");
+    await once("Active preset: Keipour 2021");
     const field = setting(page, "max-axis").locator("input[type=number]");
     await field.fill("650");
     await field.press("Enter");
-    await once("In force: Keipour 2021, 1 setting changed since");
+    await once("Active preset: Keipour 2021; 1 setting changed since");
     await field.fill("700");  // the preset's
     await field.press("Enter");
-    await once("In force: Keipour 2021");
+    await once("Active preset: Keipour 2021");
     await page.close();
     await program.stop();
   });
