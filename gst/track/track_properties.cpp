@@ -253,13 +253,14 @@ void install_files(const Installer& install) {
                               "--fit-evidence; empty = built-in",
                               "",
                               kPlaying));
-  install(PROP_CAMERA_FILE,
-          g_param_spec_string("camera-file",
-                              "Camera file",
-                              "Camera calibration file, OpenCV or ROS format; overrides fx and hfov; "
-                              "empty = none",
-                              "",
-                              kPlaying));
+  install(
+      PROP_CAMERA_FILE,
+      g_param_spec_string("camera-file",
+                          "Camera file",
+                          "Camera calibration file, OpenCV or ROS format; overrides fx and hfov; "
+                          "empty = none",
+                          "",
+                          kPlaying));
   install(PROP_GRAVITY,
           gst_param_spec_array("gravity",
                                "Gravity",

@@ -209,10 +209,10 @@ namespace {
 
 // Intersection of an edge with the pixel row or column closest to its normal.
 struct Crossing {
-  int axis;         // along which pixels are read
-  int line;         // index of the row or column
+  int axis;            // along which pixels are read
+  int line;            // index of the row or column
   double position_px;  // along it
-  double slope;     // distance from the edge per pixel along it
+  double slope;        // distance from the edge per pixel along it
 };
 
 std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma) {
