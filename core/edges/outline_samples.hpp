@@ -11,6 +11,9 @@
 
 namespace ellipse {
 
+/// Most of an outline, of its samples, or of frames: at least this share.
+inline constexpr double kMajority = 0.5;
+
 /// Unit vectors at evenly spaced angles.
 /// @param count  32, 48, 64, 96, 128 or 256.
 [[nodiscard]] std::span<const Eigen::Vector2f> circle_directions(std::size_t count);

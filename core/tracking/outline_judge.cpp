@@ -65,13 +65,13 @@ void OutlineJudge::judge(Detector& detector,
   if (judged) add(*judged);
 }
 
-// A short arc is weak evidence against a certain outline that was more visible before. If less than
-// half of the perimeter is visible, evaluates only uncertain outlines and those that were not more
-// visible since the last detection.
+// A short arc is weak evidence against a certain outline that was more visible since the last
+// detection.
 bool OutlineJudge::is_due(const Target& target) const {
-  if (is_sure() && target.visible_fraction < std::min(kMajority, max_visible_)) return false;
+  if (!is_sure()) return true;
+  if (target.visible_fraction < std::min(kMajority, max_visible_)) return false;
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
-  return !is_sure() || is_less_matched || since_judged_s_ >= kCheckPeriod_s;
+  return is_less_matched || since_judged_s_ >= kCheckPeriod_s;
 }
 
 bool OutlineJudge::is_sure() const {

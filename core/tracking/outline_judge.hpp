@@ -49,7 +49,7 @@ class OutlineJudge {
   TargetOdds odds_;
   double since_judged_s_ = 0.0;
   double max_visible_ = 0.0;     // max visible share of the perimeter since the last detection
-  double judged_overlap_ = 0.0;  // matched share of the outline at the last evaluation
+  double judged_overlap_ = 1.0;  // matched share of the outline at the last evaluation; 1 before it
 };
 
 }  // namespace ellipse

@@ -3,13 +3,13 @@
 
 #include <cmath>
 
+#include "core/edges/outline_samples.hpp"
 #include "core/edges/thin_ring.hpp"
 
 namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMinSupport = 0.7;         // matched share of the next edge
 constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
 
 }  // namespace
@@ -27,7 +27,7 @@ void RingCorrector::correct(const Picture& picture,
     const Ellipse& maximum = maxima_[i];
     const auto edge = refined_on_picture(picture, maximum, polarities[i], min_gradient);
     const auto next = edge ? next_edge(picture, min_gradient, polarities, i) : std::nullopt;
-    if (!next || next->support < kMinSupport) continue;
+    if (!next || next->support < kMajority) continue;
     if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
     const bool is_outer = maximum.semi_major > next->ellipse.semi_major;
     detections[i].ellipse = is_outer ? without_blur_bias({maximum, next->ellipse}).outer
@@ -61,7 +61,7 @@ std::optional<RefinedEllipse> RingCorrector::next_edge(const Picture& picture,
     guess.semi_minor += gap;
     if (!(guess.semi_minor > 1.0)) continue;
     auto found = look_at(guess);
-    if (found && found->support >= kMinSupport) return found;
+    if (found && found->support >= kMajority) return found;
   }
   return std::nullopt;
 }

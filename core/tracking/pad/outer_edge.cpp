@@ -85,7 +85,7 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
   }
   if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast);
   if (!exact) return std::nullopt;
-  return is_same(exact->ellipse, *outer, kNear) ? exact : std::nullopt;
+  return is_same(exact->ellipse, *outer, kOuterEdgeTolerance) ? exact : std::nullopt;
 }
 
 std::optional<FittedEllipse> refined_circle(const ImageView& luma,

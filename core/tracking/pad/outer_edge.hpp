@@ -12,7 +12,7 @@
 namespace ellipse {
 
 /// Max difference of an outer edge and its prediction, or of a locked edge and its detection.
-inline constexpr Tolerance kNear{1.0, 0.03};
+inline constexpr Tolerance kOuterEdgeTolerance{1.0, 0.03};
 
 /// Refines the outer edge of a pad whose view is accurate to about a pixel.
 ///

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/edges/outline_samples.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_view.hpp"
 
@@ -17,9 +18,6 @@ inline constexpr double kMinOverNoise = 2.0;
 
 /// Min share of a pad's edges, or of the angles of a circle, that match.
 inline constexpr double kMinCoverage = 0.65;
-
-/// Most of an outline, of its samples, or of frames: at least this share.
-inline constexpr double kMajority = 0.5;
 
 inline constexpr std::size_t kMaxCircles = 5;  ///< Of a pad.
 

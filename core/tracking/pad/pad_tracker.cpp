@@ -115,8 +115,9 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
   }
+  // The search may have moved to another edge than the detected one.
   const auto locked = project_circle(view_, 1.0);
-  if (!locked || !is_same(*locked, outer_edge, kNear)) return false;  // another edge
+  if (!locked || !is_same(*locked, outer_edge, kOuterEdgeTolerance)) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
   motion_.velocity_variance = kUnknownMotion * camera_noise(view_, camera_);
   is_locked_ = true;
