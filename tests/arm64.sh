@@ -34,7 +34,7 @@ build() {
 
 # Vectorised loops, by the function that the compiler inlines them into.
 hot_loops=(
-  'filter_columns(' 'filter_rows(' 'mark_maxima(' 'gradients_along(' 'Scaler::reduce(' 'distort_baseline('
+  'filter_columns(' 'filter_rows(' 'mark_maxima(' 'Scaler::reduce(' 'distort_baseline('
   'add_line_'  # two versions, one of which may jump to the other
 )
 
