@@ -26,7 +26,7 @@ double FrameClock::advance_to(std::int64_t pts_ns) {
     const bool is_later = whole_microseconds(elapsed_s) > 0.0;
     interval_s_ = is_later ? std::min(elapsed_s, kLongestGap_s) : kFrame_s;
   }
-  return whole_microseconds(interval_s_) / (1e6 * kFrame_s);
+  return 1e-6 * whole_microseconds(interval_s_);
 }
 
 }  // namespace ellipse

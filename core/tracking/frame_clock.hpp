@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Unit of FrameClock and PadTracker.
+inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Assumed time between frames if unknown.
 
 /// Correlation time of the evidence in a stream, measured on footage. Also the longest time without
 /// a match after which a target is still the same.
@@ -16,9 +16,9 @@ inline constexpr double kMemory_s = 0.3;
 class FrameClock {
  public:
   /// @param pts_ns  Time stamp of a frame; negative if it has none.
-  /// @return Time since the previous frame [1/30 s], at most 30, a whole number of microseconds; 1
-  ///         frame if unknown: at the first frame, in a stream without time stamps, and where time
-  ///         stamps do not increase.
+  /// @return Time since the previous frame [s], at most 1, a whole number of microseconds; kFrame_s
+  ///         if unknown: at the first frame, in a stream without time stamps, and where time stamps
+  ///         do not increase.
   double advance_to(std::int64_t pts_ns);
 
  private:

@@ -57,7 +57,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
                                        std::int64_t pts_ns,
                                        const SearchScope& scope) {
   const ScopedFrame scoped = prepare_frame(frame, scope);
-  const double elapsed_s = clock_.advance_to(pts_ns) * kFrame_s;
+  const double elapsed_s = clock_.advance_to(pts_ns);
   if (scoped.searchable.empty()) return std::nullopt;
   std::optional<Target> target = track(scoped, elapsed_s);
   remember(target);
@@ -146,13 +146,12 @@ bool Tracker::is_detection_due() const {
 // Reads only the search window of the pad.
 std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double elapsed_s) {
   if (!pad_tracker_->is_locked()) return std::nullopt;
-  const double elapsed = elapsed_s / kFrame_s;
   const int width = frame.pixels.width;
   const int height = frame.pixels.height;
   const Rect region =
-      intersect(pad_tracker_->region_after(elapsed, width, height), frame.searchable);
+      intersect(pad_tracker_->region_after(elapsed_s, width, height), frame.searchable);
   const LumaWindow window = window_on(frame, region);
-  const auto track = pad_tracker_->track(window, elapsed);
+  const auto track = pad_tracker_->track(window, elapsed_s);
   if (!track) return std::nullopt;
   const double visible = visible_fraction(frame.lens, track->ellipse, width, height);
   const bool is_likely = visible >= kMajority && track->coverage >= kMinPredicted;

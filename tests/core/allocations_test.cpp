@@ -247,7 +247,7 @@ TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
         return;
       }
       std::optional<EdgeTrack> track;
-      EXPECT_EQ(allocations_of([&] { track = tracker.track(window, 1.0); }), 0)
+      EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0)
           << film.scene << ' ' << i;
       EXPECT_TRUE(track && track->is_visible) << film.scene << ' ' << i;
     });
@@ -262,7 +262,7 @@ TEST_F(Allocations, NoneWhereEdgesAreNotMatched) {
   for (int i = 0; i < 20; ++i) {
     std::optional<EdgeTrack> track;
     const LumaWindow window{ground.view(), {0.0, 0.0}, {320.0, 240.0}};
-    EXPECT_EQ(allocations_of([&] { track = tracker.track(window, 1.0); }), 0) << i;
+    EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0) << i;
     EXPECT_FALSE(track && track->is_visible) << i;
   }
 }

@@ -10,8 +10,8 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kFocalOverWidth = 0.8;  // if no camera is known
-constexpr double kTurnNoise = 0.002;     // sigma of the camera's rotation per frame [rad]
-constexpr double kShiftNoise = 0.0015;   // sigma of its translation [radii], and of other changes
+constexpr double kTurnNoise = 0.33;   // sigma of the change of the camera's angular velocity in 1 s
+constexpr double kShiftNoise = 0.24;  // the same of its velocity and of other changes [radii/s]
 
 // Changes of a view by one-sigma camera motions, one per column.
 Eigen::Matrix<double, 8, 6> typical_changes(const Eigen::Matrix3d& image_from_pad,
@@ -51,19 +51,18 @@ HomographyChange carried(const HomographyChange& velocity,
   return velocity + (there - here) * motion;
 }
 
-HomographyFilter HomographyFilter::after(double frames,
-                                         const HomographyCovariance& noise_per_frame) const {
+HomographyFilter HomographyFilter::after(double elapsed_s,
+                                         const HomographyCovariance& noise) const {
   // White acceleration of density q adds q t^3 / 3 to the position's variance. The half below is
   // more conservative; on real footage neither is consistently better.
-  const HomographyCovariance noise = frames * noise_per_frame;
+  const HomographyCovariance added = elapsed_s * noise;
   HomographyFilter next;
   next.velocity = velocity;
-  next.pose = pose + frames * (homography_velocity + homography_velocity.transpose()) +
-              frames * frames * (velocity_variance + 0.5 * noise);
-  next.homography_velocity =
-      homography_velocity + frames * velocity_variance + 0.5 * frames * noise;
-  next.velocity_variance = velocity_variance + noise;
-  next.pose.diagonal().array() += kShiftNoise * kShiftNoise;
+  next.pose = pose + elapsed_s * (homography_velocity + homography_velocity.transpose()) +
+              elapsed_s * elapsed_s * (velocity_variance + 0.5 * added);
+  next.homography_velocity = homography_velocity + elapsed_s * (velocity_variance + 0.5 * added);
+  next.velocity_variance = velocity_variance + added;
+  next.pose.diagonal().array() += std::pow(elapsed_s, 3) * kShiftNoise * kShiftNoise;
   return next;
 }
 

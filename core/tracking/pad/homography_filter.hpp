@@ -10,7 +10,7 @@ namespace ellipse {
 [[nodiscard]] Camera default_camera(const Eigen::Vector2d& frame_px);
 
 /// Transports a homography velocity to another view, assuming constant camera motion.
-/// @param velocity  Change of the view `from` per frame. The part that camera motion does not
+/// @param velocity  Change of the view `from` per second. The part that camera motion does not
 ///                  explain is kept.
 [[nodiscard]] HomographyChange carried(const HomographyChange& velocity,
                                        const Eigen::Matrix3d& from,
@@ -18,17 +18,17 @@ namespace ellipse {
                                        const Camera& camera);
 
 /// Kalman filter [Kalman1960] of a moving view. The state is the view's change and its velocity,
-/// the change per frame. A value.
+/// the change per second. A value.
 struct HomographyFilter {
-  HomographyChange velocity = HomographyChange::Zero();  ///< Per frame.
+  HomographyChange velocity = HomographyChange::Zero();  ///< Per second.
   HomographyCovariance pose = HomographyCovariance::Zero();
   HomographyCovariance homography_velocity =
       HomographyCovariance::Zero();  ///< Cross-covariance of change and velocity.
   HomographyCovariance velocity_variance = HomographyCovariance::Zero();
 
   /// Predicts at constant velocity plus noise.
-  [[nodiscard]] HomographyFilter after(double frames,
-                                       const HomographyCovariance& noise_per_frame) const;
+  /// @param noise  Growth of the velocity's covariance per second.
+  [[nodiscard]] HomographyFilter after(double elapsed_s, const HomographyCovariance& noise) const;
 
   /// Updates with a measurement of the pose; the cross-covariance corrects the velocity.
   /// @param measured  Posterior change from the prediction: the prior is already included.
@@ -43,7 +43,7 @@ struct HomographyFilter {
 
 [[nodiscard]] HomographyCovariance inverse_of(const HomographyCovariance& matrix);
 
-/// Covariance of a view's change under random camera motion, per frame.
+/// Growth of the velocity's covariance per second under random camera motion.
 [[nodiscard]] HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                                                 const Camera& camera);
 

@@ -18,7 +18,7 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kUnknownMotion = 400.0;   // variance of an unknown motion over that of the noise
-constexpr double kAdaptation = 0.25;       // smoothing factor of noise, contrast, radii per 1/30 s
+constexpr double kAdaptation_s = 0.116;    // time constant of motion noise, contrast and radii
 constexpr double kEdgeSigmaPx = 0.6;       // of one edge candidate
 constexpr double kDeformation = 0.012;     // distance of deformed edges from the model [radii]
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
@@ -44,11 +44,6 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
   double sum = 0.0;
   for (const EdgeSample& sample : samples) sum += std::pow(sample.predicted_px(change), 2);
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
-}
-
-// Smoothing factor over this time, from the factor per 1/30 s.
-double share_in(double share_of_one, double frames) {
-  return 1.0 - std::pow(1.0 - share_of_one, frames);
 }
 
 // Distance of a matched edge: 2 sigma, and the pad's deformation.
@@ -103,7 +98,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   line_learner_.start();
   gain_ = 1.0;
   innovation_ratio_ = 1.0;
-  missed_ = 0.0;
+  unmatched_s_ = 0.0;
   learned_radius_px_ = 0.0;
   motion_ = {};
   const double sigma = tolerance_px(radius_px()) / radius_px();
@@ -119,7 +114,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   const auto locked = project_circle(view_, 1.0);
   if (!locked || !is_same(*locked, outer_edge, kOuterEdgeTolerance)) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
-  motion_.velocity_variance = kUnknownMotion * camera_noise(view_, camera_);
+  motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
   is_locked_ = true;
   if (window.camera) {
     refine(window, attempt->visible);
@@ -128,8 +123,8 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   return true;
 }
 
-HomographyFilter PadTracker::predicted(double frames, double looseness) const {
-  return motion_.after(frames, looseness * camera_noise(view_, camera_));
+HomographyFilter PadTracker::predicted(double elapsed_s, double looseness) const {
+  return motion_.after(elapsed_s, looseness * camera_noise(view_, camera_));
 }
 
 PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
@@ -179,29 +174,29 @@ bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
          attempt->support.matched >= HomographyChange::SizeAtCompileTime;
 }
 
-std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double frames) {
+std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double elapsed_s) {
   if (!is_locked_) return std::nullopt;
   camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
   refined_.reset();
   inner_count_ = 0;
-  const Eigen::Matrix3d prediction = moved(view_, frames * motion_.velocity);
+  const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
   double looseness = innovation_ratio_;
-  HomographyFilter before = predicted(frames, looseness);
+  HomographyFilter before = predicted(elapsed_s, looseness);
   auto attempt = search_from(window, prediction, before.pose);
   last_coverage_ = attempt ? attempt->support.coverage : 0.0;
   if (!is_good(attempt)) {
     looseness = kUnknownMotion;
-    before = predicted(frames, looseness);
+    before = predicted(elapsed_s, looseness);
     attempt = search_from(window, prediction, before.pose);
   }
   if (!is_good(attempt)) {
-    coast(prediction, before, frames);
+    coast(prediction, before, elapsed_s);
     return is_locked_ ? make_track(nullptr) : std::nullopt;
   }
   if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
   const Eigen::Matrix3d last_view = view_;
-  accept(*attempt, before, looseness, frames);
+  accept(*attempt, before, looseness, elapsed_s);
   refine(window, attempt->visible);
   if (window.camera) measure_inner_edges(window);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
@@ -234,7 +229,7 @@ void PadTracker::forget_lines(Attempt& attempt) {
 void PadTracker::accept(const Attempt& attempt,
                         const HomographyFilter& before,
                         double looseness,
-                        double frames) {
+                        double elapsed_s) {
   motion_ = before.corrected(attempt.estimate);
   if (model_.lines.empty()) motion_.fix_rotation();  // rings have no orientation
   // Squared displacement of the edges over its predicted variance.
@@ -244,7 +239,7 @@ void PadTracker::accept(const Attempt& attempt,
     moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
     expected_px += sample.view.row.dot(before.pose * sample.view.row);
   }
-  const double adaptation = share_in(kAdaptation, frames);
+  const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   const double needed = looseness * moved_px / expected_px;
   innovation_ratio_ = std::clamp(
       innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
@@ -253,7 +248,7 @@ void PadTracker::accept(const Attempt& attempt,
   judge_lines(attempt.last);
   if (attempt.visible >= kMajority) learn_radii(attempt.last, adaptation);
   view_ = attempt.view;
-  missed_ = 0.0;
+  unmatched_s_ = 0.0;
 }
 
 // Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
@@ -333,11 +328,11 @@ void PadTracker::judge_lines(const HomographyChange& change) {
 
 void PadTracker::coast(const Eigen::Matrix3d& prediction,
                        const HomographyFilter& before,
-                       double frames) {
+                       double elapsed_s) {
   view_ = prediction;
   motion_ = before;
-  missed_ += frames;
-  if (missed_ * kFrame_s > kMemory_s) is_locked_ = false;
+  unmatched_s_ += elapsed_s;
+  if (unmatched_s_ > kMemory_s) is_locked_ = false;
 }
 
 std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
@@ -359,9 +354,9 @@ RingUncertainty PadTracker::uncertainty() const {
   return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
 }
 
-Rect PadTracker::region_after(double frames, int width, int height) const {
+Rect PadTracker::region_after(double elapsed_s, int width, int height) const {
   const Rect frame{0, 0, width, height};
-  const auto ideal = project_circle(moved(view_, frames * motion_.velocity), 1.0);
+  const auto ideal = project_circle(moved(view_, elapsed_s * motion_.velocity), 1.0);
   const auto ellipse = ideal ? distorted(lens_, *ideal) : std::nullopt;
   if (!ellipse) return frame;
   return calculate_roi(*ellipse, kRoiExpansion, 1, width, height);

@@ -48,9 +48,9 @@ class PadTracker {
   /// @return Whether the learned edges match the image.
   [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
 
-  /// @param frames  Time since the last call [1/30 s].
+  /// @param elapsed_s  Since the last call.
   /// @return nullopt if the pad is lost.
-  [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double frames);
+  [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double elapsed_s);
 
   /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
@@ -72,8 +72,8 @@ class PadTracker {
   void release() { is_locked_ = false; }
 
   /// Region of the next frame to pass to track() [px]; covers its search range.
-  /// @param frames  Time until the next frame [1/30 s].
-  [[nodiscard]] Rect region_after(double frames, int width, int height) const;
+  /// @param elapsed_s  Until the next frame.
+  [[nodiscard]] Rect region_after(double elapsed_s, int width, int height) const;
 
  private:
   struct Attempt {
@@ -84,7 +84,7 @@ class PadTracker {
     double visible = 0.0;
   };
 
-  [[nodiscard]] HomographyFilter predicted(double frames, double looseness) const;
+  [[nodiscard]] HomographyFilter predicted(double elapsed_s, double looseness) const;
   [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
                                                    const Eigen::Matrix3d& start,
                                                    const HomographyCovariance& covariance);
@@ -97,14 +97,14 @@ class PadTracker {
   void accept(const Attempt& attempt,
               const HomographyFilter& before,
               double looseness,
-              double frames);
+              double elapsed_s);
   void refine(const LumaWindow& window, double visible);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
   void learn_radii(const HomographyChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const HomographyChange& change);
-  void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double frames);
+  void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<EdgeTrack> make_track(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
@@ -123,7 +123,7 @@ class PadTracker {
   LensView lens_;
   double innovation_ratio_ = 1.0;  // adaptive factor of the motion noise
   double gain_ = 1.0;              // ratio of image contrast to model contrast
-  double missed_ = 0.0;            // time since the last match [1/30 s]
+  double unmatched_s_ = 0.0;       // since the last match
   double last_coverage_ = 0.0;     // of the search near the prediction
   bool is_locked_ = false;
 };
