@@ -10,6 +10,7 @@
 #include <gst/base/gstbasetransform.h>
 #include <gst/gst.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -159,6 +160,35 @@ void check_signals(GType type, const std::string& section) {
   }
 }
 
+// The names in the second column of "Properties by purpose".
+std::vector<std::string> names_by_purpose(const std::string& section) {
+  const std::size_t begin = section.find("\n### Properties by purpose\n");
+  if (begin == std::string::npos) return {};
+  const std::string part = section.substr(begin, section.find("\n### ", begin + 1) - begin);
+  const std::regex row("\n\\|[^|]*\\|([^|]*)\\|");
+  const std::regex quoted("`([a-z-]+)`");
+  std::vector<std::string> names;
+  for (std::sregex_iterator i(part.begin(), part.end(), row), end; i != end; ++i) {
+    const std::string cell = (*i)[1];
+    for (std::sregex_iterator j(cell.begin(), cell.end(), quoted); j != end; ++j) {
+      names.push_back((*j)[1]);
+    }
+  }
+  return names;
+}
+
+// The properties by purpose must be those of the element, in its order. qos is the base class's.
+void check_purposes(const std::vector<std::string>& own, const std::string& section) {
+  std::vector<std::string> names = names_by_purpose(section);
+  if (names.empty()) return;
+  names.erase(std::remove(names.begin(), names.end(), "qos"), names.end());
+  const auto [expected, found] = std::mismatch(own.begin(), own.end(), names.begin(), names.end());
+  if (expected == own.end() && found == names.end()) return;
+  throw std::runtime_error("properties by purpose: " + (found == names.end() ? "nothing" : *found) +
+                           " instead of " + (expected == own.end() ? "nothing" : *expected) +
+                           ", see kOrder in track_properties.cpp");
+}
+
 std::string table_of(const std::string& name, const std::string& document) {
   const std::unique_ptr<GstElement, decltype(&gst_object_unref)> element(
       gst_element_factory_make(name.c_str(), nullptr), gst_object_unref);
@@ -171,16 +201,19 @@ std::string table_of(const std::string& name, const std::string& document) {
   guint count = 0;
   const std::unique_ptr<GParamSpec*, decltype(&g_free)> specs(
       g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count), g_free);
+  std::vector<std::string> own;
   for (guint i = 0; i < count; ++i) {
     GParamSpec* spec = specs.get()[i];
     const bool is_qos = spec->owner_type == GST_TYPE_BASE_TRANSFORM;
     if (spec->owner_type != G_OBJECT_TYPE(element.get()) && !is_qos) continue;
+    if (!is_qos) own.emplace_back(spec->name);
     const std::string since = since_of(spec->name, section);
     table += "| " + in_backticks(spec->name) + " | " + type_of(spec) + " | " +
              default_of(element.get(), spec) + " | " + changeable(spec) + " | " +
              escaped(g_param_spec_get_blurb(spec)) + " | " + (since.empty() ? kVersion : since) +
              " |\n";
   }
+  check_purposes(own, section);
   return table;
 }
 

@@ -28,7 +28,7 @@
 #include "gst/overlay/overlay.hpp"
 #include "gst/track/video_view.hpp"
 
-enum { PROP_0, PROP_TRUTH, PROP_OVERLAY, PROP_OVERLAY_COLOR, PROP_LINE_WIDTH };
+enum { PROP_0, PROP_TRUTH, PROP_FIRST_OF_STYLE };
 
 static constexpr auto kDefaultParts = static_cast<GstEllipseOverlayFlags>(
     GST_ELLIPSE_OVERLAY_ELLIPSE | GST_ELLIPSE_OVERLAY_CENTRE | GST_ELLIPSE_OVERLAY_LABEL);
@@ -62,10 +62,8 @@ static void gst_ellipse_overlay_set_property(GObject* object,
   GST_OBJECT_LOCK(self);
   if (id == PROP_TRUTH) {
     self->shows_truth = g_value_get_boolean(value);
-  } else if (id >= PROP_OVERLAY && id <= PROP_LINE_WIDTH) {
-    set_overlay_property(*self->style, id - PROP_OVERLAY, value);
   } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    set_overlay_property(*self->style, pspec->name, value);
   }
   GST_OBJECT_UNLOCK(self);
 }
@@ -78,10 +76,8 @@ static void gst_ellipse_overlay_get_property(GObject* object,
   GST_OBJECT_LOCK(self);
   if (id == PROP_TRUTH) {
     g_value_set_boolean(value, self->shows_truth);
-  } else if (id >= PROP_OVERLAY && id <= PROP_LINE_WIDTH) {
-    get_overlay_property(*self->style, id - PROP_OVERLAY, value);
   } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    get_overlay_property(*self->style, pspec->name, value);
   }
   GST_OBJECT_UNLOCK(self);
 }
@@ -267,7 +263,10 @@ static void gst_ellipse_overlay_class_init(GstEllipseOverlayClass* klass) {
                            FALSE,
                            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                     GST_PARAM_MUTABLE_PLAYING)));
-  install_overlay_properties(object_class, PROP_OVERLAY, kDefaultParts);
+  guint id = PROP_FIRST_OF_STYLE;
+  for (GParamSpec* spec : overlay_param_specs(kDefaultParts)) {
+    g_object_class_install_property(object_class, id++, spec);
+  }
 
   auto* element_class = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element_class,

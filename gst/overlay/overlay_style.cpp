@@ -15,47 +15,43 @@ GType gst_ellipse_overlay_flags_get_type(void) {
   return kType;
 }
 
-void install_overlay_properties(GObjectClass* object_class,
-                                guint first_id,
-                                GstEllipseOverlayFlags default_parts) {
+std::array<GParamSpec*, 3> overlay_param_specs(GstEllipseOverlayFlags default_parts) {
   const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                               GST_PARAM_MUTABLE_PLAYING);
-  g_object_class_install_property(object_class,
-                                  first_id,
-                                  g_param_spec_flags("overlay",
-                                                     "Overlay",
-                                                     "What to draw",
-                                                     GST_TYPE_ELLIPSE_OVERLAY_FLAGS,
-                                                     default_parts,
-                                                     flags));
-  g_object_class_install_property(object_class,
-                                  first_id + 1,
-                                  g_param_spec_uint("overlay-color",
-                                                    "Overlay colour",
-                                                    "Line colour, 0xAARRGGBB",
-                                                    0,
-                                                    G_MAXUINT32,
-                                                    OverlayStyle{}.color_argb,
-                                                    flags));
-  g_object_class_install_property(object_class,
-                                  first_id + 2,
-                                  g_param_spec_uint("line-width",
-                                                    "Line width",
-                                                    "Line width [px]",
-                                                    1,
-                                                    100,
-                                                    OverlayStyle{}.line_width_px,
-                                                    flags));
+  return {
+      g_param_spec_flags("overlay",
+                         "Overlay",
+                         "What to draw",
+                         GST_TYPE_ELLIPSE_OVERLAY_FLAGS,
+                         default_parts,
+                         flags),
+      g_param_spec_uint("overlay-color",
+                        "Overlay colour",
+                        "Line colour, 0xAARRGGBB",
+                        0,
+                        G_MAXUINT32,
+                        OverlayStyle{}.color_argb,
+                        flags),
+      g_param_spec_uint("line-width",
+                        "Line width",
+                        "Line width [px]",
+                        1,
+                        100,
+                        OverlayStyle{}.line_width_px,
+                        flags),
+  };
 }
 
-void set_overlay_property(OverlayStyle& style, guint which, const GValue* value) {
-  if (which == 0) style.parts = static_cast<GstEllipseOverlayFlags>(g_value_get_flags(value));
-  if (which == 1) style.color_argb = g_value_get_uint(value);
-  if (which == 2) style.line_width_px = g_value_get_uint(value);
+void set_overlay_property(OverlayStyle& style, std::string_view name, const GValue* value) {
+  if (name == "overlay") {
+    style.parts = static_cast<GstEllipseOverlayFlags>(g_value_get_flags(value));
+  }
+  if (name == "overlay-color") style.color_argb = g_value_get_uint(value);
+  if (name == "line-width") style.line_width_px = g_value_get_uint(value);
 }
 
-void get_overlay_property(const OverlayStyle& style, guint which, GValue* value) {
-  if (which == 0) g_value_set_flags(value, style.parts);
-  if (which == 1) g_value_set_uint(value, style.color_argb);
-  if (which == 2) g_value_set_uint(value, style.line_width_px);
+void get_overlay_property(const OverlayStyle& style, std::string_view name, GValue* value) {
+  if (name == "overlay") g_value_set_flags(value, style.parts);
+  if (name == "overlay-color") g_value_set_uint(value, style.color_argb);
+  if (name == "line-width") g_value_set_uint(value, style.line_width_px);
 }

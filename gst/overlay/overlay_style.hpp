@@ -2,6 +2,9 @@
 
 #include <gst/gst.h>
 
+#include <array>
+#include <string_view>
+
 G_BEGIN_DECLS
 
 /// The drawn parts of an ellipse.
@@ -29,11 +32,9 @@ struct OverlayStyle {
   bool has_casing = false;
 };
 
-/// Installs the properties overlay, overlay-color and line-width, which all drawing elements share,
-/// with the ids first_id to first_id + 2.
-void install_overlay_properties(GObjectClass* object_class,
-                                guint first_id,
-                                GstEllipseOverlayFlags default_parts);
-/// @param which  The property's id minus first_id.
-void set_overlay_property(OverlayStyle& style, guint which, const GValue* value);
-void get_overlay_property(const OverlayStyle& style, guint which, GValue* value);
+/// The properties overlay, overlay-color and line-width, which all drawing elements share. The
+/// specifications are floating.
+[[nodiscard]] std::array<GParamSpec*, 3> overlay_param_specs(GstEllipseOverlayFlags default_parts);
+/// Does nothing if the property is none of these.
+void set_overlay_property(OverlayStyle& style, std::string_view name, const GValue* value);
+void get_overlay_property(const OverlayStyle& style, std::string_view name, GValue* value);

@@ -22,19 +22,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "gst/track/target_meta.hpp"
 #include "gst/track/track_frame.hpp"
 #include "gst/track/video_view.hpp"
 
 GST_DEBUG_CATEGORY(gst_ellipse_track_debug);
-
-enum {
-  PROP_0,
-  PROP_TARGET,
-  PROP_STATS,
-  PROP_FIRST_SETTING,  // the first of TrackProperties
-};
 
 static void gst_ellipse_track_preset_init(gpointer iface, gpointer data);
 
@@ -127,13 +121,10 @@ class ObjectLock {
 };
 
 // @return Why the value is rejected; empty if it is accepted.
-static std::string try_set(GstEllipseTrack* self,
-                           guint which,
-                           const GValue* value,
-                           const char* name) {
+static std::string try_set(GstEllipseTrack* self, const char* name, const GValue* value) {
   TrackShared& shared = *self->shared;
   try {
-    const PropertyChange change(which, value);  // may read a file
+    const PropertyChange change(name, value);  // may read a file
     const ObjectLock lock(self);
     std::string misfit = changed(shared, change, is_stopped(self));
     shared.value_errors.erase(name);
@@ -147,41 +138,34 @@ static std::string try_set(GstEllipseTrack* self,
 
 // Rejects an invalid value with a warning that names it, and keeps the old value.
 static void gst_ellipse_track_set_property(GObject* object,
-                                           guint id,
+                                           guint /*id*/,
                                            const GValue* value,
                                            GParamSpec* pspec) {
   auto* self = GST_ELLIPSE_TRACK(object);
-  if (id < PROP_FIRST_SETTING) {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-    return;
-  }
-  const std::string refusal = try_set(self, id - PROP_FIRST_SETTING, value, pspec->name);
+  const std::string refusal = try_set(self, pspec->name, value);
   if (!is_already_reported(self, pspec, !refusal.empty())) warn_rejected(self, refusal);
 }
 
 static void gst_ellipse_track_get_property(GObject* object,
-                                           guint id,
+                                           guint /*id*/,
                                            GValue* value,
                                            GParamSpec* pspec) {
   auto* self = GST_ELLIPSE_TRACK(object);
-  if (id < PROP_TARGET) {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-    return;
-  }
+  const std::string_view name = pspec->name;
   GST_OBJECT_LOCK(self);
   const std::optional<GstEllipseMeta> target = self->shared->target;
   const TrackStats stats = self->shared->stats;
   const ellipse::TrackerState tracker_state = self->shared->tracker_state;
   const TrackProperties properties = self->shared->properties;
   GST_OBJECT_UNLOCK(self);
-  if (id == PROP_TARGET) {
+  if (name == "target") {
     if (target) g_value_take_boxed(value, gst_ellipse_meta_to_structure(&*target));
-  } else if (id == PROP_STATS) {
+  } else if (name == "stats") {
     GstStructure* structure = stats.to_structure();
     gst_structure_set(structure, "tracker", G_TYPE_STRING, nick_of(tracker_state), nullptr);
     g_value_take_boxed(value, structure);
   } else {
-    properties.get(id - PROP_FIRST_SETTING, value);
+    properties.get(name, value);
   }
 }
 
@@ -220,26 +204,6 @@ static void gst_ellipse_track_preset_init(gpointer iface, gpointer /*data*/) {
   auto* preset = static_cast<GstPresetInterface*>(iface);
   load_one_by_one = preset->load_preset;
   preset->load_preset = gst_ellipse_track_load_preset;
-}
-
-static void install_properties(GObjectClass* object_class) {
-  const auto readable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  g_object_class_install_property(
-      object_class,
-      PROP_TARGET,
-      g_param_spec_boxed("target",
-                         "Target",
-                         "Target in the last analysed frame; NULL = none",
-                         GST_TYPE_STRUCTURE,
-                         readable));
-  g_object_class_install_property(object_class,
-                                  PROP_STATS,
-                                  g_param_spec_boxed("stats",
-                                                     "Statistics",
-                                                     "Frame counts and processing times [ns]",
-                                                     GST_TYPE_STRUCTURE,
-                                                     readable));
-  TrackProperties::install(object_class, PROP_FIRST_SETTING);
 }
 
 /* Streaming */
@@ -462,7 +426,7 @@ static void gst_ellipse_track_class_init(GstEllipseTrackClass* klass) {
   object_class->set_property = gst_ellipse_track_set_property;
   object_class->get_property = gst_ellipse_track_get_property;
   object_class->finalize = gst_ellipse_track_finalize;
-  install_properties(object_class);
+  TrackProperties::install(object_class);
   install_signals(klass);
 
   auto* element_class = GST_ELEMENT_CLASS(klass);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track/track_properties.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "core/camera/camera_file.hpp"
 #include "core/detection/evidence.hpp"
@@ -14,27 +16,58 @@
 
 namespace {
 
-// In the order of their ids.
-enum {
-  PROP_DETECTOR,
-  PROP_TRACKING,
-  PROP_REFINE,
-  PROP_INTERVAL,
-  PROP_MESSAGES,
-  PROP_ATTACH_ROI_META,
-  PROP_ATTACH_ANALYTICS,
-  PROP_CANDIDATES,
-  PROP_ROI_SOURCE,
-  PROP_ROI,
-  PROP_ROI_TYPE,
-  PROP_MAX_PROCESSING_TIME,
-  PROP_CAMERA_FILE,
-  PROP_EVIDENCE_FILE,
-  PROP_GRAVITY,
-  PROP_OVERLAY,
-  PROP_OVERLAY_COLOR,
-  PROP_LINE_WIDTH,
-  PROP_FIRST_NUMBER,
+// In the order of "Properties by purpose" in docs/elements.md; their ids follow it.
+constexpr std::string_view kOrder[] = {
+    // detector
+    "detector",
+    "min-probability",
+    "evidence-file",
+    "detect-contour-overlap",
+    "detect-ellipse-overlap",
+    "edge-low",
+    "edge-high",
+    "candidates",
+    // tracker
+    "tracking",
+    "refine",
+    "ring-ratio",
+    "track-contour-overlap",
+    "track-ellipse-overlap",
+    "roi-expansion",
+    // limits
+    "min-axis",
+    "max-axis",
+    "max-axis-ratio",
+    "min-contour-size",
+    // search region
+    "roi-source",
+    "roi",
+    "roi-type",
+    // scale
+    "min-target-size",
+    "max-target-size",
+    "max-scale",
+    // lens and pose
+    "camera-file",
+    "hfov",
+    "fx",
+    "fy",
+    "cx",
+    "cy",
+    "target-diameter",
+    "gravity",
+    // output
+    "messages",
+    "attach-roi-meta",
+    "attach-analytics",
+    "overlay",
+    "overlay-color",
+    "line-width",
+    "target",
+    "stats",
+    // performance
+    "interval",
+    "max-processing-time",
 };
 
 constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
@@ -123,36 +156,38 @@ bool analytics_from(const GValue* value) {
 }
 
 // nullptr if the property is not one of the tracker's numbers.
-const ellipse::SettingInfo* number_info(guint which) {
+const ellipse::SettingInfo* number_info(std::string_view name) {
   const auto infos = ellipse::setting_infos();
-  const bool is_number = which >= PROP_FIRST_NUMBER && which - PROP_FIRST_NUMBER < infos.size();
-  return is_number ? &infos[which - PROP_FIRST_NUMBER] : nullptr;
+  const auto found =
+      std::find_if(infos.begin(), infos.end(), [&](const ellipse::SettingInfo& info) {
+        return name == info.name;
+      });
+  return found != infos.end() ? &*found : nullptr;
 }
 
 class Installer {
  public:
-  Installer(GObjectClass* object_class, guint first_id)
-      : object_class_(object_class), first_id_(first_id) {}
+  explicit Installer(GObjectClass* object_class) : object_class_(object_class) {}
 
-  void operator()(guint which, GParamSpec* spec) const {
-    g_object_class_install_property(object_class_, first_id_ + which, spec);
+  void operator()(GParamSpec* spec) const {
+    const auto found = std::find(std::begin(kOrder), std::end(kOrder), std::string_view(spec->name));
+    g_assert(found != std::end(kOrder));
+    g_object_class_install_property(
+        object_class_, static_cast<guint>(found - std::begin(kOrder)) + 1, spec);
   }
 
  private:
   GObjectClass* object_class_;
-  guint first_id_;
 };
 
 void install_methods(const Installer& install, const TrackProperties& initial) {
-  install(PROP_DETECTOR,
-          g_param_spec_enum("detector",
+  install(g_param_spec_enum("detector",
                             "Detector",
                             "Ellipse detection method",
                             gst_ellipse_detector_get_type(),
                             static_cast<gint>(initial.tracker.detector),
                             kPlaying));
-  install(PROP_TRACKING,
-          g_param_spec_enum("tracking",
+  install(g_param_spec_enum("tracking",
                             "Tracking",
                             "Tracking method",
                             gst_ellipse_tracking_get_type(),
@@ -160,8 +195,7 @@ void install_methods(const Installer& install, const TrackProperties& initial) {
                             kPlaying));
   const std::string blurb = ellipse::blurb_of("Refinement of the ellipse of a followed target",
                                               ellipse::effect_of("refine"));
-  install(PROP_REFINE,
-          g_param_spec_enum("refine",
+  install(g_param_spec_enum("refine",
                             "Refine",
                             blurb.c_str(),
                             gst_ellipse_refinement_get_type(),
@@ -170,16 +204,14 @@ void install_methods(const Installer& install, const TrackProperties& initial) {
 }
 
 void install_load(const Installer& install, const TrackProperties& initial) {
-  install(PROP_INTERVAL,
-          g_param_spec_uint("interval",
+  install(g_param_spec_uint("interval",
                             "Interval",
                             "Analyse every n-th frame; the others pass unchanged",
                             1,
                             G_MAXUINT,
                             initial.interval,
                             kPlaying));
-  install(PROP_MAX_PROCESSING_TIME,
-          g_param_spec_uint64("max-processing-time",
+  install(g_param_spec_uint64("max-processing-time",
                               "Maximum processing time",
                               "Maximum time per frame [ns]; above it the search gets coarser, then "
                               "frames pass without analysis; 0 = no limit",
@@ -190,29 +222,25 @@ void install_load(const Installer& install, const TrackProperties& initial) {
 }
 
 void install_reports(const Installer& install, const TrackProperties& initial) {
-  install(PROP_MESSAGES,
-          g_param_spec_enum("messages",
+  install(g_param_spec_enum("messages",
                             "Messages",
                             "When to post an element message \"ellipse\" on the bus",
                             gst_ellipse_messages_get_type(),
                             initial.messages,
                             kPlaying));
   install(
-      PROP_ATTACH_ROI_META,
       g_param_spec_boolean("attach-roi-meta",
                            "Attach ROI meta",
                            "Also attach the target's bounding box as GstVideoRegionOfInterestMeta",
                            initial.attach_roi_meta ? TRUE : FALSE,
                            kPlaying));
-  install(PROP_ATTACH_ANALYTICS,
-          g_param_spec_boolean("attach-analytics",
+  install(g_param_spec_boolean("attach-analytics",
                                "Attach analytics",
                                "Also attach each ellipse as a detected object in "
                                "GstAnalyticsRelationMeta; needs GStreamer 1.24",
                                initial.attach_analytics ? TRUE : FALSE,
                                kPlaying));
-  install(PROP_CANDIDATES,
-          g_param_spec_boolean("candidates",
+  install(g_param_spec_boolean("candidates",
                                "Candidates",
                                "Also attach all other ellipses of the frame as \"candidate\"; the "
                                "detector then runs on every frame",
@@ -221,77 +249,78 @@ void install_reports(const Installer& install, const TrackProperties& initial) {
 }
 
 void install_region(const Installer& install, const TrackProperties& initial) {
-  install(PROP_ROI_SOURCE,
-          g_param_spec_enum("roi-source",
+  install(g_param_spec_enum("roi-source",
                             "ROI source",
                             "Source of the search region",
                             gst_ellipse_roi_source_get_type(),
                             initial.roi_source,
                             kPlaying));
-  install(
-      PROP_ROI,
-      gst_param_spec_array(
-          "roi",
-          "ROI",
-          "Search region of roi-source=property, as <x, y, width, height> in the frame [px]",
-          g_param_spec_int(
-              "number", "Number", "x, y, width or height [px]", G_MININT, G_MAXINT, 0, kPlaying),
-          kPlaying));
-  install(PROP_ROI_TYPE,
-          g_param_spec_string("roi-type",
+  install(gst_param_spec_array(
+      "roi",
+      "ROI",
+      "Search region of roi-source=property, as <x, y, width, height> in the frame [px]",
+      g_param_spec_int(
+          "number", "Number", "x, y, width or height [px]", G_MININT, G_MAXINT, 0, kPlaying),
+      kPlaying));
+  install(g_param_spec_string("roi-type",
                               "ROI type",
                               "Type of the regions that roi-source=meta searches; empty = any",
                               "",
                               kPlaying));
 }
 
+void install_results(const Installer& install) {
+  const auto readable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  install(g_param_spec_boxed("target",
+                             "Target",
+                             "Target in the last analysed frame; NULL = none",
+                             GST_TYPE_STRUCTURE,
+                             readable));
+  install(g_param_spec_boxed("stats",
+                             "Statistics",
+                             "Frame counts and processing times [ns]",
+                             GST_TYPE_STRUCTURE,
+                             readable));
+}
+
 void install_files(const Installer& install) {
-  install(PROP_EVIDENCE_FILE,
-          g_param_spec_string("evidence-file",
+  install(g_param_spec_string("evidence-file",
                               "Evidence file",
                               "Evidence table of detector=arcs, from ellipse-evaluate "
                               "--fit-evidence; empty = built-in",
                               "",
                               kPlaying));
   install(
-      PROP_CAMERA_FILE,
       g_param_spec_string("camera-file",
                           "Camera file",
                           "Camera calibration file, OpenCV or ROS format; overrides fx and hfov; "
                           "empty = none",
                           "",
                           kPlaying));
-  install(PROP_GRAVITY,
-          gst_param_spec_array("gravity",
-                               "Gravity",
-                               "Downward direction in the camera's frame, as <x, y, z>; selects "
-                               "between the two possible tilts of a level target; "
-                               "<0, 0, 0> = unknown",
-                               g_param_spec_double("number",
-                                                   "Number",
-                                                   "x, y or z, in any unit",
-                                                   -G_MAXDOUBLE,
-                                                   G_MAXDOUBLE,
-                                                   0.0,
-                                                   kPlaying),
-                               kPlaying));
+  install(gst_param_spec_array(
+      "gravity",
+      "Gravity",
+      "Downward direction in the camera's frame, as <x, y, z>; selects "
+      "between the two possible tilts of a level target; "
+      "<0, 0, 0> = unknown",
+      g_param_spec_double(
+          "number", "Number", "x, y or z, in any unit", -G_MAXDOUBLE, G_MAXDOUBLE, 0.0, kPlaying),
+      kPlaying));
 }
 
 }  // namespace
 
-void TrackProperties::install(GObjectClass* object_class, guint first_id) {
+void TrackProperties::install(GObjectClass* object_class) {
   const TrackProperties initial;
-  const Installer install(object_class, first_id);
+  const Installer install(object_class);
   install_methods(install, initial);
   install_load(install, initial);
   install_reports(install, initial);
   install_region(install, initial);
   install_files(install);
-  install_overlay_properties(object_class, first_id + PROP_OVERLAY, GST_ELLIPSE_OVERLAY_NONE);
-  guint which = PROP_FIRST_NUMBER;
-  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) {
-    install(which++, param_spec_of(info));
-  }
+  install_results(install);
+  for (GParamSpec* spec : overlay_param_specs(GST_ELLIPSE_OVERLAY_NONE)) install(spec);
+  for (const ellipse::SettingInfo& info : ellipse::setting_infos()) install(param_spec_of(info));
 
   const auto mark = [](GType type) {
     gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));
@@ -304,61 +333,60 @@ void TrackProperties::install(GObjectClass* object_class, guint first_id) {
   mark(GST_TYPE_ELLIPSE_OVERLAY_FLAGS);
 }
 
-PropertyChange::PropertyChange(guint which, const GValue* value) : which_(which), value_(value) {
-  if (which != PROP_CAMERA_FILE && which != PROP_EVIDENCE_FILE) return;
+PropertyChange::PropertyChange(std::string_view name, const GValue* value)
+    : name_(name), value_(value) {
+  if (name != "camera-file" && name != "evidence-file") return;
   if (g_value_get_string(value) != nullptr) file_ = g_value_get_string(value);
   if (file_.empty()) return;
-  if (which == PROP_CAMERA_FILE) camera_ = ellipse::read_camera(file_);
-  if (which == PROP_EVIDENCE_FILE) evidence_ = ellipse::read_evidence(file_);
+  if (name == "camera-file") camera_ = ellipse::read_camera(file_);
+  if (name == "evidence-file") evidence_ = ellipse::read_evidence(file_);
 }
 
 void PropertyChange::apply_to(TrackProperties& properties) const {
   ellipse::TrackerSettings& tracker = properties.tracker;
   const GValue* value = value_;
-  if (const ellipse::SettingInfo* info = number_info(which_)) {
+  if (const ellipse::SettingInfo* info = number_info(name_)) {
     info->set(tracker, info->is_integer ? g_value_get_uint(value) : g_value_get_double(value));
   }
-  if (which_ == PROP_DETECTOR) {
+  if (name_ == "detector") {
     tracker.detector = static_cast<ellipse::DetectorKind>(g_value_get_enum(value));
   }
-  if (which_ == PROP_TRACKING) {
+  if (name_ == "tracking") {
     tracker.tracking = static_cast<ellipse::TrackingMode>(g_value_get_enum(value));
   }
-  if (which_ == PROP_REFINE) {
+  if (name_ == "refine") {
     tracker.refine = static_cast<ellipse::Refinement>(g_value_get_enum(value));
   }
-  if (which_ == PROP_INTERVAL) properties.interval = g_value_get_uint(value);
-  if (which_ == PROP_MESSAGES) properties.messages = g_value_get_enum(value);
-  if (which_ == PROP_ATTACH_ROI_META) {
+  if (name_ == "interval") properties.interval = g_value_get_uint(value);
+  if (name_ == "messages") properties.messages = g_value_get_enum(value);
+  if (name_ == "attach-roi-meta") {
     properties.attach_roi_meta = g_value_get_boolean(value) != FALSE;
   }
-  if (which_ == PROP_ATTACH_ANALYTICS) properties.attach_analytics = analytics_from(value);
-  if (which_ == PROP_CANDIDATES) tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
-  if (which_ == PROP_ROI_SOURCE) properties.roi_source = g_value_get_enum(value);
-  if (which_ == PROP_ROI) properties.roi = rect_from(value);
-  if (which_ == PROP_ROI_TYPE) {
+  if (name_ == "attach-analytics") properties.attach_analytics = analytics_from(value);
+  if (name_ == "candidates") tracker.wants_candidates = g_value_get_boolean(value) != FALSE;
+  if (name_ == "roi-source") properties.roi_source = g_value_get_enum(value);
+  if (name_ == "roi") properties.roi = rect_from(value);
+  if (name_ == "roi-type") {
     const gchar* type = g_value_get_string(value);
     properties.roi_type = type != nullptr ? type : "";
   }
-  if (which_ == PROP_MAX_PROCESSING_TIME) {
+  if (name_ == "max-processing-time") {
     properties.max_processing_time = g_value_get_uint64(value);
   }
-  if (which_ == PROP_CAMERA_FILE) {
+  if (name_ == "camera-file") {
     tracker.camera = camera_;
     properties.camera_file = file_;
   }
-  if (which_ == PROP_EVIDENCE_FILE) {
+  if (name_ == "evidence-file") {
     tracker.evidence = evidence_;
     properties.evidence_file = file_;
   }
-  if (which_ == PROP_GRAVITY) tracker.gravity = vector_from(value, "gravity");
-  if (which_ >= PROP_OVERLAY && which_ <= PROP_LINE_WIDTH) {
-    set_overlay_property(properties.overlay, which_ - PROP_OVERLAY, value);
-  }
+  if (name_ == "gravity") tracker.gravity = vector_from(value, "gravity");
+  set_overlay_property(properties.overlay, name_, value);
 }
 
-void TrackProperties::get(guint which, GValue* value) const {
-  if (const ellipse::SettingInfo* info = number_info(which)) {
+void TrackProperties::get(std::string_view name, GValue* value) const {
+  if (const ellipse::SettingInfo* info = number_info(name)) {
     const double number = info->get(tracker);
     if (info->is_integer) {
       g_value_set_uint(value, static_cast<guint>(number));
@@ -366,22 +394,20 @@ void TrackProperties::get(guint which, GValue* value) const {
       g_value_set_double(value, number);
     }
   }
-  if (which == PROP_DETECTOR) g_value_set_enum(value, static_cast<gint>(tracker.detector));
-  if (which == PROP_TRACKING) g_value_set_enum(value, static_cast<gint>(tracker.tracking));
-  if (which == PROP_REFINE) g_value_set_enum(value, static_cast<gint>(tracker.refine));
-  if (which == PROP_INTERVAL) g_value_set_uint(value, interval);
-  if (which == PROP_MESSAGES) g_value_set_enum(value, messages);
-  if (which == PROP_ATTACH_ROI_META) g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
-  if (which == PROP_ATTACH_ANALYTICS) g_value_set_boolean(value, attach_analytics ? TRUE : FALSE);
-  if (which == PROP_CANDIDATES) g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
-  if (which == PROP_ROI_SOURCE) g_value_set_enum(value, roi_source);
-  if (which == PROP_ROI) write_rect(roi, value);
-  if (which == PROP_ROI_TYPE) g_value_set_string(value, roi_type.c_str());
-  if (which == PROP_MAX_PROCESSING_TIME) g_value_set_uint64(value, max_processing_time);
-  if (which == PROP_CAMERA_FILE) g_value_set_string(value, camera_file.c_str());
-  if (which == PROP_EVIDENCE_FILE) g_value_set_string(value, evidence_file.c_str());
-  if (which == PROP_GRAVITY) write_vector(tracker.gravity, value);
-  if (which >= PROP_OVERLAY && which <= PROP_LINE_WIDTH) {
-    get_overlay_property(overlay, which - PROP_OVERLAY, value);
-  }
+  if (name == "detector") g_value_set_enum(value, static_cast<gint>(tracker.detector));
+  if (name == "tracking") g_value_set_enum(value, static_cast<gint>(tracker.tracking));
+  if (name == "refine") g_value_set_enum(value, static_cast<gint>(tracker.refine));
+  if (name == "interval") g_value_set_uint(value, interval);
+  if (name == "messages") g_value_set_enum(value, messages);
+  if (name == "attach-roi-meta") g_value_set_boolean(value, attach_roi_meta ? TRUE : FALSE);
+  if (name == "attach-analytics") g_value_set_boolean(value, attach_analytics ? TRUE : FALSE);
+  if (name == "candidates") g_value_set_boolean(value, tracker.wants_candidates ? TRUE : FALSE);
+  if (name == "roi-source") g_value_set_enum(value, roi_source);
+  if (name == "roi") write_rect(roi, value);
+  if (name == "roi-type") g_value_set_string(value, roi_type.c_str());
+  if (name == "max-processing-time") g_value_set_uint64(value, max_processing_time);
+  if (name == "camera-file") g_value_set_string(value, camera_file.c_str());
+  if (name == "evidence-file") g_value_set_string(value, evidence_file.c_str());
+  if (name == "gravity") write_vector(tracker.gravity, value);
+  get_overlay_property(overlay, name, value);
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/tracking/settings.hpp"
 #include "gst/overlay/overlay_style.hpp"
@@ -25,28 +26,28 @@ struct TrackProperties {
   std::string evidence_file;             ///< File of tracker.evidence.
   GstClockTime max_processing_time = 0;  ///< Per frame [ns]; 0 = no limit.
 
-  /// Installs all properties with ids from first_id on; those of setting_infos() are last.
-  static void install(GObjectClass* object_class, guint first_id);
+  /// Installs all properties of ellipsetrack, including "target" and "stats", which get() does not
+  /// read. g_object_class_list_properties() returns them by purpose, as in docs/elements.md.
+  static void install(GObjectClass* object_class);
 
-  /// @param which  The property's id minus first_id.
-  void get(guint which, GValue* value) const;
+  /// @param name  Of the property.
+  void get(std::string_view name, GValue* value) const;
 };
 
 /// A new value of one property, read but not yet applied.
 class PropertyChange {
  public:
-  /// @param which  The property's id minus that of the first property.
-  /// @param value  Borrowed; must outlive this object.
+  /// @param name   Of the property. Both are borrowed and must outlive this object.
   /// Reads the file of `camera-file` or `evidence-file`: do not construct it under a lock. Throws
   /// std::invalid_argument if the file cannot be read.
-  PropertyChange(guint which, const GValue* value);
+  PropertyChange(std::string_view name, const GValue* value);
 
   /// Does not check the value against the others; tracker.validate() does. If the value is invalid
   /// by itself, throws std::invalid_argument and changes nothing.
   void apply_to(TrackProperties& properties) const;
 
  private:
-  guint which_;
+  std::string_view name_;
   const GValue* value_;
   std::string file_;
   std::optional<ellipse::Camera> camera_;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The controls of all properties, in the paper's groups. A change applies immediately.
+// The controls of all properties, by purpose. A change applies immediately.
 import { ask } from "./connection.js";
 import { make, makeControl } from "./controls.js";
 
 const kPollMs = 3000;
 const kGroups = {
-  detection: ["Detection", "criteria for an ellipse"],
-  edges: ["Edges", "edge thresholds"],
-  tracking: ["Tracking", "from frame to frame"],
+  detector: ["Detector", "criteria for an ellipse"],
+  tracker: ["Tracker", "from frame to frame"],
+  limits: ["Limits", "size and shape of the target"],
+  "search region": ["Search region", "part of the frame"],
   scale: ["Scale", "resolution of the search"],
-  ROI: ["Region", "search region"],
-  camera: ["Camera", "lens and pose of the target"],
-  load: ["Load", "time limit and frame skipping"],
+  "lens and pose": ["Lens and pose", "camera and size of the target"],
   output: ["Output", "metadata, messages, overlay"],
+  performance: ["Performance", "time limit and frame skipping"],
   other: ["Other", ""],
 };
-const kOpenAtFirst = ["detection", "edges", "tracking"];
+const kOpenAtFirst = ["detector", "tracker", "limits"];
 
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 

@@ -4,9 +4,7 @@
 
 namespace live {
 
-/// The group of an ellipsetrack property. "detection", "tracking", "scale", "ROI" and "edges"
-/// follow the paper; "camera", "output" and "load" are added here. Unknown properties are in
-/// "other".
+/// The purpose of an ellipsetrack property, as in docs/elements.md; "other" if it is unknown.
 [[nodiscard]] std::string_view group_of(std::string_view property);
 
 /// The unit in square brackets in a property's description: "px", "ns", "grey levels per px"; empty
