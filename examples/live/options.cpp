@@ -35,7 +35,7 @@ Options parse_options(int argc, char** argv) {
   Options options;
   CLI::App app{"Watch, tune and stream an ellipse tracker in a browser."};
   app.name("ellipse-live");
-  app.get_formatter()->column_width(32);
+  app.get_formatter()->column_width(34);
   app.add_option("--source",
                  options.source,
                  "test:SCENE, a file, /dev/video0, a URI, a folder of pictures, or part of a "
