@@ -40,8 +40,9 @@ void OutlineJudge::start(double log_odds, bool is_known) {
   judged_overlap_ = 1.0;
 }
 
-void OutlineJudge::confirm(double log_odds) {
+void OutlineJudge::confirm(double log_odds, bool is_known) {
   add(log_odds);
+  odds_.raise(log_odds, is_known);
   max_visible_ = 0.0;
   judged_overlap_ = 1.0;
 }

@@ -20,8 +20,8 @@ class OutlineJudge {
  public:
   /// Starts a hypothesis from a new detection. See TargetOdds::start().
   void start(double log_odds, bool is_known);
-  /// Adds a detection of the tracked hypothesis.
-  void confirm(double log_odds);
+  /// Adds a detection of the tracked hypothesis. See TargetOdds::raise().
+  void confirm(double log_odds, bool is_known);
 
   /// Call once per frame.
   void advance(double elapsed_s) { since_judged_s_ += elapsed_s; }

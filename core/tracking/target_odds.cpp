@@ -20,7 +20,12 @@ double bounded(double log_odds) {
 
 void TargetOdds::start(double log_odds, bool is_known) {
   last_ = bounded(log_odds);
-  sum_ = bounded(last_ + (is_known ? 0.0 : kPrior));
+  sum_ = -kMax;
+  raise(log_odds, is_known);
+}
+
+void TargetOdds::raise(double log_odds, bool is_known) {
+  sum_ = std::max(sum_, bounded(bounded(log_odds) + (is_known ? 0.0 : kPrior)));
 }
 
 void TargetOdds::add(double log_odds, double elapsed_s) {

@@ -21,6 +21,10 @@ class TargetOdds {
   /// @param is_known  Whether it may be a target that was reported shortly before.
   void start(double log_odds, bool is_known);
 
+  /// Raises the value to that of a new hypothesis with these log odds, so that following a target
+  /// never makes it less likely than finding it anew.
+  void raise(double log_odds, bool is_known);
+
   /// @param log_odds   From one more frame; may be infinite.
   /// @param elapsed_s  Since the last frame that was added.
   void add(double log_odds, double elapsed_s);

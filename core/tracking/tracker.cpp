@@ -190,7 +190,7 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   const std::optional<Target> chosen = detect(frame);
   if (is_rival(chosen)) return acquire(frame, *chosen);
   if (chosen && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
-    judge_->confirm(log_odds(chosen->probability));
+    judge_->confirm(log_odds(chosen->probability), true);
   }
   return followed;
 }
@@ -215,10 +215,10 @@ bool Tracker::is_too_large(const Ellipse& e) const {
 // Replaces or confirms the hypothesis by a detection. Locks only if most of the perimeter is
 // visible.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
+  const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, target.ellipse);
   if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameTarget)) {
-    judge_->confirm(log_odds(target.probability));
+    judge_->confirm(log_odds(target.probability), is_back);
   } else {
-    const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, target.ellipse);
     judge_->start(log_odds(target.probability), is_back);
     id_ = is_back ? last_id_ : last_id_ + 1;
   }

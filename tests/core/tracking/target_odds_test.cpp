@@ -60,6 +60,25 @@ TEST(TargetOdds, GrowEquallyAtAnyFrameRate) {
   EXPECT_GT(after_a_second(30), 1.0);
 }
 
+TEST(TargetOdds, AreAtLeastThoseOfANewHypothesis) {
+  for (const bool is_known : {false, true}) {
+    TargetOdds fresh;
+    fresh.start(0.5, is_known);
+    TargetOdds odds;
+    odds.start(-2.0, true);
+    odds.add(0.5, 1.0 / 30.0);
+    ASSERT_LT(odds.value(), fresh.value());
+    odds.raise(0.5, is_known);
+    EXPECT_EQ(odds.value(), fresh.value());
+    odds.raise(0.1, is_known);
+    EXPECT_EQ(odds.value(), fresh.value());
+  }
+  TargetOdds certain;
+  certain.start(0.0, true);
+  certain.raise(kInfinity, true);
+  EXPECT_EQ(certain.value(), TargetOdds::kMax);
+}
+
 TEST(TargetOdds, FallToZeroAfterOneContraryFrame) {
   TargetOdds odds;
   odds.start(kInfinity, false);
