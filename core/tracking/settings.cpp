@@ -105,7 +105,7 @@ const std::array kSettings = {
         kShareRange,
         true,
         "Minimum probability of an ellipse; for a target followed with tracking=edges, values "
-        "above 0.982 act as 0.982",
+        "above 0.993 act as 0.993",
         kOfArcs),
     setting<kLimits, &Thresholds::min_contour_size>(
         "min-contour-size", kContourSizeRangePx, true, "Minimum contour length [px]"),
@@ -248,6 +248,10 @@ void set_by_name(TrackerSettings& settings, std::string_view name, std::string_v
   }
   if (name == "refine") {
     settings.refine = from_nick<Refinement>(name, value, refinement_nicks());
+    return;
+  }
+  if (name == "evidence-file") {
+    settings.evidence = value.empty() ? built_in_evidence() : read_evidence(value);
     return;
   }
   const SettingInfo& found = info_named(name);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -101,6 +102,23 @@ TEST(TrackerSettings, NumbersAreSetByName) {
     set_by_name(settings, info.name, std::to_string(value));
     EXPECT_EQ(info.get(settings), value) << info.name;
   }
+}
+
+TEST(TrackerSettings, EvidenceIsSetByTheNameOfAFile) {
+  const std::string file = testing::TempDir() + "settings_evidence.txt";
+  EvidenceTable table = built_in_evidence();
+  table.bias += 1.0;
+  {
+    std::ofstream out(file);
+    write_evidence(out, table);
+  }
+  TrackerSettings settings;
+  set_by_name(settings, "evidence-file", file);
+  EXPECT_NEAR(settings.evidence.bias, table.bias, 1e-5);
+  set_by_name(settings, "evidence-file", "");
+  EXPECT_EQ(settings.evidence, built_in_evidence());
+  EXPECT_THROW(set_by_name(settings, "evidence-file", file + ".missing"), std::invalid_argument);
+  EXPECT_EQ(settings.evidence, built_in_evidence());
 }
 
 TEST(TrackerSettings, ChoicesAreSetByNick) {
