@@ -170,7 +170,8 @@ class Installer {
   explicit Installer(GObjectClass* object_class) : object_class_(object_class) {}
 
   void operator()(GParamSpec* spec) const {
-    const auto found = std::find(std::begin(kOrder), std::end(kOrder), std::string_view(spec->name));
+    const auto found =
+        std::find(std::begin(kOrder), std::end(kOrder), std::string_view(spec->name));
     g_assert(found != std::end(kOrder));
     g_object_class_install_property(
         object_class_, static_cast<guint>(found - std::begin(kOrder)) + 1, spec);
