@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/tracking/setting_effect.hpp"
+#include "gst/track/track_properties.hpp"
 
 namespace {
 
@@ -160,18 +161,20 @@ void check_signals(GType type, const std::string& section) {
   }
 }
 
-// The names in the second column of "Properties by purpose".
+// The table "Properties by purpose", each as "purpose: name".
 std::vector<std::string> names_by_purpose(const std::string& section) {
   const std::size_t begin = section.find("\n### Properties by purpose\n");
   if (begin == std::string::npos) return {};
   const std::string part = section.substr(begin, section.find("\n### ", begin + 1) - begin);
-  const std::regex row("\n\\|[^|]*\\|([^|]*)\\|");
+  const std::regex row("\n\\|(?: \\[([a-z ]+)\\]\\([^|]*)?\\s*\\|([^|]*)\\|");
   const std::regex quoted("`([a-z-]+)`");
   std::vector<std::string> names;
+  std::string purpose;
   for (std::sregex_iterator i(part.begin(), part.end(), row), end; i != end; ++i) {
-    const std::string cell = (*i)[1];
+    if ((*i)[1].matched) purpose = (*i)[1];
+    const std::string cell = (*i)[2];
     for (std::sregex_iterator j(cell.begin(), cell.end(), quoted); j != end; ++j) {
-      names.push_back((*j)[1]);
+      if ((*j)[1] != "qos") names.push_back(purpose + ": " + std::string((*j)[1]));
     }
   }
   return names;
@@ -179,14 +182,13 @@ std::vector<std::string> names_by_purpose(const std::string& section) {
 
 // The properties by purpose must be those of the element, in its order. qos is the base class's.
 void check_purposes(const std::vector<std::string>& own, const std::string& section) {
-  std::vector<std::string> names = names_by_purpose(section);
+  const std::vector<std::string> names = names_by_purpose(section);
   if (names.empty()) return;
-  names.erase(std::remove(names.begin(), names.end(), "qos"), names.end());
   const auto [expected, found] = std::mismatch(own.begin(), own.end(), names.begin(), names.end());
   if (expected == own.end() && found == names.end()) return;
   throw std::runtime_error("properties by purpose: " + (found == names.end() ? "nothing" : *found) +
                            " instead of " + (expected == own.end() ? "nothing" : *expected) +
-                           ", see kOrder in track_properties.cpp");
+                           ", see kPurposes in track_properties.cpp");
 }
 
 std::string table_of(const std::string& name, const std::string& document) {
@@ -206,7 +208,7 @@ std::string table_of(const std::string& name, const std::string& document) {
     GParamSpec* spec = specs.get()[i];
     const bool is_qos = spec->owner_type == GST_TYPE_BASE_TRANSFORM;
     if (spec->owner_type != G_OBJECT_TYPE(element.get()) && !is_qos) continue;
-    if (!is_qos) own.emplace_back(spec->name);
+    if (!is_qos) own.push_back(std::string(purpose_of(spec)) + ": " + spec->name);
     const std::string since = since_of(spec->name, section);
     table += "| " + in_backticks(spec->name) + " | " + type_of(spec) + " | " +
              default_of(element.get(), spec) + " | " + changeable(spec) + " | " +

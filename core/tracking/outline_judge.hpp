@@ -20,7 +20,8 @@ class OutlineJudge {
  public:
   /// Starts a hypothesis from a new detection. See TargetOdds::start().
   void start(double log_odds, bool is_known);
-  /// Adds a detection of the tracked hypothesis. See TargetOdds::raise().
+  /// Adds a detection of the tracked hypothesis.
+  /// @param is_known  Whether it was reported shortly before. See TargetOdds::raise().
   void confirm(double log_odds, bool is_known);
 
   /// Call once per frame.

@@ -84,7 +84,7 @@ struct SettingInfo {
 /// The nicks of the tracking modes, in enum order.
 [[nodiscard]] std::span<const char* const> tracking_nicks();
 
-/// Sets one setting by name from text: a number, a nick, or a file for "evidence-file", "" = none.
+/// Sets one setting by name from text: a number, a nick, or a file for "evidence-file".
 /// Throws std::invalid_argument that names the setting if the name or the value is invalid.
 void set_by_name(TrackerSettings& settings, std::string_view name, std::string_view value);
 

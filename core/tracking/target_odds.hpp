@@ -21,8 +21,8 @@ class TargetOdds {
   /// @param is_known  Whether it may be a target that was reported shortly before.
   void start(double log_odds, bool is_known);
 
-  /// Raises the value to that of a new hypothesis with these log odds, so that following a target
-  /// never makes it less likely than finding it anew.
+  /// Raises the value to that of a new hypothesis with these log odds and `is_known`, if it is
+  /// lower: a followed target is at least as likely as one that is found for the first time.
   void raise(double log_odds, bool is_known);
 
   /// @param log_odds   From one more frame; may be infinite.

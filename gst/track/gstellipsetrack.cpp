@@ -18,12 +18,11 @@
 
 #include "gst/track/gstellipsetrack.h"
 
-#include <exception>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 
+#include "gst/track/new_values.hpp"
 #include "gst/track/target_meta.hpp"
 #include "gst/track/track_frame.hpp"
 #include "gst/track/video_view.hpp"
@@ -46,104 +45,11 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(
 
 /* Properties */
 
-static bool is_stopped(GstEllipseTrack* self) {
-  return GST_STATE(self) == GST_STATE_NULL;
-}
-
-static void warn_rejected(GstEllipseTrack* self, const std::string& refusal) {
-  if (refusal.empty()) return;
-  GST_WARNING_OBJECT(self, "setting rejected: %s", refusal.c_str());
-  GST_ELEMENT_WARNING(
-      self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("the old value stays"));
-}
-
-// @return Why the values are not valid together; empty if they are.
-static std::string validation_error(const TrackProperties& properties) {
-  try {
-    properties.tracker.validate();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
-// Applies a change if the result is valid. In the state NULL an invalid combination is kept in
-// `pending` and takes effect once another change makes it valid: the two values of a pair may be
-// set in any order. @return Why the change is rejected; empty if it is accepted.
-static std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
-  TrackProperties next = shared.preset.value_or(shared.properties);
-  change.apply_to(next);
-  if (shared.preset) {
-    shared.preset = next;
-    return "";
-  }
-  if (is_stopped) {
-    if (!shared.pending) shared.pending = shared.properties;
-    change.apply_to(*shared.pending);
-    if (validation_error(*shared.pending).empty()) next = *shared.pending;
-  }
-  std::string misfit = validation_error(next);
-  if (misfit.empty()) shared.properties = next;
-  return misfit;
-}
-
-static bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
-  GstControlBinding* binding = gst_object_get_control_binding(GST_OBJECT(self), pspec->name);
-  if (binding == nullptr) return false;
-  gst_object_unref(binding);
-  return true;
-}
-
-// A rejected value that a controller sets at every frame is reported once, until a value is
-// accepted again.
-static bool is_already_reported(GstEllipseTrack* self, const GParamSpec* pspec, bool is_rejected) {
-  const bool is_repeated = is_controlled(self, pspec);
-  GST_OBJECT_LOCK(self);
-  std::set<std::string>& rejected = self->shared->rejected;
-  const bool is_news = is_rejected ? rejected.insert(pspec->name).second : false;
-  if (!is_rejected) rejected.erase(pspec->name);
-  GST_OBJECT_UNLOCK(self);
-  return is_repeated && !is_news;
-}
-
-// Holds the object lock in a scope.
-class ObjectLock {
- public:
-  explicit ObjectLock(GstEllipseTrack* self) : object_(GST_OBJECT(self)) {
-    GST_OBJECT_LOCK(object_);
-  }
-  ~ObjectLock() { GST_OBJECT_UNLOCK(object_); }
-  ObjectLock(const ObjectLock&) = delete;
-  ObjectLock& operator=(const ObjectLock&) = delete;
-
- private:
-  GstObject* object_;
-};
-
-// @return Why the value is rejected; empty if it is accepted.
-static std::string try_set(GstEllipseTrack* self, const char* name, const GValue* value) {
-  TrackShared& shared = *self->shared;
-  try {
-    const PropertyChange change(name, value);  // may read a file
-    const ObjectLock lock(self);
-    std::string misfit = changed(shared, change, is_stopped(self));
-    shared.value_errors.erase(name);
-    return misfit;
-  } catch (const std::exception& error) {
-    const ObjectLock lock(self);
-    if (is_stopped(self)) shared.value_errors[name] = error.what();
-    return error.what();
-  }
-}
-
-// Rejects an invalid value with a warning that names it, and keeps the old value.
 static void gst_ellipse_track_set_property(GObject* object,
                                            guint /*id*/,
                                            const GValue* value,
                                            GParamSpec* pspec) {
-  auto* self = GST_ELLIPSE_TRACK(object);
-  const std::string refusal = try_set(self, pspec->name, value);
-  if (!is_already_reported(self, pspec, !refusal.empty())) warn_rejected(self, refusal);
+  set_value(GST_ELLIPSE_TRACK(object), pspec, value);
 }
 
 static void gst_ellipse_track_get_property(GObject* object,
@@ -171,33 +77,8 @@ static void gst_ellipse_track_get_property(GObject* object,
 
 static gboolean (*load_one_by_one)(GstPreset* preset, const gchar* name);
 
-// The values of a preset take effect together: they are valid together, but not with the values
-// that they replace one by one.
 static gboolean gst_ellipse_track_load_preset(GstPreset* preset, const gchar* name) {
-  auto* self = GST_ELLIPSE_TRACK(preset);
-  TrackShared& shared = *self->shared;
-  GST_OBJECT_LOCK(self);
-  shared.preset = shared.properties;
-  GST_OBJECT_UNLOCK(self);
-  gboolean is_loaded = load_one_by_one(preset, name);
-  std::string refusal;
-  GST_OBJECT_LOCK(self);
-  const TrackProperties loaded = shared.preset.value_or(shared.properties);
-  try {
-    loaded.tracker.validate();
-    if (is_loaded) {
-      shared.properties = loaded;
-      shared.pending.reset();
-      shared.value_errors.clear();
-    }
-  } catch (const std::exception& error) {
-    refusal = error.what();
-    is_loaded = FALSE;
-  }
-  shared.preset.reset();
-  GST_OBJECT_UNLOCK(self);
-  warn_rejected(self, refusal);
-  return is_loaded;
+  return load_together(GST_ELLIPSE_TRACK(preset), name, load_one_by_one);
 }
 
 static void gst_ellipse_track_preset_init(gpointer iface, gpointer /*data*/) {
@@ -271,16 +152,6 @@ static gboolean gst_ellipse_track_start(GstBaseTransform* base) {
 static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
   reset_stream(GST_ELLIPSE_TRACK(base));
   return TRUE;
-}
-
-// @return Why the settings do not allow a start; empty if they do.
-static std::string obstacle_to_start(GstEllipseTrack* self) {
-  TrackShared& shared = *self->shared;
-  const ObjectLock lock(self);
-  std::string obstacle = shared.pending ? validation_error(*shared.pending) : "";
-  if (!shared.value_errors.empty()) obstacle = shared.value_errors.begin()->second;
-  if (obstacle.empty()) shared.pending.reset();
-  return obstacle;
 }
 
 // A setting rejected before the start fails the start, because applications do not read the

@@ -16,58 +16,55 @@
 
 namespace {
 
-// In the order of "Properties by purpose" in docs/elements.md; their ids follow it.
-constexpr std::string_view kOrder[] = {
-    // detector
-    "detector",
-    "min-probability",
-    "evidence-file",
-    "detect-contour-overlap",
-    "detect-ellipse-overlap",
-    "edge-low",
-    "edge-high",
-    "candidates",
-    // tracker
-    "tracking",
-    "refine",
-    "ring-ratio",
-    "track-contour-overlap",
-    "track-ellipse-overlap",
-    "roi-expansion",
-    // limits
-    "min-axis",
-    "max-axis",
-    "max-axis-ratio",
-    "min-contour-size",
-    // search region
-    "roi-source",
-    "roi",
-    "roi-type",
-    // scale
-    "min-target-size",
-    "max-target-size",
-    "max-scale",
-    // lens and pose
-    "camera-file",
-    "hfov",
-    "fx",
-    "fy",
-    "cx",
-    "cy",
-    "target-diameter",
-    "gravity",
-    // output
-    "messages",
-    "attach-roi-meta",
-    "attach-analytics",
-    "overlay",
-    "overlay-color",
-    "line-width",
-    "target",
-    "stats",
-    // performance
-    "interval",
-    "max-processing-time",
+struct Purpose {
+  std::string_view property;
+  const char* purpose;
+};
+
+// In the order of "Properties by purpose" in docs/elements.md; the properties' ids follow it.
+constexpr Purpose kPurposes[] = {
+    {"detector", "detector"},
+    {"min-probability", "detector"},
+    {"evidence-file", "detector"},
+    {"detect-contour-overlap", "detector"},
+    {"detect-ellipse-overlap", "detector"},
+    {"edge-low", "detector"},
+    {"edge-high", "detector"},
+    {"candidates", "detector"},
+    {"tracking", "tracker"},
+    {"refine", "tracker"},
+    {"ring-ratio", "tracker"},
+    {"track-contour-overlap", "tracker"},
+    {"track-ellipse-overlap", "tracker"},
+    {"roi-expansion", "tracker"},
+    {"min-axis", "limits"},
+    {"max-axis", "limits"},
+    {"max-axis-ratio", "limits"},
+    {"min-contour-size", "limits"},
+    {"roi-source", "search region"},
+    {"roi", "search region"},
+    {"roi-type", "search region"},
+    {"min-target-size", "scale"},
+    {"max-target-size", "scale"},
+    {"max-scale", "scale"},
+    {"camera-file", "lens and pose"},
+    {"hfov", "lens and pose"},
+    {"fx", "lens and pose"},
+    {"fy", "lens and pose"},
+    {"cx", "lens and pose"},
+    {"cy", "lens and pose"},
+    {"target-diameter", "lens and pose"},
+    {"gravity", "lens and pose"},
+    {"messages", "output"},
+    {"attach-roi-meta", "output"},
+    {"attach-analytics", "output"},
+    {"overlay", "output"},
+    {"overlay-color", "output"},
+    {"line-width", "output"},
+    {"target", "output"},
+    {"stats", "output"},
+    {"interval", "performance"},
+    {"max-processing-time", "performance"},
 };
 
 constexpr auto kPlaying = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
@@ -170,11 +167,13 @@ class Installer {
   explicit Installer(GObjectClass* object_class) : object_class_(object_class) {}
 
   void operator()(GParamSpec* spec) const {
-    const auto found =
-        std::find(std::begin(kOrder), std::end(kOrder), std::string_view(spec->name));
-    g_assert(found != std::end(kOrder));
+    const auto found = std::find_if(std::begin(kPurposes),
+                                    std::end(kPurposes),
+                                    [&](const Purpose& p) { return p.property == spec->name; });
+    g_assert(found != std::end(kPurposes));
+    g_param_spec_set_qdata(spec, purpose_quark(), const_cast<char*>(found->purpose));
     g_object_class_install_property(
-        object_class_, static_cast<guint>(found - std::begin(kOrder)) + 1, spec);
+        object_class_, static_cast<guint>(found - std::begin(kPurposes)) + 1, spec);
   }
 
  private:

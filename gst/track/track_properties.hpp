@@ -10,6 +10,18 @@
 #include "gst/overlay/overlay_style.hpp"
 #include "gst/track/track_enums.hpp"
 
+/// Key of a property's purpose in its parameter specification.
+[[nodiscard]] inline GQuark purpose_quark() {
+  return g_quark_from_static_string("ellipse-purpose");
+}
+
+/// The purpose of a property of ellipsetrack, such as "detector", by which user interfaces group
+/// them; "other" for a property of another class.
+[[nodiscard]] inline const char* purpose_of(GParamSpec* spec) {
+  const auto* purpose = static_cast<const char*>(g_param_spec_get_qdata(spec, purpose_quark()));
+  return purpose != nullptr ? purpose : "other";
+}
+
 /// The values of ellipsetrack's properties. A value type: the streaming thread copies it once per
 /// frame.
 struct TrackProperties {

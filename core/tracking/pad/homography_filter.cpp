@@ -62,6 +62,7 @@ HomographyFilter HomographyFilter::after(double elapsed_s,
               elapsed_s * elapsed_s * (velocity_variance + 0.5 * added);
   next.homography_velocity = homography_velocity + elapsed_s * (velocity_variance + 0.5 * added);
   next.velocity_variance = velocity_variance + added;
+  // Changes that no motion of the camera explains.
   next.pose.diagonal().array() += std::pow(elapsed_s, 3) * kShiftNoise * kShiftNoise;
   return next;
 }

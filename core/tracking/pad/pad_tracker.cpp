@@ -114,6 +114,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   const auto locked = project_circle(view_, 1.0);
   if (!locked || !is_same(*locked, outer_edge, kOuterEdgeTolerance)) return false;
   motion_.pose = inverse_of(attempt->estimate.information);
+  // As after a frame of unknown motion.
   motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
   is_locked_ = true;
   if (window.camera) {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "core/tracking/setting_effect.hpp"
-#include "examples/live/pipeline/property_groups.hpp"
 #include "examples/live/ref.hpp"
+#include "gst/track/track_properties.hpp"
 
 namespace live {
 namespace {
@@ -123,6 +124,14 @@ void write_nick(JsonWriter& json,
   value ? json.value(nicks[static_cast<std::size_t>(*value)]) : json.null();
 }
 
+// The unit in square brackets in a property's description; empty if it has none.
+std::string_view unit_in(std::string_view blurb) {
+  for (const std::string_view unit : {"[grey levels per px]", "[px]", "[ns]"}) {
+    if (blurb.find(unit) != std::string_view::npos) return unit.substr(1, unit.size() - 2);
+  }
+  return "";
+}
+
 // Writes when a tracker setting has an effect, and the value in force where 0 selects another
 // value. Writes nothing for other properties.
 void write_effect(JsonWriter& json, const char* name, const ellipse::TrackerSettings& settings) {
@@ -166,7 +175,7 @@ void write_property(JsonWriter& json,
       .member("nick", g_param_spec_get_nick(spec))
       .member("blurb", blurb)
       .member("type", type_of(spec))
-      .member("group", group_of(spec->name))
+      .member("group", purpose_of(spec))
       .member("unit", unit_in(blurb))
       .member("writable", is_writable)
       .member("mutable_playing", (spec->flags & GST_PARAM_MUTABLE_PLAYING) != 0);
