@@ -168,6 +168,12 @@ class PictureSearch {
 
 }  // namespace
 
+double EdgeMeasurer::mean_contrast() const {
+  double sum = 0.0;
+  for (const EdgeMeasurement& edge : edges()) sum += edge.contrast;
+  return count_ == 0 ? 0.0 : sum / static_cast<double>(count_);
+}
+
 // Uses the mean sharpness of the outline, since the sharpness of a single edge is noisy. Limits the
 // variance to that of a uniform distribution over the reach, which chance matches follow.
 void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {

@@ -73,6 +73,8 @@ class EdgeMeasurer {
 
   /// Of the last call, in order around the outline.
   [[nodiscard]] std::span<const EdgeMeasurement> edges() const { return {edges_.data(), count_}; }
+  /// Of the last call: the mean contrast of its edges; 0 without edges [units of Gradient].
+  [[nodiscard]] double mean_contrast() const;
   /// Of the last call: the origin of EdgeMeasurement::point [px of the picture].
   [[nodiscard]] Eigen::Vector2d origin() const { return origin_; }
 

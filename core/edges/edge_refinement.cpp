@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "core/edges/edge_measurement.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
@@ -13,21 +12,26 @@ constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // of each step [px]
 
 }  // namespace
 
-std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
-                                                 const Ellipse& e,
-                                                 Polarity polarity,
-                                                 double min_gradient,
-                                                 std::size_t samples) {
+std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
+                                                const Ellipse& e,
+                                                Polarity polarity,
+                                                const EdgeLimits& limits,
+                                                std::size_t samples) {
   EdgeMeasurer measurer;
-  RefinedEllipse refined{e, {}, 0.0, 0.0};
-  refined.support = measurer.measure(picture, e, polarity, samples, min_gradient).support;
+  const OutlineSupport found = measurer.measure(picture, e, polarity, samples, limits.min_gradient);
+  if (found.support < limits.min_support) return std::nullopt;
+  return fitted_to_edges(measurer, picture.lens, e);
+}
+
+std::optional<FittedEllipse> fitted_to_edges(const EdgeMeasurer& measurer,
+                                             const LensView& lens,
+                                             const Ellipse& e) {
   const std::span<const EdgeMeasurement> edges = measurer.edges();
   if (edges.size() < kMinEdgesOfEllipse) return std::nullopt;
-  const auto count = static_cast<double>(edges.size());
+  FittedEllipse refined{e, {}};
   std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples> ideal;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    ideal[i] = picture.lens.approximate_ideal(measurer.origin() + edges[i].point.cast<double>());
-    refined.gradient += edges[i].contrast / count;
+    ideal[i] = lens.approximate_ideal(measurer.origin() + edges[i].point.cast<double>());
   }
   for (const double reach_px : kTukeyReach) {
     GeometricFit fit(refined.ellipse);
@@ -43,7 +47,8 @@ std::optional<RefinedEllipse> refined_on_picture(const Picture& picture,
       squares += weight * offset.distance_px * offset.distance_px;
       weights += weight;
     }
-    const double independent_px = std::max(kIndependentPx, weights / count);
+    const double independent_px =
+        std::max(kIndependentPx, weights / static_cast<double>(edges.size()));
     const auto better = fit.solve();
     if (!better) return std::nullopt;
     refined.ellipse = *better;

@@ -89,6 +89,11 @@ double maxima_distance(double width, std::size_t direction) {
   return std::lerp(table[k], table[k + 1], at - static_cast<double>(k));
 }
 
+// Distance of an ellipse's tangent from its centre: |M normal|.
+double tangent_distance(const Eigen::Matrix2d& stretch, std::size_t i) {
+  return (stretch * direction(i)).norm();
+}
+
 Eigen::Matrix2d stretch_of(const Ellipse& e) {
   const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
   const Eigen::Vector2d across(-axis.y(), axis.x());
@@ -101,19 +106,25 @@ double min_maxima_distance() {
   return maxima_distances()[0][0];
 }
 
+bool is_thin(const RingEdges& maxima) {
+  const Eigen::Matrix2d outer = stretch_of(maxima.outer);
+  const Eigen::Matrix2d inner = stretch_of(maxima.inner);
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    if (tangent_distance(outer, i) - tangent_distance(inner, i) > kWidest) return false;
+  }
+  return true;
+}
+
 RingEdges without_blur_bias(const RingEdges& maxima) {
+  if (!is_thin(maxima)) return maxima;
   const Eigen::Matrix2d outer = stretch_of(maxima.outer);
   const Eigen::Matrix2d inner = stretch_of(maxima.inner);
   const Eigen::Matrix2d middle = 0.5 * (outer + inner);
   std::array<double, kDirections> radii;  // of the ring's middle line [px]
   double gaps = 0.0;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    // Distance of an ellipse's tangent from its centre: |M normal|.
-    const Eigen::Vector2d normal = direction(i);
-    radii[i] = (middle * normal).norm();
-    const double gap = (outer * normal).norm() - (inner * normal).norm();
-    if (gap > kWidest) return maxima;
-    gaps += gap;
+    radii[i] = tangent_distance(middle, i);
+    gaps += tangent_distance(outer, i) - tangent_distance(inner, i);
   }
   if (!(gaps > 0.0)) return maxima;
 

@@ -21,6 +21,9 @@ struct RingEdges {
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 [[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);
 
+/// Whether the gap between two gradient maxima is nowhere too wide for a blur bias.
+[[nodiscard]] bool is_thin(const RingEdges& maxima);
+
 /// Distance of the two gradient maxima of a very thin bar along an axis [px]. The first call of
 /// this or of without_blur_bias() computes a table, which takes a few milliseconds.
 [[nodiscard]] double min_maxima_distance();

@@ -105,16 +105,12 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
                                                       const Thresholds& thresholds) {
   const GradientMap& map = map_at(scale);
   const Ellipse guess = to_region(e, {}, scale);
-  std::optional<MeasuredEllipse> best;
-  for (const Polarity polarity : {Polarity::kDarkInside, Polarity::kBrightInside}) {
-    MeasuredEllipse measured;
-    const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
-    if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) continue;
-    if (best && best->probability >= measured.probability) continue;
-    measured.ellipse = to_frame(measured.ellipse, {}, scale);
-    best = measured;
-  }
-  return best;
+  const Polarity polarity = verifier_.better_polarity(map, guess);
+  MeasuredEllipse measured;
+  const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
+  if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) return std::nullopt;
+  measured.ellipse = to_frame(measured.ellipse, {}, scale);
+  return measured;
 }
 
 Picture ArcDetector::reduced(const Picture& picture, int scale) {
@@ -309,7 +305,7 @@ void ArcDetector::refine_at_full_size(const Picture& picture, const Thresholds& 
     if (found.scale == 1) return false;
     MeasuredEllipse& measured = found.measured;
     const auto refined =
-        refined_on_picture(picture, measured.ellipse, measured.polarity, min_gradient_);
+        refined_on_picture(picture, measured.ellipse, measured.polarity, {min_gradient_});
     if (refined) measured.ellipse = refined->ellipse;
     const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
     if (!verdict.is_accepted()) reject(measured.candidate, verdict);

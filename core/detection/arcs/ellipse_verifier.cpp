@@ -63,7 +63,6 @@ struct Sums {
   double length = 0.0;
   double length_on_ellipse = 0.0;
   double squares = 0.0;
-  double contrast = 0.0;
   double turn = 0.0;  // up to a common factor
   double turn_in_reach = 0.0;
 
@@ -72,7 +71,6 @@ struct Sums {
     const double turn_of_edge = 1.0 / (double(edge.length_px) * edge.length_px);
     length += edge.length_px;
     squares += edge.length_px * distance_px * distance_px;
-    contrast += edge.contrast;
     turn += turn_of_edge;
     if (is_on_outline(edge, reach_px)) turn_in_reach += turn_of_edge;
     const bool is_along = std::abs(edge.direction_error_rad) <= kOnEllipseRad;
@@ -216,7 +214,7 @@ void EllipseVerifier::measure(const GradientMap& map,
   const double radius = radius_of(e);
   const double turn_support = found.turn_support * sums.share_of_turn();
   const double error = direction_errors_.empty() ? 0.5 : median(direction_errors_);
-  measured.gradient = edges.empty() ? 0.0 : sums.contrast / double(edges.size());
+  measured.gradient = measurer_.mean_contrast();
   const double signal_to_noise = measured.gradient / map.texture();
   set(Feature::kTurnSupport, turn_support);
   set(Feature::kDirectionError, std::log(0.01 + error));
@@ -226,6 +224,15 @@ void EllipseVerifier::measure(const GradientMap& map,
   set(Feature::kRadius, std::log(radius));
   set(Feature::kContrast, std::log(std::clamp(signal_to_noise, 1.0, 100.0)));
   set(Feature::kStraight, 0.0);
+}
+
+Polarity EllipseVerifier::better_polarity(const GradientMap& map, const Ellipse& e) {
+  const auto support_of = [&](Polarity polarity) {
+    return measurer_.measure(map, e, polarity, kSamples, static_cast<int>(kOnOutlinePx)).support;
+  };
+  return support_of(Polarity::kDarkInside) >= support_of(Polarity::kBrightInside)
+             ? Polarity::kDarkInside
+             : Polarity::kBrightInside;
 }
 
 Verdict EllipseVerifier::verify(const GradientMap& map,

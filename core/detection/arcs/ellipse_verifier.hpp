@@ -35,6 +35,9 @@ class EllipseVerifier {
                                            const GradientMap& map,
                                            const Thresholds& thresholds);
 
+  /// The polarity with more edges on the outline.
+  [[nodiscard]] Polarity better_polarity(const GradientMap& map, const Ellipse& e);
+
   /// @param measured  Always written; its probability only if the last fit has enough edges.
   /// @return Accepted, or why it is rejected.
   [[nodiscard]] Verdict verify(const GradientMap& map,

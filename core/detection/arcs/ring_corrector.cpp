@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/edges/edge_refinement.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/edges/thin_ring.hpp"
 
@@ -11,6 +12,10 @@ namespace {
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
+
+RingEdges ordered(const Ellipse& a, const Ellipse& b) {
+  return a.semi_major > b.semi_major ? RingEdges{a, b} : RingEdges{b, a};
+}
 
 }  // namespace
 
@@ -25,43 +30,58 @@ void RingCorrector::correct(const Picture& picture,
   for (const Detection& detection : detections) maxima_.push_back(detection.ellipse);
   for (std::size_t i = 0; i < maxima_.size(); ++i) {
     const Ellipse& maximum = maxima_[i];
-    const auto edge = refined_on_picture(picture, maximum, polarities[i], min_gradient);
-    const auto next = edge ? next_edge(picture, min_gradient, polarities, i) : std::nullopt;
-    if (!next || next->support < kMajority) continue;
-    if (std::abs(std::log(next->gradient / edge->gradient)) > kContrastTolerance) continue;
-    const bool is_outer = maximum.semi_major > next->ellipse.semi_major;
-    detections[i].ellipse = is_outer ? without_blur_bias({maximum, next->ellipse}).outer
-                                     : without_blur_bias({next->ellipse, maximum}).inner;
+    const Polarity other = opposite(polarities[i]);
+    const Ellipse* partner = closest_partner(polarities, i);
+    if (partner != nullptr && !is_thin(ordered(maximum, *partner))) continue;
+    const auto next = partner != nullptr ? edge_near(picture, *partner, other, min_gradient)
+                                         : edge_beside(picture, maximum, other, min_gradient);
+    if (!next) continue;
+    measurer_.measure(picture, maximum, polarities[i], kRefinementSamples, min_gradient);
+    const double ratio = next->contrast / measurer_.mean_contrast();
+    if (!(std::abs(std::log(ratio)) <= kContrastTolerance)) continue;
+    const RingEdges edges = without_blur_bias(ordered(maximum, next->ellipse));
+    detections[i].ellipse =
+        maximum.semi_major > next->ellipse.semi_major ? edges.outer : edges.inner;
   }
 }
 
-// The closest partner among the detections; otherwise an edge on the picture that is too close or
-// too small to be detected by itself.
-std::optional<RefinedEllipse> RingCorrector::next_edge(const Picture& picture,
-                                                       double min_gradient,
-                                                       std::span<const Polarity> polarities,
-                                                       std::size_t i) const {
+const Ellipse* RingCorrector::closest_partner(std::span<const Polarity> polarities,
+                                              std::size_t i) const {
   const Ellipse& edge = maxima_[i];
-  const Polarity other = opposite(polarities[i]);
-  const auto look_at = [&](const Ellipse& guess) {
-    return refined_on_picture(picture, guess, other, min_gradient);
-  };
   const Ellipse* closest = nullptr;
   for (std::size_t k = 0; k < maxima_.size(); ++k) {
-    if (polarities[k] != other || !are_partners(edge, maxima_[k])) continue;
+    if (polarities[k] == polarities[i] || !are_partners(edge, maxima_[k])) continue;
     const double gap = std::abs(maxima_[k].semi_major - edge.semi_major);
     if (closest == nullptr || gap < std::abs(closest->semi_major - edge.semi_major)) {
       closest = &maxima_[k];
     }
   }
-  if (closest != nullptr) return look_at(*closest);
+  return closest;
+}
+
+std::optional<RingCorrector::Edge> RingCorrector::edge_near(const Picture& picture,
+                                                            const Ellipse& guess,
+                                                            Polarity polarity,
+                                                            double min_gradient) {
+  const OutlineSupport found =
+      measurer_.measure(picture, guess, polarity, kRefinementSamples, min_gradient);
+  if (found.support < kMajority) return std::nullopt;
+  const auto refined = fitted_to_edges(measurer_, picture.lens, guess);
+  if (!refined) return std::nullopt;
+  return Edge{refined->ellipse, measurer_.mean_contrast()};
+}
+
+// An edge that is too close or too small to be detected by itself.
+std::optional<RingCorrector::Edge> RingCorrector::edge_beside(const Picture& picture,
+                                                              const Ellipse& edge,
+                                                              Polarity polarity,
+                                                              double min_gradient) {
   for (const double gap : {-min_gap_px_, min_gap_px_}) {
     Ellipse guess = edge;
     guess.semi_major += gap;
     guess.semi_minor += gap;
     if (!(guess.semi_minor > 1.0)) continue;
-    auto found = look_at(guess);
-    if (found && found->support >= kMajority) return found;
+    if (const auto found = edge_near(picture, guess, polarity, min_gradient)) return found;
   }
   return std::nullopt;
 }

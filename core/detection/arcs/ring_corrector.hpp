@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/detection/detector.hpp"
-#include "core/edges/edge_refinement.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
 
@@ -27,13 +27,25 @@ class RingCorrector {
                std::span<Detection> detections);
 
  private:
-  [[nodiscard]] std::optional<RefinedEllipse> next_edge(const Picture& picture,
-                                                        double min_gradient,
-                                                        std::span<const Polarity> polarities,
-                                                        std::size_t i) const;
+  struct Edge {
+    Ellipse ellipse;
+    double contrast;
+  };
+
+  [[nodiscard]] const Ellipse* closest_partner(std::span<const Polarity> polarities,
+                                               std::size_t i) const;
+  [[nodiscard]] std::optional<Edge> edge_near(const Picture& picture,
+                                              const Ellipse& guess,
+                                              Polarity polarity,
+                                              double min_gradient);
+  [[nodiscard]] std::optional<Edge> edge_beside(const Picture& picture,
+                                                const Ellipse& edge,
+                                                Polarity polarity,
+                                                double min_gradient);
 
   double min_gap_px_;            // between the gradient maxima of a ring
   std::vector<Ellipse> maxima_;  // the detections before correction
+  EdgeMeasurer measurer_;
 };
 
 }  // namespace ellipse

@@ -97,7 +97,6 @@ struct EdgeSearch::Placement {
 void EdgeSearch::sample(const PadModel& model, const PadView& view, const ImageView& luma) {
   samples_.clear();
   samples_.reserve(kMaxSamples);
-  pixel_noise_ = pixel_noise(luma);
   Placement placement{view, VisiblePart(view, luma), view.radius_px()};
   std::array<VisibleSteps, kMaxCircles> visible;
   const auto directions = circle_directions(OutlineSamples::kMaxSamples);
@@ -190,7 +189,7 @@ void EdgeSearch::distort(const LensView& lens) {
 }
 
 void EdgeSearch::search(const ImageView& luma,
-                        double gain,
+                        const ImageLevels& levels,
                         double reach_px,
                         const HomographyCovariance* covariance,
                         double max_px) {
@@ -201,7 +200,7 @@ void EdgeSearch::search(const ImageView& luma,
       // Rounding may make the variance negative.
       reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)), reach_px, max_px);
     }
-    search_along(luma, gain, reach, sample);
+    search_along(luma, levels, reach, sample);
   }
 }
 
@@ -233,7 +232,7 @@ std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma)
 // Differences of box averages across the edge, positive from dark to bright. Reads pixels along the
 // row or column closest to the normal, which avoids interpolation.
 void EdgeSearch::search_along(const ImageView& luma,
-                              double gain,
+                              const ImageLevels& levels,
                               double reach_px,
                               EdgeSample& sample) const {
   sample.count = 0;
@@ -269,8 +268,9 @@ void EdgeSearch::search_along(const ImageView& luma,
   profile.step_px = static_cast<float>(step_px);
   profile.middle_px = static_cast<float>(slope * (middle - crossing));
   profile.read(pixel, stride);
-  const double noise = pixel_noise_ * std::sqrt(2.0 / box);  // of a difference of boxes
-  const double min_contrast = std::max(kMinOverNoise * noise, kMajority * gain * sample.contrast);
+  const double noise = levels.noise * std::sqrt(2.0 / box);  // of a difference of boxes
+  const double min_contrast =
+      std::max(kMinOverNoise * noise, kMajority * levels.gain * sample.contrast);
   keep_edges(profile, static_cast<float>(min_contrast), reach_px, sample);
 }
 

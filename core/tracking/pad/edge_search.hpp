@@ -34,6 +34,12 @@ struct EdgeSample {
   }
 };
 
+/// What limits the contrast of an edge in an image.
+struct ImageLevels {
+  double gain = 1.0;   ///< Ratio of image contrast to model contrast.
+  double noise = 0.0;  ///< Standard deviation of a pixel [grey levels], see pixel_noise().
+};
+
 /// Searches an image for the edges of a pad along their normals.
 class EdgeSearch {
  public:
@@ -41,11 +47,10 @@ class EdgeSearch {
   void sample(const PadModel& model, const PadView& view, const ImageView& luma);
 
   /// Searches edges of the expected polarity at each sample.
-  /// @param gain       Ratio of image contrast to model contrast.
   /// @param reach_px   Search range. With a covariance: 3 sigma at each sample, within
   ///                   [reach_px, max_px].
   void search(const ImageView& luma,
-              double gain,
+              const ImageLevels& levels,
               double reach_px,
               const HomographyCovariance* covariance = nullptr,
               double max_px = 0.0);
@@ -72,12 +77,14 @@ class EdgeSearch {
            double contrast,
            int feature);
   void distort(const LensView& lens);
-  void search_along(const ImageView& luma, double gain, double reach_px, EdgeSample& sample) const;
+  void search_along(const ImageView& luma,
+                    const ImageLevels& levels,
+                    double reach_px,
+                    EdgeSample& sample) const;
 
   std::vector<EdgeSample> samples_;
   double visible_fraction_ = 0.0;
-  double pixel_noise_ = 0.0;  // [grey levels]
-  double narrowest_ = 0.0;    // min gap between neighbouring circles [radii of the outer one]
+  double narrowest_ = 0.0;  // min gap between neighbouring circles [radii of the outer one]
 };
 
 }  // namespace ellipse

@@ -27,11 +27,14 @@ void LineLearner::reserve(PadModel& model) {
 // Pixels outside the image are 0, all others at least 1.
 void LineLearner::take(const ImageView& luma, const PadView& view) {
   const int end = std::min(kSize, rows_ + kSize / kParts);
+  const Eigen::Vector3d per_column = kPixel * view.ideal_from_pad.col(0);
   for (; rows_ < end; ++rows_) {
     std::uint8_t* pixel = pixels_.data() + static_cast<std::ptrdiff_t>(rows_) * kSize;
+    const Eigen::Vector3d first = view.ideal_from_pad * pad_point_of(0, rows_).homogeneous();
     for (int column = 0; column < kSize; ++column) {
-      const auto level = view.level_at(luma, pad_point_of(column, rows_));
-      *pixel++ = level ? static_cast<std::uint8_t>(std::max(1.0F, *level + 0.5F)) : std::uint8_t{0};
+      const float level = view.level_at(luma, first + column * per_column);
+      *pixel++ = std::isnan(level) ? std::uint8_t{0}
+                                   : static_cast<std::uint8_t>(std::max(1.0F, level + 0.5F));
     }
   }
 }

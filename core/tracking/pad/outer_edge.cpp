@@ -34,13 +34,11 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        double min_contrast) {
   const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
   if (!predicted) return std::nullopt;
-  const auto edge = refined_on_picture({luma, view.lens},
-                                       *predicted,
-                                       polarity_of(circle.is_bright_outside),
-                                       kGradientOfStep * min_contrast,
-                                       kSamples);
-  if (!edge || edge->support < kMajority) return std::nullopt;
-  return FittedEllipse{edge->ellipse, edge->uncertainty};
+  return refined_on_picture({luma, view.lens},
+                            *predicted,
+                            polarity_of(circle.is_bright_outside),
+                            {kGradientOfStep * min_contrast, kMajority},
+                            kSamples);
 }
 
 // Removes the blur bias that separates the gradient maxima of a thin ring's two edges.

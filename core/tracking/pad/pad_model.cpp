@@ -31,8 +31,11 @@ int index_of(double radius) {
 class RadialProfile {
  public:
   // Both are borrowed.
-  RadialProfile(const ImageView& luma, const PadView& view)
-      : luma_(luma), view_(view), directions_(circle_directions(kAngles)) {
+  RadialProfile(const ImageView& luma, const PadView& view) : luma_(luma), view_(view) {
+    const auto directions = circle_directions(kAngles);
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+      rays_[k] = view.ideal_from_pad.leftCols<2>() * directions[k].cast<double>();
+    }
     for (std::size_t i = 0; i < medians_.size(); ++i) medians_[i] = median(static_cast<int>(i));
   }
 
@@ -54,28 +57,30 @@ class RadialProfile {
     const double whole = step(i);
     int visible = 0;
     int agreed = 0;
-    for (int k = 0; k < kAngles; ++k) {
-      const auto outside = level(std::min(i + kApart, static_cast<int>(medians_.size()) - 1), k);
-      const auto inside = level(std::max(i - kApart, 0), k);
-      if (!outside || !inside) continue;
+    for (const Eigen::Vector3d& ray : rays_) {
+      const float outside = level(std::min(i + kApart, static_cast<int>(medians_.size()) - 1), ray);
+      const float inside = level(std::max(i - kApart, 0), ray);
+      const float rise = outside - inside;
+      if (std::isnan(rise)) continue;
       ++visible;
-      agreed += (*outside - *inside) * whole > kMajority * whole * whole ? 1 : 0;
+      agreed += rise * whole > kMajority * whole * whole ? 1 : 0;
     }
     return visible > 0 ? static_cast<double>(agreed) / visible : 0.0;
   }
 
  private:
-  [[nodiscard]] std::optional<float> level(int i, int k) const {
-    return view_.level_at(luma_, radius_at(i) * (directions_.begin() + k)->cast<double>());
+  // NaN outside the image.
+  [[nodiscard]] float level(int i, const Eigen::Vector3d& ray) const {
+    return view_.level_at(luma_, view_.ideal_from_pad.col(2) + radius_at(i) * ray);
   }
 
   // NaN if no angle is visible.
   [[nodiscard]] double median(int i) const {
     std::array<float, kAngles> levels;
     auto end = levels.begin();
-    for (int k = 0; k < kAngles; ++k) {
-      const auto here = level(i, k);
-      if (here) *end++ = *here;
+    for (const Eigen::Vector3d& ray : rays_) {
+      const float here = level(i, ray);
+      if (!std::isnan(here)) *end++ = here;
     }
     if (end == levels.begin()) return std::numeric_limits<double>::quiet_NaN();
     const auto middle = levels.begin() + (end - levels.begin()) / 2;
@@ -85,8 +90,8 @@ class RadialProfile {
 
   const ImageView& luma_;
   const PadView& view_;
-  std::span<const Eigen::Vector2f> directions_;
-  std::array<double, 250> medians_;  // from radius 0
+  std::array<Eigen::Vector3d, kAngles> rays_;  // unit vectors of the pad, projected
+  std::array<double, 250> medians_;            // from radius 0
 };
 
 bool is_peak(const RadialProfile& profile, int i) {

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/camera/circle_pose.hpp"
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/roi.hpp"
@@ -147,15 +148,16 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
   const double max_reach_px = kReachPx + kMaxReach * radius_px();
+  const ImageLevels levels{gain_, pixel_noise(window.luma)};
   std::optional<Attempt> attempt;
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix3d view = moved(start, change);
     search_.sample(model_, view_in(window, view), window.luma);
     if (step == 0) {
-      search_.search(window.luma, gain_, kReachPx, &covariance, max_reach_px);
+      search_.search(window.luma, levels, kReachPx, &covariance, max_reach_px);
     } else {
-      search_.search(window.luma, gain_, kReachPx);
+      search_.search(window.luma, levels, kReachPx);
     }
     const HomographyPrior prior{-change, information};
     const double first_reach_px = step == 0 ? max_reach_px : kReachPx;

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 std::optional<ProjectedPoint> PadView::at(const Vector2d& pad_point) const {
   const Eigen::Matrix3d& h = ideal_from_pad;
   const Vector3d projected = h * pad_point.homogeneous();
-  if (!(projected.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
+  if (!is_in_front(projected)) return std::nullopt;
   ProjectedPoint result;
   result.point = projected.hnormalized();
   result.slope =
@@ -22,15 +22,6 @@ std::optional<ProjectedPoint> PadView::at(const Vector2d& pad_point) const {
   const auto shown = lens.picture_from_ideal(result.point);
   if (!shown) return std::nullopt;
   return ProjectedPoint{shown->picture_px, shown->slope * result.slope};
-}
-
-std::optional<float> PadView::level_at(const ImageView& luma, const Vector2d& pad_point) const {
-  const auto projected = at(pad_point);
-  if (!projected) return std::nullopt;
-  const double x = projected->point.x();
-  const double y = projected->point.y();
-  if (!(x >= 0.0 && y >= 0.0 && x < luma.width - 1 && y < luma.height - 1)) return std::nullopt;
-  return luma.at(static_cast<float>(x), static_cast<float>(y));
 }
 
 double PadView::radius_px() const {

@@ -1,6 +1,8 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
@@ -26,12 +28,30 @@ struct PadView {
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
   [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& pad_point) const;
 
-  /// Level of the image at a pad point; nullopt outside the image.
-  [[nodiscard]] std::optional<float> level_at(const ImageView& luma,
-                                              const Eigen::Vector2d& pad_point) const;
+  /// Level of the image at a projected pad point, ideal_from_pad * (x, y, 1); NaN outside the
+  /// image. Along a line of pad points, these change linearly.
+  [[nodiscard]] float level_at(const ImageView& luma, const Eigen::Vector3d& projected) const {
+    const float outside = std::numeric_limits<float>::quiet_NaN();
+    if (!is_in_front(projected)) return outside;
+    Eigen::Vector2d point = projected.head<2>() / projected.z();
+    if (lens.is_distorted()) {
+      const auto shown = lens.picture_from_ideal(point);
+      if (!shown) return outside;
+      point = shown->picture_px;
+    }
+    const bool is_inside = point.x() >= 0.0 && point.y() >= 0.0 && point.x() < luma.width - 1 &&
+                           point.y() < luma.height - 1;
+    return is_inside ? luma.at(static_cast<float>(point.x()), static_cast<float>(point.y()))
+                     : outside;
+  }
 
   /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;
+
+ private:
+  [[nodiscard]] bool is_in_front(const Eigen::Vector3d& projected) const {
+    return projected.z() > 1e-6 * std::abs(ideal_from_pad(2, 2));
+  }
 };
 
 }  // namespace ellipse

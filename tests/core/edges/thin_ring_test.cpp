@@ -36,6 +36,8 @@ double median(std::vector<double> values) {
 TEST(RingEdges, KeepsDistantEdges) {
   const Ellipse outer{50.0, 50.0, 40.0, 30.0, 0.3};
   const Ellipse inner = grown(outer, -7.0);
+  EXPECT_FALSE(is_thin({outer, inner}));
+  EXPECT_TRUE(is_thin({outer, grown(outer, -5.0)}));
   const RingEdges edges = without_blur_bias({outer, inner});
   EXPECT_EQ(edges.outer, outer);
   EXPECT_EQ(edges.inner, inner);

@@ -298,10 +298,10 @@ TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
   const Picture picture = rendered(disc(), truth, 200, 160);
   Ellipse start = translated(truth, 0.8, -0.7);
   start.semi_major += 0.8;
-  const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, 200.0);
+  const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, {200.0});
   ASSERT_TRUE(refined);
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
-  EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, 200.0));
+  EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, {200.0}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/edges/noise.hpp"
 #include "core/tracking/pad/edge_search.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
 #include "core/tracking/pad/line_learner.hpp"
@@ -399,7 +400,7 @@ TEST(EdgeSearch, MeasuresTheOffsetsOfTheEdges) {
       const Ellipse expected = translated(kPad, shift.x(), shift.y());
       EdgeSearch search;
       search.sample(model, image_from_pad(expected), picture.view());
-      search.search(picture.view(), 1.0, 5.0);
+      search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 5.0);
       for (const EdgeSample& sample : search.samples()) {
         ASSERT_TRUE(sample.is_visible);
         ASSERT_EQ(sample.count, 1);
@@ -418,7 +419,7 @@ TEST(EdgeSearch, IgnoresEdgesOfTheOtherSign) {
   EdgeSearch search;
   const auto matched_samples = [&] {
     search.sample(model, image_from_pad(kPad), picture.view());
-    search.search(picture.view(), 1.0, 6.0);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 6.0);
     return std::count_if(search.samples().begin(),
                          search.samples().end(),
                          [](const EdgeSample& sample) { return sample.count > 0; });
@@ -436,9 +437,9 @@ TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
   const Picture picture = rendered(faint, kPad);
   EdgeSearch search;
   search.sample(disc_model(), image_from_pad(kPad), picture.view());
-  search.search(picture.view(), 1.0, 6.0);
+  search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 0);
-  search.search(picture.view(), 0.1, 6.0);
+  search.search(picture.view(), {0.1, pixel_noise(picture.view())}, 6.0);
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 1);
 }
 
@@ -453,7 +454,7 @@ TEST(EdgeSearch, IgnoresNoise) {
     const Picture picture = rendered(flat, kPad);
     EdgeSearch search;
     search.sample(model, image_from_pad(kPad), picture.view());
-    search.search(picture.view(), 1.0, 2.0);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 2.0);
     const auto matched = std::count_if(search.samples().begin(),
                                        search.samples().end(),
                                        [](const EdgeSample& sample) { return sample.count > 0; });
@@ -468,7 +469,7 @@ TEST(EdgeSearch, SearchesAsFarAsTheCovariance) {
   EdgeSearch search;
   search.sample(disc_model(), image_from_pad(expected), picture.view());
   const auto matched_at_sides = [&](const HomographyCovariance& covariance, double max_px) {
-    search.search(picture.view(), 1.0, 3.0, &covariance, max_px);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 3.0, &covariance, max_px);
     int matched = 0;
     for (const EdgeSample& sample : search.samples()) {
       matched += std::abs(sample.view.normal.x()) > 0.8 && sample.count > 0 ? 1 : 0;
@@ -501,7 +502,7 @@ TEST(EdgeSearch, KeepsTheStrongestEdgesFirst) {
   model.lines.push_back({{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, 10.0});
   EdgeSearch search;
   search.sample(model, image_from_pad({55.0, 30.0, 20.0, 20.0, 0.0}), picture.view());
-  search.search(picture.view(), 1.0, 40.0);
+  search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 40.0);
   ASSERT_FALSE(search.samples().empty());
   for (const EdgeSample& sample : search.samples()) {
     ASSERT_EQ(sample.count, 3);
@@ -525,7 +526,7 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
     const double y = 11'970.0 + 0.1 * i;
     EdgeSearch search;
     search.sample(model, image_from_pad({15.0, y, 10.0, 9.9, 0.001 * i}), picture.view());
-    search.search(picture.view(), 1.0, 20.0 + 0.2 * i);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 20.0 + 0.2 * i);
     for (const EdgeSample& sample : search.samples()) {
       if (sample.count == 0) continue;
       ++matched;
@@ -540,7 +541,7 @@ TEST(EdgeSearch, PlacesNoSampleInEmptyAndTinyPictures) {
   for (const int size : {0, 1, 2, 6}) {
     const Picture picture(size, size, 90);
     search.sample(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view());
-    search.search(picture.view(), 1.0, 4.0);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
     EXPECT_TRUE(search.samples().empty()) << size;
     EXPECT_EQ(search.visible_fraction(), 0.0) << size;
   }
@@ -559,7 +560,7 @@ struct SearchedRing {
   explicit SearchedRing(const HomographyChange& off, double reach_px = 10.0)
       : picture(rendered(scene_of(Pattern::kRing), kPad)), start(moved(image_from_pad(kPad), off)) {
     search.sample(ring_model(), start, picture.view());
-    search.search(picture.view(), 1.0, reach_px);
+    search.search(picture.view(), {1.0, pixel_noise(picture.view())}, reach_px);
   }
   [[nodiscard]] double error_px(const HomographyChange& change) const {
     return max_difference_px(project_circle(moved(start, change), 1.0).value(), kPad);
@@ -658,7 +659,7 @@ TEST(Support, ReportsMissingCircles) {
   model.circles.push_back({0.4, true, 145.0});
   EdgeSearch search;
   search.sample(model, image_from_pad(kPad), picture.view());
-  search.search(picture.view(), 1.0, 4.0);
+  search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
   const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
   EXPECT_LT(support.weakest, 0.1);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
@@ -672,7 +673,7 @@ TEST(Support, ReportsTheLight) {
     const Picture picture = rendered(scene, kPad);
     EdgeSearch search;
     search.sample(model, image_from_pad(kPad), picture.view());
-    search.search(picture.view(), gain, 4.0);
+    search.search(picture.view(), {gain, pixel_noise(picture.view())}, 4.0);
     const HomographySupport support =
         support_of(search.samples(), HomographyChange::Zero(), 1.5, 2);
     // Circles are learned from levels at larger distances than those that a sample compares.
