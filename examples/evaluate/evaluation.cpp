@@ -39,6 +39,7 @@ class Reference {
 Result judged(const Answer& answer, const SeenFrame& seen, double reference_ms, Rule rule) {
   Result result;
   result.answer = answer.target;
+  result.tracker = answer.tracker;
   result.processing_ms = answer.processing_ms;
   result.reference_ms = reference_ms;
   result.scale = answer.scale;
@@ -172,6 +173,24 @@ std::vector<std::string> sequences_of(const Evaluation& evaluation, const std::s
   return names;
 }
 
+namespace {
+
+const char* nick_of(ellipse::TrackerState state) {
+  switch (state) {
+    case ellipse::TrackerState::kSearching:
+      return "searching";
+    case ellipse::TrackerState::kConfirming:
+      return "confirming";
+    case ellipse::TrackerState::kFollowing:
+      return "following";
+    case ellipse::TrackerState::kCoasting:
+      return "coasting";
+  }
+  return "unknown";
+}
+
+}  // namespace
+
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method) {
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {
     const SeenFrame& seen = evaluation.frames[i];
@@ -186,6 +205,10 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
           << e.angle_rad << "],\"scale\":" << result.scale;
     } else {
       out << "null";
+    }
+    if (result.tracker) {
+      out << ",\"tracker\":\"" << nick_of(result.tracker->state) << '"';
+      if (result.tracker->probability) out << ",\"probability\":" << *result.tracker->probability;
     }
     out << ",\"visible\":" << visible_part(seen.frame->truth, seen.size) << ",\"ms\":["
         << json_number(result.processing_ms) << "],\"outcome\":\""

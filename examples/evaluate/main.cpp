@@ -123,6 +123,11 @@ void add_options(CLI::App& app, Options& options) {
         app.add_option("--frames",
                        options.frames_file,
                        "Write one JSON line per judged frame of the first method"),
+        app.add_option("--finest-scale",
+                       options.finest_scale,
+                       "Search no finer than at this frame scale, as the element does under load")
+            ->capture_default_str()
+            ->check(CLI::IsMember({1, 2, 4, 8})),
         app.add_flag("--all",
                      options.all_ellipses,
                      "Also evaluate all ellipses of each frame, not only the target"),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/ellipse.hpp"
+#include "core/tracking/tracker.hpp"
 #include "examples/evaluate/dataset.hpp"
 #include "examples/evaluate/distorted_frame.hpp"
 
@@ -81,6 +82,12 @@ struct FrameSize {
                             const FrameSize& frame,
                             Rule rule);
 
+/// Condition of an ellipse::Tracker after a frame. Peers' detectors run in one, too.
+struct TrackerReport {
+  ellipse::TrackerState state = ellipse::TrackerState::kSearching;
+  std::optional<double> probability;  ///< Of the target.
+};
+
 /// Measurements of one frame.
 struct Result {
   Outcome outcome = Outcome::kNotJudged;
@@ -89,6 +96,7 @@ struct Result {
   double centre_error_px = 0.0;  ///< Defined for kTruePositive.
   int scale = 1;                 ///< Frame scale of the answer.
   std::optional<ellipse::Ellipse> answer;
+  std::optional<TrackerReport> tracker = {};
   bool is_given = false;  ///< The answer is the truth that initialized the method.
 };
 

@@ -27,8 +27,12 @@ std::vector<ellipse::Ellipse> outlines_of(std::span<const ellipse::Detection> de
 
 class TrackerMethod : public Method {
  public:
-  TrackerMethod(const std::string& name, const ellipse::TrackerSettings& settings)
-      : Method(name), settings_(settings), knows_lens_(true), tracker_(settings) {
+  TrackerMethod(const std::string& name, const ellipse::TrackerSettings& settings, int finest_scale)
+      : Method(name),
+        settings_(settings),
+        finest_scale_(finest_scale),
+        knows_lens_(true),
+        tracker_(settings) {
     ellipse::TrackerSettings all = settings;
     all.wants_candidates = true;
     if (settings.tracking == ellipse::TrackingMode::kNone) all_finder_.emplace(all);
@@ -55,13 +59,16 @@ class TrackerMethod : public Method {
     picture_ = picture;
     const ellipse::ImageView view = view_of(picture);
     Answer answer;
+    const ellipse::SearchScope scope{.within = view.bounds(), .finest_scale = finest_scale_};
     const auto start = Clock::now();
-    const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns);
+    const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns, scope);
     const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
     answer.processing_ms = elapsed.count();
+    answer.tracker = TrackerReport{tracker_.state(), std::nullopt};
     if (target) {
       answer.target = target->ellipse;
       answer.scale = target->scale;
+      answer.tracker->probability = target->probability;
     }
     return answer;
   }
@@ -80,6 +87,7 @@ class TrackerMethod : public Method {
   }
 
   ellipse::TrackerSettings settings_;
+  int finest_scale_ = 1;
   bool knows_lens_ = false;  // peers assume a pinhole camera
   ellipse::Tracker tracker_;
   std::optional<ellipse::Tracker> all_finder_;
@@ -183,8 +191,9 @@ std::vector<OwnMethod> own_methods() {
 }  // namespace
 
 std::unique_ptr<Method> make_tracker_method(const std::string& name,
-                                            const ellipse::TrackerSettings& settings) {
-  return std::make_unique<TrackerMethod>(name, settings);
+                                            const ellipse::TrackerSettings& settings,
+                                            int finest_scale) {
+  return std::make_unique<TrackerMethod>(name, settings, finest_scale);
 }
 
 std::vector<std::string> unaided_method_names() {
@@ -223,9 +232,12 @@ ellipse::TrackerSettings settings_of(const std::string& name, ellipse::TrackerSe
   throw std::invalid_argument("method \"" + name + "\" has no settings");
 }
 
-std::unique_ptr<Method> make_method(const std::string& name, ellipse::TrackerSettings settings) {
+std::unique_ptr<Method> make_method(const std::string& name,
+                                    ellipse::TrackerSettings settings,
+                                    int finest_scale) {
   for (const OwnMethod& own : own_methods()) {
-    if (own.name == name) return make_tracker_method(name, settings_of(name, settings));
+    if (own.name == name)
+      return make_tracker_method(name, settings_of(name, settings), finest_scale);
   }
   for (const char* peer : peer_names()) {
     if (name != peer) continue;

@@ -12,6 +12,7 @@
 
 #include "core/tracking/tracker.hpp"
 #include "examples/evaluate/dataset.hpp"
+#include "examples/evaluate/measures.hpp"
 
 namespace evaluate {
 
@@ -21,6 +22,7 @@ struct Answer {
   int scale = 1;               ///< Frame scale of the answer.
   double processing_ms = 0.0;  ///< NaN if not measured.
   bool is_given = false;       ///< The answer is the truth that initialized the method.
+  std::optional<TrackerReport> tracker = {};
 };
 
 /// A method that finds the target in a sequence.
@@ -51,7 +53,8 @@ class Method {
 
 /// One of our methods, by the names of detector and tracking mode.
 [[nodiscard]] std::unique_ptr<Method> make_tracker_method(const std::string& name,
-                                                          const ellipse::TrackerSettings& settings);
+                                                          const ellipse::TrackerSettings& settings,
+                                                          int finest_scale = 1);
 
 /// The names of methods that find their target themselves: "contours+redetect" and so on, then the
 /// packaged detectors.
@@ -77,10 +80,12 @@ class Method {
 /// as our detectors do. The packaged trackers are initialized with the truth in the first frame
 /// that shows at least kMinToStart of the perimeter, and again after they report a loss; such an
 /// answer has is_given set and no time.
-/// @param settings  For our methods; detector and tracking mode come from the name.
+/// @param settings      For our methods; detector and tracking mode come from the name.
+/// @param finest_scale  Of our methods: SearchScope::finest_scale.
 /// Throws std::invalid_argument that lists the names if it is unknown.
 [[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name,
-                                                  ellipse::TrackerSettings settings);
+                                                  ellipse::TrackerSettings settings,
+                                                  int finest_scale = 1);
 
 /// Another program as a method.
 struct PeerCommand {

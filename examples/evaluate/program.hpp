@@ -15,6 +15,7 @@ struct Options {
   std::vector<std::string> methods;
   std::vector<std::string> peers;
   std::vector<std::string> settings;
+  int finest_scale = 1;
   std::vector<std::string> sweeps;
   std::vector<std::string> choices;
   std::string groups_file;

@@ -309,7 +309,30 @@ TEST_F(Programs, EvaluateRunsOnDistortedScenes) {
     EXPECT_NE(outcome.text.find(part), std::string::npos) << part << outcome.text;
   }
   EXPECT_GT(fs::file_size(folder_ / "page/index.html"), 5000U);
+  std::ifstream in(frames);
+  for (std::string line; std::getline(in, line);) {
+    EXPECT_NE(line.find(",\"tracker\":\""), std::string::npos) << line;
+    const bool has_target = line.find("\"target\":null") == std::string::npos;
+    EXPECT_EQ(line.find(",\"probability\":") != std::string::npos, has_target) << line;
+  }
   EXPECT_EQ(run("ellipse-evaluate", "distorted:seven").status, 1);
+}
+
+TEST_F(Programs, EvaluateSearchesCoarselyAsUnderLoad) {
+  const fs::path frames = folder_ / "frames";
+  const std::string command = "scenes:7 --seconds 0.1 --fps 10 --methods arcs+none --frames " +
+                              frames.string() + " --finest-scale ";
+  const Outcome outcome = run("ellipse-evaluate", command + "4");
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  std::ifstream in(frames);
+  int found = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("\"target\":null") != std::string::npos) continue;
+    ++found;
+    EXPECT_NE(line.find(",\"scale\":4,"), std::string::npos) << line;
+  }
+  EXPECT_GT(found, 10);
+  EXPECT_NE(run("ellipse-evaluate", command + "3").status, 0);
 }
 
 TEST_F(Programs, EvaluateNamesUnknownMethodsSweepsAndPeers) {
