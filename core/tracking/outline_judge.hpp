@@ -11,7 +11,7 @@ namespace ellipse {
 /// While a target is certain: period of its evaluation, and of searches for a better one. Not
 /// a multiple of common frame intervals, so that rounded time stamps do not change which frames are
 /// evaluated.
-inline constexpr double kCheckPeriod_s = 0.29;
+inline constexpr double kCheckPeriod_s = 0.18;
 
 /// Accumulates the detector's evidence for the outline of the tracked hypothesis over frames.
 ///

@@ -251,7 +251,7 @@ class InnerEdgeFirst : public testing::Test {
 TEST_F(InnerEdgeFirst, IsCorrectedByTheNextDetection) {
   const int frame = corrected_at(std::nullopt);
   EXPECT_GT(frame, 1);
-  EXPECT_LE(frame, 10);  // kCheckPeriod_s, and a frame in which an evaluation goes first
+  EXPECT_LE(frame, 7);  // kCheckPeriod_s, and a frame in which an evaluation goes first
 }
 
 TEST_F(InnerEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
