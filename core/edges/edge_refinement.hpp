@@ -25,8 +25,8 @@ struct EdgeLimits {
 /// @param picture  Its lens distorts the perimeter for the search; `e` and the result are in the
 ///                 ideal plane.
 /// @param samples  As of OutlineSamples. Fewer samples are faster and noisier.
-/// @return nullopt if too few gradient maxima are near or the fit fails. Allocates nothing;
-///         O(samples).
+/// @return nullopt if fewer edges than the limits are near, too few for a fit, or the fit fails.
+///         Allocates nothing; O(samples).
 [[nodiscard]] std::optional<FittedEllipse> refined_on_picture(
     const Picture& picture,
     const Ellipse& e,

@@ -21,7 +21,7 @@ struct RingEdges {
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 [[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);
 
-/// Whether the gap between two gradient maxima is nowhere too wide for a blur bias.
+/// Whether two gradient maxima are so close, all around, that blur displaces them.
 [[nodiscard]] bool is_thin(const RingEdges& maxima);
 
 /// Distance of the two gradient maxima of a very thin bar along an axis [px]. The first call of

@@ -124,6 +124,21 @@ class Run {
   std::vector<Answer> answers_;
 };
 
+// As in the JSON lines of ellipsejson.
+const char* nick_of(ellipse::TrackerState state) {
+  switch (state) {
+    case ellipse::TrackerState::kSearching:
+      return "searching";
+    case ellipse::TrackerState::kConfirming:
+      return "confirming";
+    case ellipse::TrackerState::kFollowing:
+      return "following";
+    case ellipse::TrackerState::kCoasting:
+      return "coasting";
+  }
+  return "unknown";
+}
+
 void add_new(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
@@ -172,24 +187,6 @@ std::vector<std::string> sequences_of(const Evaluation& evaluation, const std::s
   }
   return names;
 }
-
-namespace {
-
-const char* nick_of(ellipse::TrackerState state) {
-  switch (state) {
-    case ellipse::TrackerState::kSearching:
-      return "searching";
-    case ellipse::TrackerState::kConfirming:
-      return "confirming";
-    case ellipse::TrackerState::kFollowing:
-      return "following";
-    case ellipse::TrackerState::kCoasting:
-      return "coasting";
-  }
-  return "unknown";
-}
-
-}  // namespace
 
 void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t method) {
   for (std::size_t i = 0; i < evaluation.frames.size(); ++i) {

@@ -59,9 +59,8 @@ class TrackerMethod : public Method {
     picture_ = picture;
     const ellipse::ImageView view = view_of(picture);
     Answer answer;
-    const ellipse::SearchScope scope{.within = view.bounds(), .finest_scale = finest_scale_};
     const auto start = Clock::now();
-    const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns, scope);
+    const std::optional<ellipse::Target> target = tracker_.process(view, pts_ns, scope_in(view));
     const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
     answer.processing_ms = elapsed.count();
     answer.tracker = TrackerReport{tracker_.state(), std::nullopt};
@@ -77,13 +76,18 @@ class TrackerMethod : public Method {
   [[nodiscard]] std::optional<std::vector<ellipse::Ellipse>> all_found() override {
     if (settings_.tracking != ellipse::TrackingMode::kNone) return std::nullopt;
     if (!all_finder_) return outlines_of(tracker_.candidates());
-    (void)all_finder_->process(view_of(picture_), -1);
+    const ellipse::ImageView view = view_of(picture_);
+    (void)all_finder_->process(view, -1, scope_in(view));
     return outlines_of(all_finder_->candidates());
   }
 
  private:
   static ellipse::ImageView view_of(const cv::Mat& picture) {
     return {picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)};
+  }
+
+  [[nodiscard]] ellipse::SearchScope scope_in(const ellipse::ImageView& view) const {
+    return {.within = view.bounds(), .finest_scale = finest_scale_};
   }
 
   ellipse::TrackerSettings settings_;
@@ -236,8 +240,8 @@ std::unique_ptr<Method> make_method(const std::string& name,
                                     ellipse::TrackerSettings settings,
                                     int finest_scale) {
   for (const OwnMethod& own : own_methods()) {
-    if (own.name == name)
-      return make_tracker_method(name, settings_of(name, settings), finest_scale);
+    if (own.name != name) continue;
+    return make_tracker_method(name, settings_of(name, settings), finest_scale);
   }
   for (const char* peer : peer_names()) {
     if (name != peer) continue;

@@ -178,8 +178,9 @@ class Program {
     std::vector<std::string> names = options_.methods;
     if (names.empty()) names = unaided_method_names();
     std::vector<std::unique_ptr<Method>> methods;
-    for (const std::string& name : names)
+    for (const std::string& name : names) {
       methods.push_back(make_method(name, settings_, options_.finest_scale));
+    }
     if (!peers_.empty()) {
       files_.emplace();
       write_frame_files(files_->path());

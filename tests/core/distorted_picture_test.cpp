@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "core/edges/edge_refinement.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
+#include "core/tracking/pad/pad_view.hpp"
 #include "core/tracking/tracker.hpp"
 #include "tests/support/picture.hpp"
 
@@ -67,6 +69,30 @@ TEST_P(DistortedPicture, GivesAnotherEllipseWithoutTheLens) {
   const auto target = select_target(detector.detect(frame.picture.view(), {}));
   const bool is_same = target && max_difference_px(target->ellipse, *frame.truth.outer_edge) < 0.45;
   EXPECT_FALSE(is_same);
+}
+
+TEST_P(DistortedPicture, ShowsTheLevelsOfPadPoints) {
+  const Shot frame = shot(1.0);
+  const ImageView luma = frame.picture.view();
+  for (const LensView& lens : {LensView(lens_), LensView()}) {
+    const PadView view(image_from_pad(*frame.truth.outer_edge), lens);
+    int shown = 0;
+    for (int i = -40; i <= 40; ++i) {
+      const Eigen::Vector2d pad_point(0.1 * i, 0.05 * i);
+      const float level = view.level_at(luma, view.ideal_from_pad * pad_point.homogeneous());
+      const auto projected = view.at(pad_point);
+      const bool is_inside = projected && projected->point.x() >= 0.0 &&
+                             projected->point.y() >= 0.0 && projected->point.x() < luma.width - 1 &&
+                             projected->point.y() < luma.height - 1;
+      ASSERT_EQ(std::isnan(level), !is_inside) << i;
+      if (!is_inside) continue;
+      ++shown;
+      const Eigen::Vector2f point = projected->point.cast<float>();
+      EXPECT_NEAR(level, luma.at(point.x(), point.y()), 1e-3F) << i;
+    }
+    EXPECT_GT(shown, 20);
+    EXPECT_LT(shown, 81);
+  }
 }
 
 TEST_P(DistortedPicture, ContoursAreMappedToTheIdealPlane) {

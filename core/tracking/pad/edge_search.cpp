@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/tracking/pad/visible_part.hpp"
 

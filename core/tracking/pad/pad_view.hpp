@@ -28,8 +28,9 @@ struct PadView {
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
   [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& pad_point) const;
 
-  /// Level of the image at a projected pad point, ideal_from_pad * (x, y, 1); NaN outside the
-  /// image. Along a line of pad points, these change linearly.
+  /// Level of the image at a pad point (x, y); NaN outside the image.
+  /// @param projected  ideal_from_pad * (x, y, 1): linear in x and y, so that a line of pad points
+  ///                   needs one addition per point.
   [[nodiscard]] float level_at(const ImageView& luma, const Eigen::Vector3d& projected) const {
     const float outside = std::numeric_limits<float>::quiet_NaN();
     if (!is_in_front(projected)) return outside;

@@ -115,6 +115,19 @@ TEST(ArcDetector, JudgesOnlyTheGivenOutlineAtAnySize) {
   EXPECT_LT(detector.log_odds_of({}, {10.0, 10.0, 5.0, 4.0, 0.0}, {}).value(), -5.0);
 }
 
+TEST(ArcDetector, JudgesAnOutlineOfEitherPolarity) {
+  const Ellipse truth{160.2, 119.7, 50.0, 35.0, 0.6};
+  for (const double paint : {30.0, 215.0}) {
+    Scene scene = plain_ring();
+    scene.pad.pattern = Pattern::kDisc;
+    scene.ground.level = 120.0;
+    scene.pad.paint_level = paint;
+    const Picture picture = rendered(scene, truth);
+    ArcDetector detector;
+    EXPECT_GT(detector.log_odds_of(picture.view(), truth, {}).value(), 2.0) << paint;
+  }
+}
+
 TEST(ArcDetector, FindsPartlyOccludedRings) {
   const Ellipse truth{160.2, 119.7, 70.0, 55.0, 0.6};
   Scene scene = plain_ring();
