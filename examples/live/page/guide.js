@@ -60,6 +60,8 @@ export class Guide {
   #proposal = null;
   #wasPlaying = false;
   #timer = 0;
+  #storage = null;     // identifies the stored frames; null until the program has begun to store them
+  #discarding = null;  // request that discards the frames of the previous visit
   #isShowing = false;  // a frame is being requested
   #choice;
 
@@ -96,16 +98,22 @@ export class Guide {
     at("guide").hidden = true;
     at("guide-button").setAttribute("aria-expanded", "false");
     this.#setStep("see");
-    discardFrames().catch(() => {});  // the program discards unused frames by itself
+    this.#discarding = discardFrames().catch(() => {});  // the program discards unused frames by itself
     if (this.#wasPlaying && !this.playback.isPlaying) this.playback.toggle();
   }
 
   // Starts over: stores new frames.
-  #restart() {
+  async #restart() {
     this.#marks = [];
     this.#proposal = null;
     this.#setStep("see");
-    this.#attempt(() => storeFrames(true));
+    this.#storage = null;
+    at("guide-begin").disabled = true;
+    await this.#attempt(async () => {
+      await this.#discarding;
+      await storeFrames(true);
+      this.#storage = Symbol("stored frames");
+    });
     this.#poll();
   }
 
@@ -143,9 +151,11 @@ export class Guide {
 
   #poll = newestOnly(async () => {
     clearTimeout(this.#timer);
+    const storage = this.#storage;
     try {
       const stored = await storedFrames();
-      if (this.#isOn && this.#step === "see") this.#see(stored);
+      const isOfNow = storage !== null && storage === this.#storage;
+      if (this.#isOn && this.#step === "see" && isOfNow) this.#see(stored);
     } catch {
       // The status bar reports a lost connection.
     }
@@ -154,9 +164,10 @@ export class Guide {
 
   #see({ storing, full, max_frames: max, frames }) {
     const { source } = this.playback;
-    // A change of the source stops the storing.
-    if (!storing) this.#attempt(() => storeFrames(true));
-    const isEnough = full || frames.length >= kMinStored || (!this.playback.isPlaying && frames.length > 0);
+    // A change of the source discards the frames and stops the storing. Another client's guide only stops it.
+    if (!storing && frames.length === 0) this.#attempt(() => storeFrames(true));
+    const isGrowing = storing && this.playback.isPlaying;
+    const isEnough = full || frames.length >= kMinStored || (!isGrowing && frames.length > 0);
     at("guide-state").textContent = sourceText(source, this.screen.frame);
     at("guide-stored").textContent = storedText(frames.length, max, full, this.playback.isPlaying);
     at("guide-progress").max = max;

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, afterEach, before, describe, it } from "node:test";
-import { openPage, startBrowser, startProgram } from "./program.mjs";
+import { closePages, openPage, startBrowser, startProgram } from "./program.mjs";
 
 const kPhone = { width: 390, height: 844 };
 const kTooStrict = { "min-axis": 300, "max-axis": 600, "max-axis-ratio": 1.02 };
@@ -92,6 +92,7 @@ describe("the guide", () => {
     program = await startProgram("--source", "test:orbit", "--labels", labels);
   });
   afterEach(async () => {
+    await closePages(browser);
     await program.ask("PUT", "/api/properties", { ...kStart, "roi-source": "none" });
     await program.ask("POST", "/api/play");
   });
@@ -122,7 +123,6 @@ describe("the guide", () => {
     await program.ask("PUT", "/api/properties", { tracking: "none" });
     await page.waitForFunction(() => /No target is found/.test(document.querySelector("#guide-state").textContent));
     await program.ask("PUT", "/api/properties", { tracking: "edges" });
-    await page.close();
   });
 
   it("closes by Escape and Skip at any step and resumes playback", async () => {
@@ -141,7 +141,6 @@ describe("the guide", () => {
     assert.equal((await program.ask("GET", "/api/source")).playing, true);
     assert.equal((await program.ask("GET", "/api/history")).frames.length, 0);
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 
   it("proposes limits that admit the marked target, and applies them", async () => {
@@ -153,7 +152,8 @@ describe("the guide", () => {
     assert.match(text, /Proposed settings/);
     assert.match(text, /Minor axis of your marks: .* px. 300 px rejects 3 of 3/);
     assert.match(text, /Axis ratio of your marks: .* 1.02 rejects 3 of 3/);
-    assert.equal(await page.locator("[data-proposed]").count(), 2);
+    // A limit may follow that rejects another ellipse; which frames are marked depends on time.
+    for (const name of ["min-axis", "max-axis-ratio"]) assert.ok(await page.isVisible(`[data-proposed=${name}]`), name);
     assert.equal(await cellOf(page, "Marks right, single frames", 0), "0 of 3");
     assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
     assert.match(await cellOf(page, "Frames with a target", 0), /^0 of/);
@@ -168,7 +168,6 @@ describe("the guide", () => {
     await page.waitForSelector("#state[data-state=tracked]");
     assert.ok(await page.locator("[data-setting=min-axis].changed").count() === 1);
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 
   it("proposes a limit that rejects the wrong target", async () => {
@@ -189,7 +188,6 @@ describe("the guide", () => {
     assert.match(text, /Major axis of your marks: .* px; of 3 wrong ellipses: .* px/);
     assert.equal(await cellOf(page, "Marks right, single frames", 0), "0 of 3");
     assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
-    await page.close();
   });
 
   it("proposes a probability between the marks and other ellipses", async () => {
@@ -206,7 +204,6 @@ describe("the guide", () => {
     assert.equal(await cellOf(page, "Marks right, single frames", 1), "3 of 3");
     await page.click("#guide-apply");
     await page.getByText("Applied.").waitFor();
-    await page.close();
   });
 
   it("changes nothing when the settings are right", async () => {
@@ -216,7 +213,6 @@ describe("the guide", () => {
     assert.match(await resultOf(page), /The current settings are right on your 3 marks/);
     assert.equal(await page.locator("#guide-apply").isVisible(), false);
     assert.equal(await textOf(page, "discard"), "Done");
-    await page.close();
   });
 
   it("saves hand-drawn marks and frames without a target as labels", async () => {
@@ -235,7 +231,6 @@ describe("the guide", () => {
     await page.click("#guide-discard");
     const properties = await program.ask("GET", "/api/properties");
     assert.equal(properties.find(({ name }) => name === "min-axis").value, 300);
-    await page.close();
   });
 
   it("explains why a mark is not found and links to the documentation", async () => {
@@ -248,7 +243,6 @@ describe("the guide", () => {
     assert.match(text, /Mark 1: (No candidate is near your mark|Its edges do not support an ellipse)/);
     const help = await page.locator("#guide-result a").getAttribute("href");
     assert.match(await program.ask("GET", `/${help}`), /^# Troubleshooting/);
-    await page.close();
   });
 
   it("restarts when the frames are no longer stored", async () => {
@@ -260,7 +254,38 @@ describe("the guide", () => {
     await page.click("#guide-again");
     await isAtStep(page, "see");
     await beginMarks(page);
-    await page.close();
+  });
+
+  it("waits for frames of this visit", async () => {
+    const page = await openGuide(browser, program);
+    await page.waitForSelector("#guide-begin:enabled");
+    let answer;
+    const isAnswered = new Promise((resolve) => { answer = resolve; });
+    await page.route("**/api/history", async (route) => {
+      await isAnswered;
+      await route.continue();
+    });
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Enter");
+    await isAtStep(page, "see");
+    assert.ok(await page.isDisabled("#guide-begin"));
+    answer();
+    await beginMarks(page);
+    assert.deepEqual(page.troubles, []);
+  });
+
+  it("leaves frames that another client marks", async () => {
+    const waiting = await openGuide(browser, program);
+    await waiting.waitForSelector("#guide-begin:enabled");
+    const marking = await openGuide(browser, program);
+    await beginMarks(marking);
+    const { storing, frames } = await program.ask("GET", "/api/history");
+    assert.equal(storing, false);
+    for (const _ of [1, 2]) await waiting.waitForResponse("**/api/history");  // after a whole poll
+    assert.deepEqual(await program.ask("GET", "/api/history").then((now) => now.frames), frames);
+    await markNone(marking, 1);
+    await choicesOf(marking, 2);
+    assert.ok(await waiting.isEnabled("#guide-begin"));
   });
 
   it("continues after a lost connection and when another client plays", async () => {
@@ -277,7 +302,6 @@ describe("the guide", () => {
     await choicesOf(page, 2);
     await markNone(page, 2);
     await choicesOf(page, 3);
-    await page.close();
   });
 
   it("derives trials from the marks", async () => {
@@ -307,7 +331,6 @@ describe("the guide", () => {
     assert.deepEqual(region, { roi: [0, 0, 250, 250], "roi-source": "property" });
     const limit = probability["min-probability"];
     assert.ok(limit > 0.1 && limit < 0.2, String(limit));
-    await page.close();
   });
 
   it("keeps the video and its buttons in view on a phone", async () => {
@@ -334,7 +357,6 @@ describe("the guide", () => {
     }
     await resultOf(page);
     await check("#guide-discard", "#guide-skip");
-    await page.close();
   });
 });
 
@@ -360,6 +382,5 @@ describe("the guide with a file", () => {
     for (let i = 1; i <= 3; ++i) await markByClick(page, program, i);
     assert.match(await resultOf(page), /right on your 3 marks/);
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 });

@@ -8,7 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, beforeEach, describe, it } from "node:test";
 import { setTimeout } from "node:timers/promises";
-import { kTimeoutMs, openPage, shownBy, startBrowser, startProgram, stopPrograms } from "./program.mjs";
+import { closePages, kTimeoutMs, openPage, shownBy, startBrowser, startProgram, stopPrograms } from "./program.mjs";
 import "./guide.test.mjs";
 import "./layout.test.mjs";
 import { largestDistance } from "./ring.mjs";
@@ -23,11 +23,14 @@ after(async () => {
   rmSync(process.env.XDG_DATA_HOME, { recursive: true });
 });
 
-/** Each test has its own page and shares the program. */
+/** Each test opens its own pages, which are closed after it, and shares the program. */
 function withProgram(args, tests) {
   const context = {};
   before(async () => { context.program = await startProgram(...args()); });
-  beforeEach(async () => { await context.program.ask("POST", "/api/play"); });
+  beforeEach(async () => {
+    await closePages(browser);
+    await context.program.ask("POST", "/api/play");
+  });
   after(async () => { await context.program.stop(); });
   tests({
     get program() { return context.program; },
@@ -102,7 +105,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     assert.equal(await page.textContent("#figure-tracker"), "following");
     await page.waitForFunction(() => document.querySelector("#source-name").textContent === "test:orbit");
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 
   it("shows its frame to clients that connect while it is paused", async () => {
@@ -116,7 +118,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       image.src = "video.mjpeg";
     }));
     assert.ok(isShown);
-    await page.close();
   });
 
   it("shows no rate if the clock stands still", async () => {
@@ -127,7 +128,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForFunction(() => Number(document.querySelector("#screen").dataset.shown) >= 3);
     assert.equal(await page.textContent("#figure-shown"), "–");
     assert.equal(await page.textContent("#figure-rate"), "–");
-    await page.close();
   });
 
   it("applies a slider to the property and the result", async () => {
@@ -150,7 +150,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await setting(page, "tracking").getByRole("button", { name: "Reset tracking" }).click();
     await stateIs(page, "tracked");
     await page.waitForSelector("#reset-all:disabled");
-    await page.close();
   });
 
   it("shows why a value is rejected, and the value in force", async () => {
@@ -164,7 +163,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForFunction((value) => {
       return document.querySelector("[data-setting=max-axis] input[type=number]").value === value;
     }, before);
-    await page.close();
   });
 
   it("is searched only inside a dragged region", async () => {
@@ -204,7 +202,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await regionIs("none");
     await page.waitForSelector("[data-setting=roi]:not(.changed)", { state: "attached" });
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 
   it("is searched only inside a region set by keyboard", async () => {
@@ -222,7 +219,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.focus("#screen");
     await page.keyboard.press("Escape");
     await stateIs(page, "tracked");
-    await page.close();
   });
 
   it("shows what another client sets", async () => {
@@ -231,7 +227,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForSelector("[data-setting=edge-high].changed");
     assert.equal(await setting(page, "edge-high").locator("input[type=number]").inputValue(), "12.5");
     await live.program.ask("PUT", "/api/properties", { "edge-high": 0 });
-    await page.close();
   });
 
   it("has a control with help for each property", async () => {
@@ -241,7 +236,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       assert.equal(await setting(page, name).locator(".help").textContent(), blurb, name);
       assert.ok(await setting(page, name).locator("input").count() > 0, name);
     }
-    await page.close();
   });
 
   it("greys settings without effect and shows the reason", async () => {
@@ -268,7 +262,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     assert.equal(await idle("detect-contour-overlap"), "");
     await live.program.ask("PUT", "/api/properties", { "max-processing-time": 1e9 });
     await once("max-scale", "");
-    await page.close();
   });
 
   it("shows the value in force in the field of a setting that is 0", async () => {
@@ -290,7 +283,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await box.blur();
     await holds("", "0 = 0.95");
     await propertiesOnce(live.program, "detect-ellipse-overlap", (value) => value === 0);
-    await page.close();
   });
 
   it("names the reason of each rejection and links to the setting", async () => {
@@ -314,7 +306,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForFunction(() => document.activeElement.closest("[data-setting=max-axis-ratio]"));
     await page.click("#reset-all");
     await page.click("#play");
-    await page.close();
   });
 
   it("shows each stage on the screen", async () => {
@@ -337,7 +328,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     assert.equal(await target.locator("li").first().locator(".evidence dd").count(), 8);
     assert.match(await target.locator("li button").first().textContent(), /probability (above )?0\.\d{3}/);
     assert.deepEqual(page.troubles, []);
-    await page.close();
   });
 
   it("resumes the analysis of the stages with playback", async () => {
@@ -351,7 +341,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.waitForTimeout(1500);
     await page.click("#play");
     for (let i = 0; i < 3; ++i) await page.waitForResponse(/api\/analyze/);
-    await page.close();
   });
 
   it("lists the choices of the paused frame", async () => {
@@ -371,7 +360,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       });
     }
     await page.click("#play");
-    await page.close();
   });
 
   it("focuses the clicked candidate in the list", async () => {
@@ -389,7 +377,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const [x, y] = [e.cx + e.semi_major * Math.cos(e.angle_rad), e.cy + e.semi_major * Math.sin(e.angle_rad)];
     await page.mouse.click(box.x + (x + 0.5) * scale, box.y + (y + 0.5) * scale);
     await page.waitForFunction(() => /^Target, /.test(document.activeElement.textContent));
-    await page.close();
   });
 
   it("is usable by keyboard alone", async () => {
@@ -410,7 +397,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       if (tab === "label") await page.waitForSelector("#play[aria-label=Play]");
     }
     await live.program.ask("POST", "/api/play");
-    await page.close();
   });
 
   it("names every control for screen readers", async () => {
@@ -423,13 +409,11 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     const nameless = worked.filter(({ name }) => !name?.value);
     assert.ok(worked.length > 60);
     assert.deepEqual(nameless.map(({ role, backendDOMNodeId }) => `${role.value} ${backendDOMNodeId}`), []);
-    await page.close();
   });
 
   it("announces state changes to screen readers", async () => {
     const page = await live.open();
     await page.waitForFunction(() => document.querySelector("#announcer").textContent === "Target: tracked");
-    await page.close();
   });
 
   it("fits a phone", async () => {
@@ -445,7 +429,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
       .filter((node) => node.offsetParent && node.offsetHeight < 28).map((node) => node.textContent));
     assert.deepEqual(small, []);
     await live.program.ask("POST", "/api/play");
-    await page.close();
   });
 
   it("compares two settings on one frame", async () => {
@@ -467,7 +450,6 @@ describe("a live source", () => withProgram(() => ["--source", "test:orbit"], (l
     await page.click("#compare-back");
     await page.waitForFunction(() => /no differences/.test(document.querySelector("#compare-result").textContent));
     await live.program.ask("POST", "/api/play");
-    await page.close();
   });
 }));
 
@@ -508,7 +490,6 @@ describe("a picture with many rejected candidates", () => withProgram(() => ["--
     await reason.locator(".rest").click();
     await page.waitForFunction(() => document.querySelector(".reason[open]:not(.accepted)").querySelectorAll("li").length > 8);
     assert.ok(await countRed(page) > redOfReason);
-    await page.close();
   });
 }));
 
@@ -528,7 +509,6 @@ describe("a pad that stays in the middle", () => withProgram(() => ["--source", 
       await page.waitForSelector("#play[aria-label=Pause]");
       await page.waitForTimeout(700);
     }
-    await page.close();
   });
 }));
 
@@ -604,7 +584,6 @@ describe("a file", () => withProgram(() => {
     await page.waitForFunction(() => Math.abs(Number(document.querySelector("#screen").dataset.pts) - 1e9) < 1e8);
     await page.click("#play");
     await page.waitForSelector("#play[aria-label=Pause]");
-    await page.close();
   });
 
   it("shows the effect of a setting while it is paused", async () => {
@@ -628,7 +607,6 @@ describe("a file", () => withProgram(() => {
     await page.click("#tab-label");
     await eventually("the choice is back", async () => (await choices.count() > 2) || undefined);
     assert.equal(await standsStill(page, live.program), pts);
-    await page.close();
   });
 
   it("is labelled frame by frame", async () => {
@@ -647,7 +625,6 @@ describe("a file", () => withProgram(() => {
     assert.equal(rows.length, 3);
     assert.match(rows[1], /^images\/labelled\/000001\.png,\d+/);
     assert.match(rows[2], /^images\/labelled\/000002\.png,,,,,,,\d+/);
-    await page.close();
   });
 
   it("disables choices while the frame changes", async () => {
@@ -671,7 +648,6 @@ describe("a file", () => withProgram(() => {
     await choicesAreThere(page, first);
     assert.ok(await page.getByLabel("None: no target in this frame").isEnabled());
     await page.unrouteAll({ behavior: "ignoreErrors" });
-    await page.close();
   });
 
   it("saves an ellipse drawn by hand", async () => {
@@ -694,7 +670,6 @@ describe("a file", () => withProgram(() => {
     for (const [value, wanted] of [[cx, 200], [cy, 120], [major, 60], [minor, 30]]) {
       assert.ok(Math.abs(value - wanted) < 1.5, `${value} instead of ${wanted}`);
     }
-    await page.close();
   });
 }));
 

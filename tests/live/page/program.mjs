@@ -97,6 +97,11 @@ export async function openPage(browser, url, size = { width: 1440, height: 900 }
   return page;
 }
 
+/** Closes a test's pages; they would act on the program in the next test. */
+export async function closePages(browser) {
+  await Promise.all(browser.contexts().map((context) => context.close()));
+}
+
 /** Number of frames that the page has painted. */
 export function shownBy(page) {
   return page.evaluate(() => Number(document.querySelector("#screen").dataset.shown));
