@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Writes the tables of properties in a document from what the elements themselves say, between
+// Generates the tables of properties in a document from the elements, between
 //   <!-- properties of ELEMENT -->   and   <!-- end of properties -->
 // and the matrix of the tracker's settings by detector and tracking, between
 //   <!-- effects of settings -->   and   <!-- end of effects -->
-// With --check it writes nothing, and fails where the document says something else.
-// The last column, the version that a property came with, is the document's: it is kept, and a
-// property that is new there gets the version of today. Signals are written by hand, and checked.
+// With --check it writes nothing, and fails if the document differs.
+// The last column, the version that a property came with, is kept from the document; a new property
+// gets the current version. Signals are written by hand, and checked.
 #include <gst/base/gstbasetransform.h>
 #include <gst/gst.h>
 

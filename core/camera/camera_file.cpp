@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <opencv2/core.hpp>
 #include <opencv2/core/persistence.hpp>
@@ -16,12 +14,11 @@
 #include <vector>
 
 #include "core/geometry/ellipse.hpp"
+#include "core/text_file.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMaxFile = 1 << 20;  // bytes
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr double kMinFocal = 1.0;  // px: shorter ones are in wrong units
 
 // Alternative keys of different programs for one value.
@@ -37,25 +34,7 @@ constexpr Keys kFisheyeKeys = {"fisheye_model"};
 // A calibration file, with error messages that name file, line and key.
 class File {
  public:
-  explicit File(const std::string& path) : path_(path) {
-    // Opening a FIFO blocks until its other end is opened.
-    std::error_code ignored;
-    const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-      throw std::invalid_argument(path + ": is not a regular file");
-    }
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw std::invalid_argument(path + ": cannot be read");
-    text_.resize(kMaxFile + 1);
-    stream.read(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
-    if (text_.size() > kMaxFile) throw std::invalid_argument(path + ": is larger than 1 MB");
-    if (text_.find('\0') != std::string::npos) {
-      throw std::invalid_argument(path + ": is not a text file");
-    }
-    if (text_.rfind(kByteOrderMark, 0) == 0) text_.erase(0, kByteOrderMark.size());
-    parse();
-  }
+  explicit File(const std::string& path) : path_(path), text_(read_text_file(path)) { parse(); }
 
   // The node of the first key present, else an empty one; `found` is that key, else the first one.
   [[nodiscard]] cv::FileNode find(Keys keys, const char*& found) const {
@@ -78,7 +57,6 @@ class File {
  private:
   void parse() {
     const std::size_t first = text_.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos) throw std::invalid_argument(path_ + ": is empty");
     if (is_cut_off(text_[first])) {
       throw std::invalid_argument(path_ + ": is not a calibration: it is truncated");
     }
@@ -270,7 +248,8 @@ void read_distortion(const File& file, Camera& camera) {
   }
   std::copy_n(k.begin(), std::min(known, k.size()), camera.distortion.begin());
   if (camera.is_distorted() && !is_one_to_one(camera)) {
-    file.refuse(key, "is not one to one over the middle half of the picture");
+    file.refuse(key,
+                "is not invertible over the middle half of the picture: check its units and order");
   }
 }
 

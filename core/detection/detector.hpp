@@ -13,7 +13,7 @@ namespace ellipse {
 
 class DetectionTrace;
 
-/// Coarsest scale at which a picture is searched on its own.
+/// Coarsest scale of `arcs`; also that of the first search while a target is certain.
 inline constexpr int kCoarsestScale = 4;
 
 /// An ellipse that passed every test of a detector.

@@ -3,19 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "core/text_file.hpp"
+
 namespace ellipse {
 namespace {
 
 constexpr std::array<FeatureInfo, kFeatures> kInfos = {{
-    {"turn-support", "share of the turn that has edges"},
+    {"turn-support", "share of the outline's turn that has edges"},
     {"direction-error", "median angle between gradient and normal"},
-    {"coverage", "share of the whole outline that has edges"},
+    {"coverage", "the same, reduced by the longest gap"},
     {"length", "length inside the picture"},
     {"deviation", "distance of the edges from the ellipse"},
     {"radius", "radius"},
@@ -59,8 +60,7 @@ double EvidenceTable::probability(const Features& features) const {
 }
 
 EvidenceTable read_evidence(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::invalid_argument(file.string() + ": cannot be read");
+  std::istringstream in(read_text_file(file.string()));
   EvidenceTable table;
   std::array<bool, kFeatures + 1> is_known{};
   std::string text;
@@ -70,8 +70,10 @@ EvidenceTable read_evidence(const std::filesystem::path& file) {
     if (!(words >> name)) continue;
     std::size_t i = 0;
     while (i < kFeatures && name != kInfos[i].nick) ++i;
-    if (i == kFeatures && name != kBias) throw error_at(file, line, "unknown feature " + name);
-    if (is_known[i]) throw error_at(file, line, name + " is there twice");
+    if (i == kFeatures && name != kBias) {
+      throw error_at(file, line, "is not an evidence table: unknown feature \"" + name + "\"");
+    }
+    if (is_known[i]) throw error_at(file, line, "duplicate entry " + name);
     is_known[i] = true;
     double& first = i == kFeatures ? table.bias : table.weights[i];
     first = number_in(words, file, line);

@@ -32,7 +32,7 @@ enum class Feature : std::size_t {
   kLength,          ///< ln(1 + length of the outline inside the picture) [px].
   kDeviation,       ///< ln of the RMS distance of the edges from the outline [radii].
   kRadius,          ///< ln of the radius sqrt(ab) [px].
-  kContrast,        ///< ln of the mean gradient over the gradient's noise.
+  kContrast,        ///< ln of the mean gradient over GradientMap::texture().
   kStraight,        ///< Share of edges whose gradient does not turn with the outline, 0 to 1.
 };
 inline constexpr std::size_t kFeatures = 8;

@@ -22,6 +22,9 @@ inline constexpr Range kEdgeRange{0.0, 1e4};
 /// Throws std::invalid_argument that names field, value and range if the value is outside.
 void check_range(const char* field, double value, const Range& range);
 
+/// Throws std::invalid_argument that names both fields and values if `min` is above `max`.
+void check_order(const char* min_field, double min, const char* max_field, double max);
+
 /// Thresholds of a detector, with the names and the defaults of [Keipour2021] Table I and III.A
 /// (detecting), except max_axis_px, which is 700 px there and has no limit here.
 struct Thresholds {

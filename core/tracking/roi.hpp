@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// Expansion of a target's surroundings by one semi-major axis, of the default search region.
+/// Default expansion: a margin of one semi-major axis. Also used where a target is judged.
 inline constexpr double kRoiExpansion = 2.0;
 
 /// Search region for the next frame: the target's box with a margin of (expansion - 1) semi-major

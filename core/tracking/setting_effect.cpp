@@ -24,10 +24,10 @@ std::string condition_of(const SettingEffect& effect) {
   }
   if (text.empty()) return text;
   const std::string otherwise = effect.otherwise;
-  text += otherwise.empty() ? " only" : ", or together with " + otherwise;
-  if (effect.elsewhere_above == 0.0) return text;
+  if (!otherwise.empty()) return text + ", or together with " + otherwise;
+  if (effect.elsewhere_above == 0.0) return text + " only";
   std::ostringstream above;
-  above << " (with another detector: above " << effect.elsewhere_above << ")";
+  above << "; with another detector above " << effect.elsewhere_above << " only";
   return text + above.str();
 }
 

@@ -55,7 +55,7 @@ constexpr auto kTrack = &TrackerSettings::track_overlaps;
 constexpr auto kLimits = &TrackerSettings::limits;
 
 // Lower bound on the contour overlap of ellipses reported by `arcs`: thresholds below it reject
-// none. The lowest measured is .953 of 333, over all scenes of the catalog, once a second.
+// none. The lowest of 333 ellipses (all scenes of the catalog, one frame per second) is .953.
 constexpr double kMinOnEllipse = 0.65;
 
 // Tests compare each effect with the tracker's behaviour.
@@ -75,24 +75,24 @@ const std::array kSettings = {
         "detect-contour-overlap",
         kShareRange,
         true,
-        "Minimum share of a contour's pixels on its ellipse, detecting; 0 = detector default",
+        "When detecting, minimum share of a contour's pixels on its ellipse; 0 = detector default",
         kOfContours),
     setting<kDetect, &Overlaps::ellipse>(
         "detect-ellipse-overlap",
         kShareRange,
         true,
-        "Minimum share of an ellipse's pixels on edges, detecting; 0 = detector default"),
+        "When detecting, minimum share of an ellipse's perimeter on edges; 0 = detector default"),
     setting<kTrack, &Overlaps::contour>(
         "track-contour-overlap",
         kShareRange,
         true,
-        "Minimum share of a contour's pixels on its ellipse, tracking; 0 = detector default",
+        "When tracking, minimum share of a contour's pixels on its ellipse; 0 = detector default",
         kOfContoursRedetect),
     setting<kTrack, &Overlaps::ellipse>(
         "track-ellipse-overlap",
         kShareRange,
         true,
-        "Minimum share of an ellipse's pixels on edges, tracking; 0 = detector default",
+        "When tracking, minimum share of an ellipse's perimeter on edges; 0 = detector default",
         kOfRedetect),
     setting<kLimits, &Thresholds::min_axis_px>(
         "min-axis", kAxisRangePx, true, "Minimum minor axis, full length [px]"),
@@ -198,11 +198,11 @@ double number(std::string_view name, std::string_view text) {
 
 void TrackerSettings::validate() const {
   for (const SettingInfo& info : kSettings) check_range(info.name, info.get(*this), info.range);
-  check_range("max-axis", limits.max_axis_px, {limits.min_axis_px, kAxisRangePx.max});
-  check_range("edge-low",
-              limits.edge_low,
-              {0.0, limits.edge_high > 0.0 ? limits.edge_high : kEdgeRange.max});
-  check_range("max-target-size", max_target_size_px, {min_target_size_px, kAxisRangePx.max});
+  check_order("min-axis", limits.min_axis_px, "max-axis", limits.max_axis_px);
+  if (limits.edge_high > 0.0) {
+    check_order("edge-low", limits.edge_low, "edge-high", limits.edge_high);
+  }
+  check_order("min-target-size", min_target_size_px, "max-target-size", max_target_size_px);
   limits.validate();
   if (camera) camera->validate();
   for (const double g : gravity) {

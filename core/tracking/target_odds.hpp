@@ -12,8 +12,8 @@ namespace ellipse {
 /// Deterministic; allocates nothing; one thread at a time.
 class TargetOdds {
  public:
-  /// Bound of the magnitudes: single frames are not calibrated beyond. That of the sum limits how
-  /// long a target that has left is still reported.
+  /// Bound of the log odds' magnitude. Larger values of one frame are not calibrated. For the sum,
+  /// it limits how long a target that has left is still reported.
   static constexpr double kMax = 5.0;
 
   /// Starts a new hypothesis.

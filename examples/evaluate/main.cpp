@@ -61,7 +61,7 @@ void add_options(CLI::App& app, Options& options) {
       "scenes:SEEDS = all scenes of the catalog, distorted:SEEDS = the same through distorting "
       "lenses, wild:SEEDS = random scenes, wild-frames:SEEDS = one frame of each, clutter:SEEDS = "
       "objects that resemble a pad. SEEDS is SEED, FROM-TO or a comma-separated list. Default: the "
-      "rendered twin");
+      "rendered imitation of the paper's data set (\"twin\")");
   app.add_option("--seconds",
                  options.pace.seconds,
                  "Duration of each sequence of scenes, distorted and clutter [s]")
@@ -85,7 +85,8 @@ void add_options(CLI::App& app, Options& options) {
                                              describe_variants())
                               ->delimiter(',')
                               ->needs(datasets);
-  app.add_option("--set", options.settings, "PROPERTY=VALUE of the element ellipsetrack")
+  app.add_option(
+         "--set", options.settings, "PROPERTY=VALUE of the detector or the tracker of ellipsetrack")
       ->allow_extra_args(false);
   app.add_option("--rule", options.rule, "Criterion for a correct answer")
       ->capture_default_str()
@@ -125,7 +126,7 @@ void add_options(CLI::App& app, Options& options) {
                        "Write one JSON line per judged frame of the first method"),
         app.add_option("--finest-scale",
                        options.finest_scale,
-                       "Search no finer than at this frame scale, as the element does under load")
+                       "Search at this frame scale or coarser only, as the element does under load")
             ->capture_default_str()
             ->check(CLI::IsMember({1, 2, 4, 8})),
         app.add_flag("--all",
@@ -139,10 +140,10 @@ void add_options(CLI::App& app, Options& options) {
                        options.limits.min_recall,
                        "Exit with status 1 if a method's recall is lower")
             ->check(finite_number() & CLI::Range(0.0, 1.0)),
-        app.add_option(
-               "--max-false",
-               options.limits.max_false,
-               "Exit with status 1 if more frames of a method have a false answer (FP or WD)")
+        app.add_option("--max-false",
+                       options.limits.max_false,
+                       "Exit with status 1 if a method has more frames than this with a false "
+                       "answer (FP or WD)")
             ->check(CLI::NonNegativeNumber)}) {
     option->excludes(sweep)->excludes(make)->excludes(leave);
   }

@@ -7,7 +7,7 @@
  * Draws the #GstEllipseMeta of a buffer. It needs nothing else, so it can follow a tee, a scaler or
  * a decoder that keeps metadata. A buffer without an ellipse passes unchanged.
  *
- * If downstream blends overlays itself, as GPU sinks do, the drawing travels beside the pixels as
+ * If downstream blends overlays itself, as GPU sinks do, the drawing is attached to the buffer as
  * #GstVideoOverlayCompositionMeta; otherwise it is drawn into the pixels.
  *
  * |[

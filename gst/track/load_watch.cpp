@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kCoarsestStep = 3;
 constexpr int kLastStep = 5;
-// One frame over the limit counts as much as eight frames under half of it, because the detector
-// searches the whole frame about every eighth frame while a target is followed.
+// One frame over the limit counts as much as eight frames under half of it, because the periodic
+// search makes about every sixth frame slow while a target is followed at 30 frames per second.
 constexpr int kOver = 8;
 constexpr int kTooMuch = 3 * kOver;
 constexpr int kEnoughRest = -128;

@@ -24,11 +24,12 @@ bool is_stopped(GstEllipseTrack* self) {
   return GST_STATE(self) == GST_STATE_NULL;
 }
 
-void warn_rejected(GstEllipseTrack* self, const std::string& refusal) {
+// @param kept  What keeps its value.
+void warn_rejected(GstEllipseTrack* self, const std::string& refusal, const char* kept) {
   if (refusal.empty()) return;
   GST_WARNING_OBJECT(self, "setting rejected: %s", refusal.c_str());
   GST_ELEMENT_WARNING(
-      self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("the old value stays"));
+      self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("unchanged: %s", kept));
 }
 
 // @return Why the values are not valid together; empty if they are.
@@ -99,7 +100,8 @@ std::string try_set(GstEllipseTrack* self, const char* name, const GValue* value
 
 void set_value(GstEllipseTrack* self, const GParamSpec* pspec, const GValue* value) {
   const std::string refusal = try_set(self, pspec->name, value);
-  if (!is_already_reported(self, pspec, !refusal.empty())) warn_rejected(self, refusal);
+  if (!is_already_reported(self, pspec, !refusal.empty()))
+    warn_rejected(self, refusal, pspec->name);
 }
 
 gboolean load_together(GstEllipseTrack* self, const gchar* name, PresetLoader load_one_by_one) {
@@ -122,7 +124,7 @@ gboolean load_together(GstEllipseTrack* self, const gchar* name, PresetLoader lo
       shared.value_errors.clear();
     }
   }
-  warn_rejected(self, refusal);
+  warn_rejected(self, refusal, "all settings");
   return is_loaded;
 }
 

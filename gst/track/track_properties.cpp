@@ -131,6 +131,9 @@ ellipse::Rect rect_from(const GValue* value) {
     if (!G_VALUE_HOLDS_INT(number)) throw std::invalid_argument("roi must contain ints only");
     numbers[i] = g_value_get_int(number);
   }
+  if (numbers[2] < 0 || numbers[3] < 0) {
+    throw std::invalid_argument("roi must not have a negative width or height");
+  }
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 

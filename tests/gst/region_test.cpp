@@ -94,7 +94,7 @@ TEST(EllipseTrackRegion, IsClampedToTheFrame) {
 }
 
 TEST(EllipseTrackRegion, EmptyAndOutsideRegionsSkipTheAnalysis) {
-  for (const char* roi : {"<0,0,0,0>", "<320,0,10,10>", "<10,10,-5,20>", "<-20,-20,20,20>"}) {
+  for (const char* roi : {"<0,0,0,0>", "<320,0,10,10>", "<-20,-20,20,20>"}) {
     const auto harness = tracker("roi-source=property roi=\"" + std::string(roi) + "\"");
     const auto out = push(harness, gray_buffer_of(ring_picture()));
     EXPECT_EQ(target_on(out), nullptr) << roi;
@@ -116,12 +116,16 @@ TEST(EllipseTrackRegion, IsReadBackAsSet) {
 TEST(EllipseTrackRegion, RejectsMalformedBoxes) {
   const auto harness = tracker("roi=\"<1,2,3,4>\"");
   BusTap bus(element_of(harness));
-  gst_util_set_object_arg(G_OBJECT(element_of(harness)), "roi", "<1,2,3>");
-  EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING));
-  GValue value = G_VALUE_INIT;
-  g_object_get_property(G_OBJECT(element_of(harness)), "roi", &value);
-  EXPECT_EQ(gst_value_array_get_size(&value), 4U);
-  g_value_unset(&value);
+  for (const char* roi : {"<1,2,3>", "<10,10,-5,20>", "<10,10,5,-20>"}) {
+    gst_util_set_object_arg(G_OBJECT(element_of(harness)), "roi", roi);
+    EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING)) << roi;
+    GValue value = G_VALUE_INIT;
+    g_object_get_property(G_OBJECT(element_of(harness)), "roi", &value);
+    gchar* text = gst_value_serialize(&value);
+    EXPECT_STREQ(text, "< (int)1, (int)2, (int)3, (int)4 >") << roi;
+    g_free(text);
+    g_value_unset(&value);
+  }
 }
 
 TEST(EllipseTrackRegion, FollowsTheMetadataOfEachBuffer) {

@@ -31,7 +31,7 @@ bool are_same(const Ellipse& a, const Ellipse& b, double px) {
   return is_same(a, b, {px, kSame});
 }
 
-// Of an ellipse that is cut, the part outside the picture differs between scales.
+// The part of a cut ellipse outside the picture differs between scales.
 bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) {
   return iou_inside(a, b, map.width(), map.height()) >= kSameInside;
 }
@@ -52,7 +52,7 @@ bool is_certain(double probability) {
   return log_odds(probability) >= kCertainLogOdds;
 }
 
-// Whether the map has edges of this gradient, rather than noise that hides them.
+// Whether an edge of this gradient exceeds the map's upper threshold.
 bool would_show(const GradientMap& map, double gradient) {
   return gradient >= kGradientGain * map.thresholds().high;
 }

@@ -25,7 +25,7 @@ struct HomographySupport {
   int matched = 0;        ///< Of these, with an edge within the tolerance.
   double coverage = 0.0;  ///< matched over visible.
   double outline = 0.0;   ///< The same of the outer circle alone; 0 if none of it is visible.
-  double weakest = 0.0;   ///< Lowest coverage of a circle, with one sample more that is matched.
+  double weakest = 0.0;   ///< Lowest (matched + 1) / (visible + 1) of a circle.
   double gain = 1.0;      ///< Median ratio of image contrast to model contrast.
 };
 
@@ -33,8 +33,8 @@ struct HomographySupport {
 /// reweighted least squares with Tukey's weights, on each sample's candidate nearest to the
 /// prediction.
 ///
-/// @param first_reach_px  Residual from which weights are 0, in the first iterations;
-/// @param reach_px        and in the last ones.
+/// @param first_reach_px  Residual from which weights are 0, in the first iterations.
+/// @param reach_px        The same in the last iterations.
 /// @param sigma_px        Standard deviation of an edge's position.
 /// @return nullopt if the system is singular. Allocates nothing.
 [[nodiscard]] std::optional<HomographyEstimate> solve_homography(

@@ -8,9 +8,17 @@
 
 #include "examples/live/json_writer.hpp"
 #include "examples/live/request_json.hpp"
+#include "gst/ellipse/gstellipsemeta.h"
 
 namespace live {
 namespace {
+
+// Whether a target is visible in the frame; a predicted one is not.
+bool has_target(const Frame& frame) {
+  const GstEllipseMeta* target = gst_buffer_get_ellipse_meta(
+      gst_sample_get_buffer(frame.sample.get()), GST_ELLIPSE_ROLE_TARGET);
+  return target != nullptr && target->state != GST_ELLIPSE_STATE_PREDICTED;
+}
 
 // Writes times as text, because doubles cannot represent nanoseconds since 1970 exactly.
 std::string history_json(const FrameHistory& history) {
@@ -25,6 +33,7 @@ std::string history_json(const FrameHistory& history) {
     json.begin_object()
         .member("frame", frame->index)
         .member("pts_ns", std::to_string(frame->pts))
+        .member("has_target", has_target(*frame))
         .end_object();
   }
   return json.end_array().end_object().text() + "\n";

@@ -53,7 +53,7 @@ function foundIn({ candidates, detector }) {
 export class Guide {
   #isOn = false;
   #step = "see";
-  #stored = [];        // [{frame, pts_ns}], oldest first
+  #stored = [];        // [{frame, pts_ns, has_target}], oldest first
   #marks = [];         // [{frame, pts, position, truth, candidates, width, height}]
   #wanted = null;      // stored frame that is being marked or shown
   #candidates = [];    // of the frame that is being marked
@@ -192,10 +192,20 @@ export class Guide {
     return Math.min(kMarks, this.#stored.length);
   }
 
-  // Shows the next frame to mark. The marked frames are spread evenly over the stored ones.
+  // Position of the next frame to mark. Each has an equal part of the stored ones: from it, the frame without a target
+  // that is closest to its middle, or else its middle.
+  #nextPosition() {
+    const part = this.#stored.length / this.#count;
+    const [begin, middle, end] = [0, 0.5, 1].map((share) => Math.floor((this.#marks.length + share) * part));
+    const distance = (position) => Math.abs(position - middle);
+    const missed = [...this.#stored.keys()].slice(begin, end).filter((position) => !this.#stored[position].has_target);
+    return missed.sort((a, b) => distance(a) - distance(b))[0] ?? middle;
+  }
+
+  // Shows the next frame to mark.
   async #showNext() {
     const number = this.#marks.length;
-    const position = Math.floor((number + 0.5) / this.#count * this.#stored.length);
+    const position = this.#nextPosition();
     this.#choice.wait();
     at("guide-mark").textContent = number + 1 < this.#count ? "Mark, next frame" : "Mark, propose settings";
     at("guide-frame").innerHTML = `<b>Frame ${number + 1} of ${this.#count}</b>, number ${position + 1} of the ` +
@@ -263,7 +273,7 @@ export class Guide {
     this.#setStep("result");
     at("guide-apply").hidden = true;
     at("guide-result").textContent = "Trying settings on your marks and the stored frames…";
-    const proposal = await propose(this.#marks, this.settings.values());
+    const proposal = await propose(this.#marks, this.settings.values(), this.settings.defaults());
     if (!this.#isOn) return;
     this.#proposal = proposal;
     this.#showResult();

@@ -5,7 +5,7 @@ import { ask } from "./connection.js";
 /** Starts or stops storing frames. @returns as storedFrames(). */
 export const storeFrames = (storing) => ask("PUT", "api/history", { storing });
 
-/** @returns {storing, full, max_frames, frames: [{frame, pts_ns}]}, the oldest frame first. */
+/** @returns {storing, full, max_frames, frames: [{frame, pts_ns, has_target}]}, the oldest frame first. */
 export const storedFrames = () => ask("GET", "api/history");
 
 /** Discards the stored frames. */

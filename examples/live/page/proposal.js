@@ -52,12 +52,13 @@ async function attempt(marks, best, trial) {
   }
 }
 
-async function search(marks, values, start) {
+async function search(marks, values, defaults, start) {
   let best = start;
   for (let pass = 0; pass < kPasses; ++pass) {
     const trials = trialsFor({
       marks,
       values: { ...values, ...best.changes },
+      defaults,
       wrong: best.verdict.wrong,
       rivals: best.verdict.rivals,
       isRight: best.verdict.right === marks.length,
@@ -147,20 +148,21 @@ async function reasonFor(mark, outcome, target, { changes, admitted }) {
  * ellipses.
  * @param marks   [{frame, truth, candidates, width, height}], see trialsFor().
  * @param values  The current settings by name.
+ * @param defaults  Their defaults.
  * @returns {changes, why, before, after, reasons}. `before` and `after` have `verdict`, for single
  *          frames, and `stream`. `reasons[i]`: why mark i is not right afterwards, or "".
  */
-export async function propose(marks, values) {
+export async function propose(marks, values, defaults) {
   const start = { changes: {}, why: {}, verdict: await judge(marks, {}) };
   const now = await streamOf(marks, {});
-  let best = await pruned(marks, await search(marks, values, start));
+  let best = await pruned(marks, await search(marks, values, defaults, start));
   let stream = best.changes === start.changes ? now : await streamOf(marks, best.changes);
   ({ best, stream } = await withRingRatio(marks, values, best, stream));
   // Fewer wrong ellipses in the marked frames do not outweigh targets lost in other frames.
   const isNeeded = best.verdict.right > start.verdict.right || stream.right > now.right;
   if (!isNeeded && stream.found < now.found) [best, stream] = [start, now];
   const { verdict } = best;
-  const admitted = admittingTrial(marks, { ...values, ...best.changes })?.changes ?? {};
+  const admitted = admittingTrial(marks, { ...values, ...best.changes }, defaults)?.changes ?? {};
   const reasons = [];
   for (const [i, mark] of marks.entries()) {
     const [outcome, target] = [verdict.outcomes[i], verdict.targets[i]];

@@ -56,6 +56,11 @@ export class Settings {
     return Object.fromEntries(this.#properties.map(({ name }) => [name, this.#controls.get(name).value]));
   }
 
+  /** The default of each setting by name. */
+  defaults() {
+    return Object.fromEntries(this.#properties.map((property) => [property.name, property.default]));
+  }
+
   changed() {
     return this.#properties.filter((p) => !this.#isDefault(p, this.#controls.get(p.name).value));
   }

@@ -99,14 +99,16 @@ function together(trials) {
   };
 }
 
-// Relaxes limits that reject marked ellipses, until they accept all of them.
-function wideLimits(truths, values) {
+// Relaxes limits that reject marked ellipses, until they accept all of them: to the default, which suits other
+// frames too, or beyond the marks.
+function wideLimits(truths, values, defaults) {
   return [...kLimits, kContour].flatMap(({ name, what, unit, isMin, minValue = 1, of, round }) => {
     const sizes = truths.map(of);
     const limit = values[name];
-    const rejected = sizes.filter((size) => (isMin ? size < limit : size > limit)).length;
+    const rejectedBy = (bound) => sizes.filter((size) => (isMin ? size < bound : size > bound)).length;
+    const rejected = rejectedBy(limit);
     if (rejected === 0) return [];
-    const to = isMin ? Math.max(minValue, round(Math.min(...sizes) / kRelaxMargin))
+    const to = rejectedBy(defaults[name]) === 0 ? defaults[name] : isMin ? Math.max(minValue, round(Math.min(...sizes) / kRelaxMargin))
       : round(Math.max(...sizes) * kRelaxMargin);
     const why = `${what} of your marks: ${rangeText(sizes, unit)}. ${short(limit)}${unit} rejects ${rejected} of ` +
       `${truths.length}.`;
@@ -204,9 +206,9 @@ function regionOfMarks(truths, wrong, { width, height }, { "roi-source": source 
 const truthsOf = (marks) => marks.filter(({ truth }) => truth).map(({ truth }) => truth);
 
 /** The trial whose limits and region accept all marked ellipses; null if the current ones do. */
-export function admittingTrial(marks, values) {
+export function admittingTrial(marks, values, defaults) {
   const truths = truthsOf(marks);
-  return together([...wideLimits(truths, values), ...wholeFrame(truths, values)]);
+  return together([...wideLimits(truths, values, defaults), ...wholeFrame(truths, values)]);
 }
 
 /**
@@ -214,11 +216,12 @@ export function admittingTrial(marks, values) {
  * @param marks   [{truth, candidates: [{ellipse, probability, detector}], width, height}]; a null truth
  *                = no target.
  * @param values  All settings by name.
+ * @param defaults  Their defaults.
  * @param wrong   Ellipses that these settings find in the marked frames and that are not marked.
  * @param rivals  Ellipses that these settings select as the target instead.
  * @param isRight Whether these settings are right on all marked frames.
  */
-export function trialsFor({ marks, values, wrong, rivals, isRight }) {
+export function trialsFor({ marks, values, defaults, wrong, rivals, isRight }) {
   const truths = truthsOf(marks);
   if (truths.length === 0) return [];
   const keepOut = [
@@ -227,7 +230,7 @@ export function trialsFor({ marks, values, wrong, rivals, isRight }) {
     ...regionOfMarks(truths, [...rivals, ...wrong], marks[0], values),
   ];
   if (isRight) return keepOut;
-  const admit = admittingTrial(marks, values);
+  const admit = admittingTrial(marks, values, defaults);
   const others = [
     ...separatingProbability(marks, values),
     ...adaptedEdges(values),

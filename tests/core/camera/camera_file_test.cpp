@@ -200,7 +200,8 @@ TEST_F(CameraFile, ErrorNamesFileLineAndKeyOfValuesOutOfRange) {
 
 TEST_F(CameraFile, RejectsALensThatIsNotOneToOne) {
   const std::string expected =
-      "distortion_coefficients is not one to one over the middle half of the picture";
+      "distortion_coefficients is not invertible over the middle half of the picture: check its "
+      "units and order";
   for (const char* each : {"1e300, 1e300, 0., 0., 0.",
                            "-50., 0., 0., 0., 0.",
                            "0., 0., 50., 50., 0.",

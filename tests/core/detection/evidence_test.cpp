@@ -67,12 +67,12 @@ TEST_F(EvidenceFile, ReadInvertsWrite) {
 TEST_F(EvidenceFile, ErrorNamesTheLine) {
   const std::string good = text_of(built_in_evidence());
   const std::string path = file_.string();
-  EXPECT_EQ(message_of("size 1 2\n"), path + ":1: unknown feature size");
+  EXPECT_EQ(message_of("size 1 2\n"), path + ":1: is not an evidence table: unknown feature \"size\"");
   EXPECT_EQ(message_of("\nradius nan 1\n"), path + ":2: expected a number");
   EXPECT_EQ(message_of("radius 1\n"), path + ":1: expected a number");
   EXPECT_EQ(message_of("bias 1 2\n"), path + ":1: unexpected 2");
   EXPECT_EQ(message_of(good + "bias 1\n"),
-            path + ":" + std::to_string(kFeatures + 2) + ": bias is there twice");
+            path + ":" + std::to_string(kFeatures + 2) + ": duplicate entry bias");
   EXPECT_EQ(message_of(good.substr(0, good.find("bias"))), path + ": bias is missing");
   std::filesystem::remove(file_);
   EXPECT_THROW((void)read_evidence(file_), std::invalid_argument);

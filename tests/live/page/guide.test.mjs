@@ -166,7 +166,7 @@ describe("the guide", () => {
     await page.getByText("Applied.").waitFor();
     await page.click("#guide-discard");
     await page.waitForSelector("#state[data-state=tracked]");
-    assert.ok(await page.locator("[data-setting=min-axis].changed").count() === 1);
+    assert.equal(await page.locator("[data-setting=min-axis].changed").count(), 0);
     assert.deepEqual(page.troubles, []);
   });
 
@@ -274,6 +274,22 @@ describe("the guide", () => {
     assert.deepEqual(page.troubles, []);
   });
 
+  it("marks frames without a target first", async () => {
+    await program.ask("PUT", "/api/properties", { ...kTooStrict, tracking: "none" });
+    const page = await openGuide(browser, program);
+    const storedFrames = async () => (await program.ask("GET", "/api/history")).frames;
+    while ((await storedFrames()).length < 3);
+    await program.ask("PUT", "/api/properties", { ...kStart, tracking: "edges" });
+    await beginMarks(page);
+    const frames = await storedFrames();
+    assert.ok(frames[Math.floor(frames.length / 6)].has_target, "the middle of the first third");
+    const shown = await page.getAttribute("#screen", "data-pts");
+    assert.equal(frames.find((frame) => frame.pts_ns === shown).has_target, false);
+    await markNone(page, 1);
+    await choicesOf(page, 2);
+    assert.equal(await page.getAttribute("#screen", "data-pts"), frames[Math.floor(frames.length / 2)].pts_ns);
+  });
+
   it("leaves frames that another client marks", async () => {
     const waiting = await openGuide(browser, program);
     await waiting.waitForSelector("#guide-begin:enabled");
@@ -306,7 +322,7 @@ describe("the guide", () => {
 
   it("derives trials from the marks", async () => {
     const page = await openPage(browser, program.url, undefined, 1);
-    const { ratio, none, region, probability } = await page.evaluate(async () => {
+    const { ratio, none, region, probability, smallest, largest } = await page.evaluate(async () => {
       const { ringRatioOf, trialsFor } = await import("/trials.js");
       const circle = (cx, radius) => ({ cx, cy: 100, semi_major: radius, semi_minor: radius, angle_rad: 0 });
       const arcs = (ellipse, chance) => ({ ellipse, probability: chance, detector: "arcs" });
@@ -317,18 +333,27 @@ describe("the guide", () => {
         "edge-low": 0, "edge-high": 0, "roi-source": "none", roi: [], detector: "arcs",
       };
       const wrong = [circle(800, 50)];
-      const trialOf = (name, marks) => trialsFor({ marks, values, wrong, rivals: [], isRight: false })
-        .find(({ changes }) => name in changes)?.changes;
+      const defaults = { ...values, "max-axis": 90 };
+      const trialOf = (name, marks, strict = {}) => {
+        const settings = { ...values, ...strict };
+        return trialsFor({ marks, values: settings, defaults, wrong, rivals: [], isRight: false })
+          .find(({ changes }) => name in changes)?.changes;
+      };
       return {
         ratio: ringRatioOf([ring, ring]),
         none: ringRatioOf([ring, mark(arcs(circle(100, 50), 0.9))]),
         region: trialOf("roi", [ring]),
         probability: trialOf("min-probability", [ring]),
+        // The default admits the mark of 100 px in one case only.
+        smallest: trialOf("min-axis", [ring], { "min-axis": 300 }),
+        largest: trialOf("max-axis", [ring], { "max-axis": 50 }),
       };
     });
     assert.equal(ratio, 0.8);
     assert.equal(none, null);
     assert.deepEqual(region, { roi: [0, 0, 250, 250], "roi-source": "property" });
+    assert.equal(smallest["min-axis"], 5);
+    assert.equal(largest["max-axis"], 140);
     const limit = probability["min-probability"];
     assert.ok(limit > 0.1 && limit < 0.2, String(limit));
   });
