@@ -67,7 +67,8 @@ TEST_F(EvidenceFile, ReadInvertsWrite) {
 TEST_F(EvidenceFile, ErrorNamesTheLine) {
   const std::string good = text_of(built_in_evidence());
   const std::string path = file_.string();
-  EXPECT_EQ(message_of("size 1 2\n"), path + ":1: is not an evidence table: unknown feature \"size\"");
+  EXPECT_EQ(message_of("size 1 2\n"),
+            path + ":1: is not an evidence table: unknown feature \"size\"");
   EXPECT_EQ(message_of("\nradius nan 1\n"), path + ":2: expected a number");
   EXPECT_EQ(message_of("radius 1\n"), path + ":1: expected a number");
   EXPECT_EQ(message_of("bias 1 2\n"), path + ":1: unexpected 2");

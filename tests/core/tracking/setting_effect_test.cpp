@@ -222,9 +222,8 @@ TEST(SettingEffect, OfMaxScaleExistsUnderLoad) {
 TEST(SettingEffect, IsDescribedInWords) {
   EXPECT_EQ(condition_of(effect_of("max-axis")), "");
   EXPECT_EQ(condition_of(effect_of("refine")), "with tracking=edges only");
-  EXPECT_EQ(
-      condition_of(effect_of("track-contour-overlap")),
-      "with detector=contours and tracking=redetect; with another detector above 0.65 only");
+  EXPECT_EQ(condition_of(effect_of("track-contour-overlap")),
+            "with detector=contours and tracking=redetect; with another detector above 0.65 only");
   EXPECT_EQ(condition_of(effect_of("max-scale")),
             "with tracking=redetect, or together with max-processing-time");
   EXPECT_EQ(blurb_of("Text", effect_of("roi-expansion")), "Text; acts with tracking=redetect only");
