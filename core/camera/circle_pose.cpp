@@ -125,6 +125,21 @@ double log_odds(const InnerMisfit& misfit) {
   return degrees * std::log((degrees + misfit.chi_squared[1]) / (degrees + misfit.chi_squared[0]));
 }
 
+// Log likelihood ratio of the first solution by the pattern's centre, which lies elsewhere under
+// the second one. Student's t again: the pattern was learned under a view that may have been wrong.
+double log_odds(const Camera& camera,
+                const std::array<CirclePose, 2>& poses,
+                const PatternView& pattern) {
+  const Matrix3d pad_from_camera = pattern.image_from_pad.inverse() * camera.matrix();
+  InnerMisfit misfit;
+  misfit.degrees = 2;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Vector2d centre = (pad_from_camera * poses[i].position).hnormalized();
+    misfit.chi_squared[i] = centre.dot(pattern.centre_covariance.ldlt().solve(centre));
+  }
+  return log_odds(misfit);
+}
+
 double from_level(const CirclePose& pose, const Vector3d& gravity) {
   return angle_between(pose.normal, -gravity) / kLevelRad;
 }
@@ -240,9 +255,9 @@ double PoseEstimator::OddsAverage::add(double frame_odds,
 double PoseEstimator::update_odds(const Camera& camera,
                                   const std::array<CirclePose, 2>& poses,
                                   const RingUncertainty& uncertainty,
-                                  std::span<const FittedEllipse> inner_edges,
-                                  const Vector3d& gravity,
+                                  const PoseEvidence& evidence,
                                   double elapsed_s) {
+  const auto& [inner_edges, pattern, gravity] = evidence;
   InnerMisfit misfit;
   for (const FittedEllipse& inner : inner_edges) {
     add_misfit(camera, poses, uncertainty, inner, misfit);
@@ -252,9 +267,10 @@ double PoseEstimator::update_odds(const Camera& camera,
   const double deviation = 0.5 * (misfit.chi_squared[1] - misfit.chi_squared[0]) / apart;
   const bool has_inner = apart > 0.0 && std::isfinite(deviation);
   const bool has_gravity = gravity.squaredNorm() > 0.0;
-  if (!has_inner && !has_gravity) return odds_;
+  if (!has_inner && !has_gravity && !pattern) return odds_;
   double odds = inner_.odds;
   if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation, elapsed_s);
+  if (pattern) odds += log_odds(camera, poses, *pattern);
   if (has_gravity) {
     odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
                    std::pow(from_level(poses[0], gravity), 2));
@@ -265,15 +281,14 @@ double PoseEstimator::update_odds(const Camera& camera,
 std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
                                                   const Ellipse& ideal,
                                                   const RingUncertainty& uncertainty,
-                                                  std::span<const FittedEllipse> inner_edges,
+                                                  const PoseEvidence& evidence,
                                                   double radius_m,
-                                                  const Vector3d& gravity,
                                                   double elapsed_s) {
   const Camera& camera = lens.camera();
   const auto poses = circle_poses(camera, ideal);
   if (!poses) return std::nullopt;
   follow_solutions(*poses);
-  const double odds = update_odds(camera, *poses, uncertainty, inner_edges, gravity, elapsed_s);
+  const double odds = update_odds(camera, *poses, uncertainty, evidence, elapsed_s);
   odds_ = std::isfinite(odds) ? odds : 0.0;
   if (odds_ != 0.0) is_first_ = odds_ > 0.0;  // without evidence, keeps the previous selection
   const CirclePose& chosen = (*poses)[is_first_ ? 0 : 1];

@@ -54,27 +54,39 @@ struct TargetPose {
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< Of the position.
 };
 
+/// A target's view, known from the pattern inside its outer edge.
+struct PatternView {
+  Eigen::Matrix3d image_from_pad = Eigen::Matrix3d::Identity();  ///< Into the ideal plane.
+  Eigen::Matrix2d centre_covariance =
+      Eigen::Matrix2d::Identity();  ///< Of the centre, relative to the outer edge [radii^2].
+};
+
+/// What tells the two solutions of a target's pose apart. Each part may be missing.
+struct PoseEvidence {
+  std::span<const FittedEllipse> inner_edges =
+      {};  ///< Measured images of concentric circles inside
+           ///< the outer one, of any radius; ideal plane.
+  std::optional<PatternView> pattern = std::nullopt;
+  Eigen::Vector3d gravity{0.0, 0.0, 0.0};  ///< Downwards in the camera frame, of any length, of a
+                                           ///< level target. 0 = unknown.
+};
+
 /// Estimates a target's pose in each frame and selects one of the two solutions: each predicts the
-/// images of concentric inner circles and the target's deviation from level. Without inner circles
-/// and gravity, keeps the previous selection.
+/// images of concentric inner circles, the image of the centre, and the target's deviation from
+/// level. Without evidence, keeps the previous selection.
 ///
 /// One object serves one target, on one thread. Allocates nothing.
 class PoseEstimator {
  public:
   /// @param ideal        The target's outer edge, in the ideal plane.
   /// @param uncertainty  Of the outer edge.
-  /// @param inner_edges  Measured images of concentric circles inside the outer one, of any radius;
-  ///                     in the ideal plane. May be empty.
   /// @param radius_m     0 = unknown.
-  /// @param gravity      Downwards in the camera frame, of any length; assumes a level target.
-  ///                     0 = unknown.
   /// @param elapsed_s    Since the last call.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
                                                    const RingUncertainty& uncertainty,
-                                                   std::span<const FittedEllipse> inner_edges,
+                                                   const PoseEvidence& evidence,
                                                    double radius_m,
-                                                   const Eigen::Vector3d& gravity,
                                                    double elapsed_s);
 
   /// Call before a new target, or the same one after a gap.
@@ -85,8 +97,7 @@ class PoseEstimator {
   [[nodiscard]] double update_odds(const Camera& camera,
                                    const std::array<CirclePose, 2>& poses,
                                    const RingUncertainty& uncertainty,
-                                   std::span<const FittedEllipse> inner_edges,
-                                   const Eigen::Vector3d& gravity,
+                                   const PoseEvidence& evidence,
                                    double elapsed_s);
 
   // Mean of the frames' log odds from inner edges, weighted by information. Averaging reduces only

@@ -256,14 +256,17 @@ void Tracker::locate(Target& target, double elapsed_s) {
   const bool is_followed = pad_tracker_->is_locked();
   if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
-  target.pose = pose_estimator_.estimate(
-      *lens_,
-      target.ellipse,
-      target.uncertainty,
-      is_followed ? pad_tracker_->inner_edges() : std::span<const FittedEllipse>(),
-      0.5 * settings_.target_diameter_m,
-      Eigen::Vector3d::Map(settings_.gravity.data()),
-      elapsed_s);
+  PoseEvidence evidence{.gravity = Eigen::Vector3d::Map(settings_.gravity.data())};
+  if (is_followed) {
+    evidence.inner_edges = pad_tracker_->inner_edges();
+    evidence.pattern = pad_tracker_->pattern();
+  }
+  target.pose = pose_estimator_.estimate(*lens_,
+                                         target.ellipse,
+                                         target.uncertainty,
+                                         evidence,
+                                         0.5 * settings_.target_diameter_m,
+                                         elapsed_s);
 }
 
 std::span<const Detection> Tracker::candidates() const {

@@ -357,6 +357,12 @@ RingUncertainty PadTracker::uncertainty() const {
   return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
 }
 
+// The perspective, of which rings alone tell little.
+std::optional<PatternView> PadTracker::pattern() const {
+  if (model_.lines.empty()) return std::nullopt;
+  return PatternView{view_, motion_.pose.bottomRightCorner<2, 2>()};
+}
+
 Rect PadTracker::region_after(double elapsed_s, int width, int height) const {
   const Rect frame{0, 0, width, height};
   const auto ideal = project_circle(moved(view_, elapsed_s * motion_.velocity), 1.0);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/camera/camera.hpp"
+#include "core/camera/circle_pose.hpp"
 #include "core/camera/lens_view.hpp"
 #include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
@@ -69,6 +70,8 @@ class PadTracker {
   [[nodiscard]] std::span<const FittedEllipse> inner_edges() const {
     return {inner_edges_.data(), inner_count_};
   }
+  /// The view by the lines of the pad's pattern; nullopt without lines.
+  [[nodiscard]] std::optional<PatternView> pattern() const;
   void release() { is_locked_ = false; }
 
   /// Region of the next frame to pass to track() [px]; covers its search range.
