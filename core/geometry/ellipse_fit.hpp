@@ -104,7 +104,8 @@ struct FittedEllipse {
   RingUncertainty uncertainty;
 };
 
-/// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame.
+/// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame; a radius
+/// if nothing is inside.
 /// @param sigma_px  Standard deviation of an edge position, every kIndependentPx of the perimeter.
 [[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
                                                    double width,

@@ -83,12 +83,10 @@ void TargetFilter::move_to(double time_s) {
 bool TargetFilter::see(double time_s, const Vector3d& position, double error) {
   move_to(time_s);
   const double variance = error * error;
-  double off = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    off = std::max(
-        off, normalized_innovation(axes_[static_cast<std::size_t>(i)], position[i], variance));
+    const Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (!(normalized_innovation(axis, position[i], variance) <= kGate)) return false;  // or NaN
   }
-  if (off > kGate) return false;
   for (Eigen::Index i = 0; i < 3; ++i) {
     correct(axes_[static_cast<std::size_t>(i)], 0, position[i], variance);
   }

@@ -175,6 +175,24 @@ TEST(PositionCovariance, MatchesTheScatterOfThePositions) {
 
 // -- PoseEstimator
 
+TEST(PositionCovariance, IsPositiveForAnyPartOfTheOutline) {
+  const Camera camera = camera_640();
+  for (double out_px = 0.0; out_px < 1500.0; out_px += 1.7) {
+    const Ellipse e{-out_px, 256.1, 766.0, 614.3, 0.4};
+    const auto poses = circle_poses(camera, e);
+    if (!poses) continue;
+    const RingUncertainty picture = expected_uncertainty(e, 640, 360, 0.3);
+    const RingMatrix parameters = parameter_covariance(e, picture);
+    ASSERT_TRUE(parameters.allFinite()) << out_px;
+    EXPECT_GT(parameters.diagonal().minCoeff(), 0.0) << out_px;
+    for (const CirclePose& pose : *poses) {
+      const Matrix3d covariance = position_covariance(camera, pose, picture);
+      ASSERT_TRUE(covariance.allFinite()) << out_px;
+      EXPECT_GT(covariance.diagonal().minCoeff(), 0.0) << out_px;
+    }
+  }
+}
+
 struct View {
   CirclePose truth;
   Ellipse ideal;
