@@ -67,9 +67,14 @@ Eigen::Vector2d LineLearner::pad_point_of(std::int32_t pixel) const {
   return pad_point_of(pixel % map_.stride(), pixel / map_.stride());
 }
 
-void LineLearner::learn(PadModel& model) {
+double LineLearner::min_contrast(const PadModel& model) {
+  return kMinContrastShare * model.circles.front().contrast;
+}
+
+void LineLearner::learn(PadModel& model, double gain) {
+  gain_ = gain;
   const ImageView above{pixels_.data(), kSize, kSize, kSize};
-  const double min_gradient = kMinContrastShare * model.circles.front().contrast * kGradientOfStep;
+  const double min_gradient = gain * min_contrast(model) * kGradientOfStep;
   map_.compute(above, {min_gradient / kGradientGain, min_gradient / kGradientGain});
   clear_maxima_at_border();
   chains_.trace(map_);
@@ -118,7 +123,7 @@ void LineLearner::add(std::span<const std::int32_t> pixels, const PadModel& mode
 
   const auto corner = std::min<std::size_t>(pixels.size() / 4, GradientMap::kBorder - 1);
   const PadLine line = line_through(pixels.subspan(corner, pixels.size() - 2 * corner), from, to);
-  if (line.contrast < kMinContrastShare * model.circles.front().contrast) return;
+  if (line.contrast < min_contrast(model)) return;
   lines_.push_back(line);
   if (lines_.size() <= kMaxLines) return;
   const auto length_of = [](const PadLine& l) { return (l.to - l.from).squaredNorm(); };
@@ -164,7 +169,7 @@ PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
   const double reach = 0.5 * (to - from).norm() - (GradientMap::kBorder - 1) * kPixel;
   line.from = middle + mean - (reach + along.dot(mean)) * along;
   line.to = middle + mean + (reach - along.dot(mean)) * along;
-  line.contrast = contrast / count / kGradientOfStep;
+  line.contrast = contrast / count / kGradientOfStep / gain_;
   return line;
 }
 

@@ -33,8 +33,9 @@ class LineLearner {
   /// Learns the lines from a complete top view.
   /// @param model  Its circles exclude circular edges and give the expected contrast. Its lines are
   ///               replaced by the longest, at most kMaxLines.
+  /// @param gain   Ratio of the contrast in the top view to the model's.
   /// Allocates nothing after reserve().
-  void learn(PadModel& model);
+  void learn(PadModel& model, double gain);
 
   static constexpr std::size_t kMaxLines = 24;
 
@@ -48,6 +49,7 @@ class LineLearner {
                                      const Eigen::Vector2d& from,
                                      const Eigen::Vector2d& to) const;
   void add(std::span<const std::int32_t> pixels, const PadModel& model);
+  [[nodiscard]] static double min_contrast(const PadModel& model);
   [[nodiscard]] static Eigen::Vector2d pad_point_of(int column, int row);
   [[nodiscard]] Eigen::Vector2d pad_point_of(std::int32_t pixel) const;
 
@@ -56,6 +58,7 @@ class LineLearner {
   GradientMap map_;
   ChainTracer chains_;
   std::vector<PadLine> lines_;
+  double gain_ = 1.0;  // of learn()
 };
 
 }  // namespace ellipse

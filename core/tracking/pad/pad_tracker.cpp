@@ -307,7 +307,7 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   if (radius < kGrowthToLearn * learned_radius_px_ || attempt.visible < kMajority) return;
   line_learner_.take(window.luma, view_in(window, view_));
   if (!line_learner_.is_ready()) return;
-  line_learner_.learn(model_);
+  line_learner_.learn(model_, gain_);
   line_learner_.start();
   learned_radius_px_ = radius;
 }

@@ -219,7 +219,7 @@ void learn_at_once(LineLearner& learner,
   learner.reserve(model);
   learner.start();
   while (!learner.is_ready()) learner.take(luma, image_from_pad(pad));
-  learner.learn(model);
+  learner.learn(model, 1.0);
 }
 
 struct Learned {
@@ -237,6 +237,15 @@ double total_length(const PadModel& model) {
   double sum = 0.0;
   for (const PadLine& line : model.lines) sum += (line.to - line.from).norm();
   return sum;
+}
+
+// The top view may be brighter than the picture that the circles were learned from.
+TEST(LineLearner, LearnsInTheModelsContrast) {
+  Learned learned(scene_of(Pattern::kRingX, true));
+  const double contrast = learned.model.lines.front().contrast;
+  learned.learner.learn(learned.model, 2.0);
+  ASSERT_FALSE(learned.model.lines.empty());
+  EXPECT_NEAR(learned.model.lines.front().contrast, 0.5 * contrast, 1e-6);
 }
 
 class LearnLines : public testing::TestWithParam<Pattern> {};
@@ -304,7 +313,7 @@ TEST(LineLearner, CombinesFramesOfAMovingPad) {
     ++frames;
   }
   EXPECT_GT(frames, 4);
-  in_motion.learner.learn(in_motion.model);
+  in_motion.learner.learn(in_motion.model, 1.0);
   EXPECT_EQ(in_motion.model.lines.size(), at_once.model.lines.size());
   EXPECT_NEAR(total_length(in_motion.model), total_length(at_once.model), 0.1);
 }
