@@ -28,9 +28,17 @@ TargetFilter::TargetFilter(double time_s,
     : time_s_(time_s),
       axes_{level_axis(position.x(), velocity.x(), position_error, velocity_error),
             level_axis(position.y(), velocity.y(), position_error, velocity_error),
-            Axis{{position.z(), 0.0, 0.0},
-                 Vector3d(kHeightError, kHeightDrift, 0.01).cwiseAbs2().asDiagonal(),
-                 kUprightJerk}} {}
+            upright_axis(position.z())} {}
+
+TargetFilter::Axis TargetFilter::upright_axis(double height) {
+  return {{height, 0.0, 0.0},
+          Vector3d(kHeightError, kHeightDrift, 0.01).cwiseAbs2().asDiagonal(),
+          kUprightJerk};
+}
+
+void TargetFilter::restart_height(double height) {
+  axes_[2] = upright_axis(height);
+}
 
 TargetFilter::Axis TargetFilter::level_axis(double position,
                                             double velocity,

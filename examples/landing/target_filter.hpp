@@ -22,6 +22,9 @@ class TargetFilter {
   /// @return false if it is rejected as an outlier and ignored.
   bool see(double time_s, const Eigen::Vector3d& position, double error);
 
+  /// Forgets the height, which came from a wrong object, and starts at this one [m].
+  void restart_height(double height);
+
   /// Updates with a radio report of position and velocity. A report that contradicts the state
   /// resets it, because the detections must have been of another object.
   /// @param is_recently_seen  The target was detected recently. The estimate is then more accurate
@@ -50,6 +53,7 @@ class TargetFilter {
     double jerk;  // spectral density of the unmodelled jerk [m^2/s^5]
   };
 
+  [[nodiscard]] static Axis upright_axis(double height);
   [[nodiscard]] static Axis level_axis(double position,
                                        double velocity,
                                        double position_error,

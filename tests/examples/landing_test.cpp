@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -147,6 +148,14 @@ TEST(TargetFilter, EstimatesVelocityAndRejectsOutliers) {
   EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
 }
 
+TEST(TargetFilter, RejectsWhatIsNotANumber) {
+  TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(filter.see(0.1, {0.0, nan, 0.0}, 0.02));
+  EXPECT_FALSE(filter.see(0.1, Vector3d::Zero(), nan));
+  EXPECT_TRUE(filter.at(0.2).position.allFinite());
+}
+
 TEST(TargetFilter, PrefersTheRadioWhereTheVisualEstimateIsFarFromIt) {
   TargetFilter filter(0.0, {20.0, 0.0, 0.0}, Vector2d::Zero(), 1.0, 0.5);
   filter.hear(1.0, {0.0, 0.0}, {1.0, 0.0}, 1.8, 0.4, true);
@@ -234,6 +243,17 @@ TEST(Controller, StartsOnlyOnSufficientlyVisibleTargets) {
   hover.fly_for(0.5, true, 0.8);
   EXPECT_EQ(hover.phase(), Phase::kApproach);
   hover.fly_for(3.0, true, 0.4);  // a known target is followed while less of it is visible
+  EXPECT_NE(hover.phase(), Phase::kSearch);
+}
+
+// The first positions were of another object, such as the ring's inner edge, which is farther away.
+TEST(Controller, RecoversFromAWrongHeight) {
+  Hover hover({1.0, 0.0, 8.0});
+  hover.see_aside({0.0, 0.0, -2.4}, 0.0);
+  hover.fly_for(0.1, true);
+  EXPECT_EQ(hover.phase(), Phase::kSearch);
+  hover.see_aside({0.0, 0.0, 0.0}, 0.0);
+  hover.fly_for(0.5, true);
   EXPECT_NE(hover.phase(), Phase::kSearch);
 }
 
