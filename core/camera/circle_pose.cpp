@@ -268,9 +268,14 @@ double PoseEstimator::update_odds(const Camera& camera,
   const bool has_inner = apart > 0.0 && std::isfinite(deviation);
   const bool has_gravity = gravity.squaredNorm() > 0.0;
   if (!has_inner && !has_gravity && !pattern) return odds_;
+  // A pattern learned under a wrong tilt confirms it, so inner edges of this frame come first.
+  // Those of earlier frames come last: their solutions may have been confused since.
   double odds = inner_.odds;
-  if (has_inner) odds = inner_.add(log_odds(misfit), deviation, misfit.separation, elapsed_s);
-  if (pattern) odds += log_odds(camera, poses, *pattern);
+  if (has_inner) {
+    odds = inner_.add(log_odds(misfit), deviation, misfit.separation, elapsed_s);
+  } else if (pattern) {
+    odds = log_odds(camera, poses, *pattern);
+  }
   if (has_gravity) {
     odds += 0.5 * (std::pow(from_level(poses[1], gravity), 2) -
                    std::pow(from_level(poses[0], gravity), 2));

@@ -73,7 +73,8 @@ struct PoseEvidence {
 
 /// Estimates a target's pose in each frame and selects one of the two solutions: each predicts the
 /// images of concentric inner circles, the image of the centre, and the target's deviation from
-/// level. Without evidence, keeps the previous selection.
+/// level. The pattern counts in frames without inner circles only. Without evidence, keeps the
+/// previous selection.
 ///
 /// One object serves one target, on one thread. Allocates nothing.
 class PoseEstimator {
