@@ -128,10 +128,11 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
   }
   if (!(gaps > 0.0)) return maxima;
 
-  // Bisects the ring's width over its middle radius; the predicted gaps grow with it.
-  double low = 0.0;
-  double high = 2.0;
-  for (double share = 1.0; low < share && share < high; share = 0.5 * (low + high)) {
+  // Bisects the ring's width over its middle radius, down to the precision of a float; the
+  // predicted gaps grow with it.
+  float low = 0.0F;
+  float high = 2.0F;
+  for (float share = 1.0F; low < share && share < high; share = 0.5F * (low + high)) {
     double predicted = 0.0;
     for (std::size_t i = 0; i < kDirections; ++i) {
       predicted += maxima_distance(share * radii[i], i);

@@ -104,7 +104,9 @@ void EdgeSearch::sample(const PadModel& model, const PadView& view, const ImageV
   narrowest_ = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < circles; ++c) {
     const PadCircle& circle = model.circles[c];
-    for (std::size_t i = 0; i < OutlineSamples::kMaxSamples; ++i) {
+    const bool is_whole = placement.visible.has_circle(circle.radius);
+    if (is_whole) visible[c].set();
+    for (std::size_t i = 0; !is_whole && i < OutlineSamples::kMaxSamples; ++i) {
       visible[c][i] = placement.visible.has(circle.radius * directions[i].cast<double>());
     }
     const auto count = static_cast<double>(visible[c].count());

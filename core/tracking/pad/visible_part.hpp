@@ -20,6 +20,13 @@ class VisiblePart {
     return is_within || (view_.lens.is_distorted() && is_visible_distorted(pad_point));
   }
 
+  /// Whether a whole circle around the pad's centre is within the undistorted inner rectangle.
+  [[nodiscard]] bool has_circle(double radius) const {
+    const Eigen::Array4d nearest =
+        borders_.col(2) - radius * borders_.leftCols<2>().rowwise().norm();
+    return (nearest >= 0.0).all();
+  }
+
   /// The visible part of a line, parameterized from 0 to 1; empty if end <= begin. With distortion
   /// accurate to 1/256 of the line, and empty for a line outside the undistorted inner rectangle.
   [[nodiscard]] Interval clip(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
