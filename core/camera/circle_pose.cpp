@@ -46,9 +46,7 @@ using RingChange = Eigen::Matrix<double, 5, 1>;
 std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
   const auto there = image ? with_outer_edge(view, *image) : std::nullopt;
   if (!there) return std::nullopt;
-  Matrix3d between = view.inverse() * *there;
-  between /= between(2, 2);
-  return change_of(between - Matrix3d::Identity()).head<5>();
+  return change_between(view, *there).head<5>();
 }
 
 // Residuals of the inner edges under the two solutions.

@@ -68,6 +68,11 @@ Matrix3d moved(const Matrix3d& image_from_pad, const HomographyChange& change) {
   return view / view(2, 2);
 }
 
+HomographyChange change_between(const Matrix3d& from, const Matrix3d& to) {
+  const Matrix3d change = from.inverse() * to;
+  return change_of(change / change(2, 2) - Matrix3d::Identity());
+}
+
 HomographyChange change_of(const Matrix3d& generator) {
   const Matrix3d a = generator - generator(2, 2) * Matrix3d::Identity();
   HomographyChange d;

@@ -33,6 +33,10 @@ using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 [[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
                                     const HomographyChange& change);
 
+/// The change that moves one view to another, to first order; exact for a shift.
+[[nodiscard]] HomographyChange change_between(const Eigen::Matrix3d& from,
+                                              const Eigen::Matrix3d& to);
+
 /// The change with this generator A, up to a multiple of the identity matrix.
 [[nodiscard]] HomographyChange change_of(const Eigen::Matrix3d& generator);
 

@@ -223,9 +223,13 @@ Target Tracker::acquire(const ScopedFrame& frame, Target target) {
     id_ = is_back ? last_id_ : last_id_ + 1;
   }
   target.id = id_;
-  pad_tracker_->release();
-  if (target.visible_fraction >= kMajority) {
-    (void)pad_tracker_->lock(window_on(frame, frame.searchable), target.ellipse);
+  if (target.visible_fraction < kMajority) {
+    pad_tracker_->release();
+    return target;
+  }
+  const LumaWindow window = window_on(frame, frame.searchable);
+  if (!is_back || !pad_tracker_->resume(window, target.ellipse)) {
+    (void)pad_tracker_->lock(window, target.ellipse);
   }
   return target;
 }

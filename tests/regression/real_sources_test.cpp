@@ -35,7 +35,7 @@ constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {173, 0}, {174, 0}},
     {"airlab-gascola", {455, 0}, {455, 0}},
-    {"pupil-infrared", {1071, 7}, {1017, 1}},
+    {"pupil-infrared", {1067, 12}, {1017, 1}},
     {"pupil-blinks", {258, 0}, {256, 0}},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},

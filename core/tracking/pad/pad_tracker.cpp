@@ -98,31 +98,57 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
-  innovation_ratio_ = 1.0;
-  unmatched_s_ = 0.0;
   learned_radius_px_ = 0.0;
-  motion_ = {};
-  const double sigma = tolerance_px(radius_px()) / radius_px();
-  motion_.pose.diagonal().setConstant(sigma * sigma);
+  const HomographyCovariance covariance = detected_covariance();
   std::optional<Attempt> attempt;
   for (int step = 0; step < kMaxSteps; ++step) {
-    attempt = search_from(window, view_, motion_.pose);
+    attempt = search_from(window, view_, covariance);
     if (!is_good(attempt)) return false;
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
   }
-  // The search may have moved to another edge than the detected one.
-  const auto locked = project_circle(view_, 1.0);
-  if (!locked || !is_same(*locked, outer_edge, kOuterEdgeTolerance)) return false;
-  motion_.pose = inverse_of(attempt->estimate.information);
-  // As after a frame of unknown motion.
-  motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
+  if (!has_outer_edge(attempt->view, outer_edge)) return false;
+  begin_motion(*attempt, HomographyChange::Zero());
   is_locked_ = true;
-  if (window.camera) {
-    refine(window, attempt->visible);
-    measure_inner_edges(window);
-  }
+  if (window.camera) measure_edges(window, attempt->visible);
   return true;
+}
+
+bool PadTracker::resume(const LumaWindow& window, const Ellipse& outer_edge) {
+  if (!is_locked_ || unmatched_s_ == 0.0) return false;
+  const auto start = with_outer_edge(view_, outer_edge);
+  if (!start) return false;
+  const auto attempt = search_from(window, *start, detected_covariance());
+  if (!is_good(attempt) || !has_outer_edge(attempt->view, outer_edge)) return false;
+  // Two detections determine the shift and the scale; other changes are slower than their errors.
+  HomographyChange velocity = HomographyChange::Zero();
+  velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
+  begin_motion(*attempt, velocity);
+  if (window.camera) measure_edges(window, attempt->visible);
+  return true;
+}
+
+// Of the view of a detected pad.
+HomographyCovariance PadTracker::detected_covariance() const {
+  const double sigma = tolerance_px(radius_px()) / radius_px();
+  return sigma * sigma * HomographyCovariance::Identity();
+}
+
+// The search may have moved to another edge than the detected one.
+bool PadTracker::has_outer_edge(const Eigen::Matrix3d& view, const Ellipse& detected) {
+  const auto found = project_circle(view, 1.0);
+  return found && is_same(*found, detected, kOuterEdgeTolerance);
+}
+
+// Starts the filter as after a frame of unknown motion.
+void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& velocity) {
+  view_ = matched_view_ = attempt.view;
+  unmatched_s_ = 0.0;
+  innovation_ratio_ = 1.0;
+  motion_ = {};
+  motion_.velocity = velocity;
+  motion_.pose = inverse_of(attempt.estimate.information);
+  motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
 }
 
 HomographyFilter PadTracker::predicted(double elapsed_s, double looseness) const {
@@ -200,8 +226,7 @@ std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double elap
   if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
   const Eigen::Matrix3d last_view = view_;
   accept(*attempt, before, looseness, elapsed_s);
-  refine(window, attempt->visible);
-  if (window.camera) measure_inner_edges(window);
+  measure_edges(window, attempt->visible);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
   learn_lines(window, *attempt);
   return make_track(&*attempt);
@@ -252,6 +277,12 @@ void PadTracker::accept(const Attempt& attempt,
   if (attempt.visible >= kMajority) learn_radii(attempt.last, adaptation);
   view_ = attempt.view;
   unmatched_s_ = 0.0;
+}
+
+void PadTracker::measure_edges(const LumaWindow& window, double visible) {
+  refine(window, visible);
+  if (window.camera) measure_inner_edges(window);
+  matched_view_ = view_;
 }
 
 // Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.

@@ -49,6 +49,11 @@ class PadTracker {
   /// @return Whether the learned edges match the image.
   [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
 
+  /// Continues with the learned pad where the detector found its outer edge, after the last call of
+  /// track() did not match it. The distance from the last match gives its velocity.
+  /// @return Whether the pad was tracked until then and its edges match the image.
+  [[nodiscard]] bool resume(const LumaWindow& window, const Ellipse& outer_edge);
+
   /// @param elapsed_s  Since the last call.
   /// @return nullopt if the pad is lost.
   [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double elapsed_s);
@@ -101,6 +106,10 @@ class PadTracker {
               const HomographyFilter& before,
               double looseness,
               double elapsed_s);
+  [[nodiscard]] HomographyCovariance detected_covariance() const;
+  [[nodiscard]] static bool has_outer_edge(const Eigen::Matrix3d& view, const Ellipse& detected);
+  void begin_motion(const Attempt& attempt, const HomographyChange& velocity);
+  void measure_edges(const LumaWindow& window, double visible);
   void refine(const LumaWindow& window, double visible);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
@@ -118,7 +127,8 @@ class PadTracker {
   EdgeSearch search_;
   LineLearner line_learner_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
-  Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();  // frame from pad
+  Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();          // frame from pad
+  Eigen::Matrix3d matched_view_ = Eigen::Matrix3d::Identity();  // of the last match
   HomographyFilter motion_;
   std::array<FittedEllipse, 2> inner_edges_;
   std::size_t inner_count_ = 0;

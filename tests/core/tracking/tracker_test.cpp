@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/detectors.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/support/picture.hpp"
 #include "tests/support/scripted_detector.hpp"
@@ -179,6 +180,38 @@ TEST(FollowingTracker, FollowsFromTheSecondFrameOn) {
     EXPECT_EQ(target->state, frame == 0 ? TargetState::kDetected : TargetState::kTracked) << frame;
     EXPECT_EQ(target->id, 1U);
     EXPECT_LT(max_difference_px(target->ellipse, Film::truth_at(frame)), 0.3) << frame;
+  }
+}
+
+// The pad moves by .9 of its radius in each frame: the first search after the lock finds it again,
+// and its velocity is known from then on.
+TEST(FollowingTracker, FollowsAFastPadAfterTwoDetections) {
+  class CountingDetector final : public Detector {
+   public:
+    explicit CountingDetector(int& searches) : searches_(searches) {}
+    [[nodiscard]] std::span<const Detection> detect(const ellipse::Picture& picture,
+                                                    const Thresholds& thresholds) override {
+      ++searches_;
+      return detector_->detect(picture, thresholds);
+    }
+    [[nodiscard]] bool has_probability() const override { return detector_->has_probability(); }
+    [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
+    [[nodiscard]] Overlaps tracking_overlaps() const override { return {}; }
+
+   private:
+    int& searches_;
+    std::unique_ptr<Detector> detector_ = make_detector(DetectorKind::kArcs);
+  };
+  int searches = 0;
+  Tracker tracker({}, std::make_unique<CountingDetector>(searches));
+  for (int frame = 0; frame < 5; ++frame) {
+    const Ellipse truth{80.0 + 30.0 * frame, 80.0 + 15.0 * frame, 40.0, 32.0, 0.3};
+    const auto picture = rendered(plain_ring(), truth, 320, 240, static_cast<std::uint64_t>(frame));
+    const auto target = tracker.process(picture.view(), frame * kFrameNs);
+    ASSERT_TRUE(target) << frame;
+    EXPECT_EQ(target->id, 1U) << frame;
+    EXPECT_LT(max_difference_px(target->ellipse, truth), 0.3) << frame;
+    EXPECT_EQ(searches, std::min(frame + 1, 2)) << frame;
   }
 }
 

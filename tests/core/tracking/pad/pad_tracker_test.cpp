@@ -291,6 +291,47 @@ TEST(PadTracker, PredictsAVanishedPadThenLosesIt) {
   EXPECT_FALSE(tracker.is_locked());
 }
 
+// A motion of 1.25 radii per frame is far beyond the search range of a pad at rest.
+TEST(PadTracker, ResumesAFastPadAndThenFollowsIt) {
+  const Scene scene = pad_scene(Pattern::kRingX);
+  const auto truth_at = [](std::uint64_t i) {
+    return translated({100.3, 110.6, 60.0, 48.0, 0.4},
+                      75.0 * static_cast<double>(i),
+                      20.0 * static_cast<double>(i));
+  };
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0), scene)), truth_at(0)));
+  const Picture second = frame_of(truth_at(1), scene, 1);
+  const auto missed = tracker.track(whole(second), kFrame_s);
+  ASSERT_TRUE(missed);
+  EXPECT_FALSE(missed->is_visible);
+  ASSERT_TRUE(tracker.resume(whole(second), truth_at(1)));
+  for (std::uint64_t i = 2; i < 6; ++i) {
+    const auto track = tracker.track(whole(frame_of(truth_at(i), scene, i)), kFrame_s);
+    ASSERT_TRUE(track && track->is_visible) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, truth_at(i)), 0.3) << i;
+  }
+}
+
+TEST(PadTracker, ResumesOnlyTheUnmatchedPadAtItsOuterEdge) {
+  const Picture picture = frame_of(kPad);
+  PadTracker tracker;
+  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "never locked";
+  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "matched";
+  (void)tracker.track(whole(empty_frame()), kFrame_s);
+  EXPECT_FALSE(tracker.resume(whole(empty_frame()), kPad)) << "no edges";
+  Ellipse inner = kPad;
+  inner.semi_major *= 0.5;
+  inner.semi_minor *= 0.5;
+  EXPECT_FALSE(tracker.resume(whole(picture), inner)) << "another circle";
+  EXPECT_TRUE(tracker.is_locked());
+  EXPECT_TRUE(tracker.resume(whole(picture), kPad));
+  (void)tracker.track(whole(empty_frame()), kFrame_s);
+  tracker.release();
+  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "released";
+}
+
 TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
   PadTracker locked;
   ASSERT_TRUE(locked.lock(whole(frame_of(kPad)), kPad));
