@@ -2,8 +2,6 @@
 #include "examples/landing/landing.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <memory>
 #include <numbers>
@@ -129,11 +127,6 @@ class Run {
       seen.pad = pad_from_body(flight_.rig, seen.own, *look.position);
       seen.error = look.error;
       seen.visible_fraction = look.visible_fraction;
-    }
-    if (std::getenv("DUMPL")) {
-      Vector3d true_pad; true_pad << platform_.position() - vehicle_.truth().position.head<2>(), -vehicle_.truth().position.z();
-      const Vector3d err = seen.pad ? Vector3d(*seen.pad - true_pad) : Vector3d(9, 9, 9);
-      std::fprintf(stderr, "L %.3f ph%d h%.2f off(%.2f %.2f) vis%.2f seen%d err(%.3f %.3f %.3f) sig%.3f has%d\n", now_s, int(controller_.phase()), vehicle_.truth().position.z(), true_pad.x(), true_pad.y(), truth.visible_fraction, int(seen.pad.has_value()), err.x(), err.y(), err.z(), seen.error, int(look.has_target));
     }
     under_way_.push_back(seen);
 

@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
   app.add_option(
          "--speed", options.speeds, "Speed of the platform [m/s]; several separated by commas")
       ->delimiter(',')
-      ->check(finite_number() & CLI::Range(0.0, 8.0))
+      ->check(finite_number() & CLI::Range(0.0, 12.0))
       ->capture_default_str();
   app.add_option(
          "--seed", options.seed, "Random seed of the first landing; each landing has its own")

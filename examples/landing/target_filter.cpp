@@ -16,7 +16,7 @@ constexpr double kUprightJerk = 1e-5;  // small: the platform drives on level gr
 constexpr double kGate = 25.0;         // squared innovation / variance
 constexpr double kHeightError = 0.5;   // platform height, standard deviation [m]
 constexpr double kHeightDrift = 0.1;   // vertical dead reckoning, standard deviation [m/s]
-constexpr double kMaxSpeed = 6.0;      // of any platform [m/s]
+constexpr double kMaxSpeed = 15.0;     // of any platform [m/s]
 
 }  // namespace
 
