@@ -97,7 +97,7 @@ export class TargetChoice {
   /** Takes a click on the picture. */
   pick(event) {
     if (this.#isWaiting) return;
-    const { x, y } = this.screen.positionOf(event);
+    const { x, y } = this.screen.picturePoint(event);
     if (this.#chosen === "drawn") {
       this.#points.push({ x, y });
       this.#choose("drawn");

@@ -31,14 +31,14 @@ export class Region {
   #begin(event) {
     const isDrawing = event.pointerType !== "touch" && event.button === 0;
     if (!this.isOn || !isDrawing || !this.screen.frame) return;
-    this.#start = this.screen.positionOf(event);
+    this.#start = this.screen.picturePoint(event);
     this.screen.canvas.setPointerCapture(event.pointerId);
   }
 
   #drag(event) {
     if (!this.#start) return;
     const { bitmap } = this.screen.frame;
-    const end = this.screen.positionOf(event);
+    const end = this.screen.picturePoint(event);
     const px = bitmap.width / this.screen.canvas.clientWidth;
     const isLong = Math.max(Math.abs(end.x - this.#start.x), Math.abs(end.y - this.#start.y)) > kMinPx * px;
     if (isLong || this.#dragged) this.#dragged = rectOf(this.#start, end, bitmap);

@@ -69,7 +69,7 @@ export class Screen {
   }
 
   /** The position of a pointer event [frame px]. */
-  positionOf(event) {
+  picturePoint(event) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const { bitmap } = this.frame;
     return {

@@ -237,7 +237,7 @@ export class Stages {
   // Shows the candidate nearest to the pointer in the list.
   #pick(event) {
     if (!this.#result) return;
-    const { x, y } = this.screen.positionOf(event);
+    const { x, y } = this.screen.picturePoint(event);
     const near = this.#result.candidates
       .map((candidate, number) => ({ candidate, number }))
       .filter(({ candidate }) => candidate.ellipse)
