@@ -10,6 +10,7 @@ const kRelaxMargin = 1.4;    // factor between a mark and a relaxed limit
 const kClearFactor = 2;      // minimum factor between marks and ellipses that a limit rejects
 const kRivalFactor = 1.1;    // the same for ellipses that are selected as the target
 const kUsualProbability = 0.5;
+const kMaxUnit = 1e6;        // six decimals of a probability
 const kMaxRegionShare = 0.5; // of the frame; a larger region hardly helps
 const kFaintEdges = { "edge-low": 1, "edge-high": 2 };
 const kDetectors = ["arcs", "contours"];
@@ -150,6 +151,13 @@ function otherDetector(values) {
 const logOdds = (p) => Math.log(p / (1 - p));
 const inOdds = (p) => Math.min(1 - 1e-6, Math.max(1e-6, p));
 
+// Rounds down to as few decimals as possible, at least two, so that the result stays above a bound.
+function roundedAbove(bound, value) {
+  let unit = 100;
+  while (Math.floor(value * unit) / unit <= bound && unit < kMaxUnit) unit *= 10;
+  return Math.floor(value * unit) / unit;
+}
+
 // A threshold that separates the marked ellipses from all others, if one exists: the default, or the mean
 // of the log odds.
 function separatingProbability(marks, values) {
@@ -164,7 +172,7 @@ function separatingProbability(marks, values) {
   if (!(low > high) || low === 1) return [];
   const middle = (logOdds(inOdds(low)) + logOdds(inOdds(Math.max(high, low / 4)))) / 2;
   const isUsual = low >= kUsualProbability && high < kUsualProbability;
-  const to = isUsual ? kUsualProbability : Math.floor(100 / (1 + Math.exp(-middle))) / 100;
+  const to = isUsual ? kUsualProbability : roundedAbove(high, 1 / (1 + Math.exp(-middle)));
   if (to <= high || to > low || to === values["min-probability"]) return [];
   const why = `Probability of your marks: at least ${low.toFixed(2)}; of other ellipses: ` +
     `${high > 0 ? `at most ${high.toFixed(2)}` : "none found"}.`;

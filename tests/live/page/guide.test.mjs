@@ -197,6 +197,7 @@ describe("the guide", () => {
     for (let i = 1; i <= 3; ++i) await markByClick(page, program, i);
     const text = await resultOf(page);
     // Which frames are marked depends on time, and so does what else is found in them.
+    assert.match(text, /min-probability: 0.999999 → 0\.\d+/);
     const [, proposed] = text.match(/min-probability: 0.999999 → (0\.\d+)/);
     const [, ofMarks, , ofOthers = "0"] =
       text.match(/Probability of your marks: at least (\d\.\d\d); of other ellipses: (none found|at most (\d\.\d\d))/);
@@ -322,7 +323,7 @@ describe("the guide", () => {
 
   it("derives trials from the marks", async () => {
     const page = await openPage(browser, program.url, undefined, 1);
-    const { ratio, none, region, probability, smallest, largest } = await page.evaluate(async () => {
+    const { ratio, none, region, probability, close, smallest, largest } = await page.evaluate(async () => {
       const { ringRatioOf, trialsFor } = await import("/trials.js");
       const circle = (cx, radius) => ({ cx, cy: 100, semi_major: radius, semi_minor: radius, angle_rad: 0 });
       const arcs = (ellipse, chance) => ({ ellipse, probability: chance, detector: "arcs" });
@@ -344,6 +345,8 @@ describe("the guide", () => {
         none: ringRatioOf([ring, mark(arcs(circle(100, 50), 0.9))]),
         region: trialOf("roi", [ring]),
         probability: trialOf("min-probability", [ring]),
+        close: trialOf("min-probability", [mark(arcs(circle(100, 50), 0.9991), arcs(circle(800, 20), 0.9952))],
+          { "min-probability": 0.9999 }),
         // The default admits the mark of 100 px in one case only.
         smallest: trialOf("min-axis", [ring], { "min-axis": 300 }),
         largest: trialOf("max-axis", [ring], { "max-axis": 50 }),
@@ -356,6 +359,7 @@ describe("the guide", () => {
     assert.equal(largest["max-axis"], 140);
     const limit = probability["min-probability"];
     assert.ok(limit > 0.1 && limit < 0.2, String(limit));
+    assert.equal(close["min-probability"], 0.997);
   });
 
   it("keeps the video and its buttons in view on a phone", async () => {
