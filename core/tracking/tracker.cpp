@@ -212,8 +212,8 @@ bool Tracker::is_too_large(const Ellipse& e) const {
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
 }
 
-// Replaces or confirms the hypothesis by a detection. Locks only if most of the perimeter is
-// visible.
+// Replaces or confirms the hypothesis by a detection. If most of its perimeter is visible, resumes
+// the known pad there or locks on a new one.
 Target Tracker::acquire(const ScopedFrame& frame, Target target) {
   const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, target.ellipse);
   if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameTarget)) {
