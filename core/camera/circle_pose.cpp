@@ -44,7 +44,7 @@ using RingChange = Eigen::Matrix<double, 5, 1>;
 
 // Change of a view's unit circle to a circle's image, to first order.
 std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
-  const auto there = image ? with_outer_edge(view, *image) : std::nullopt;
+  const auto there = image ? with_circle(view, *image) : std::nullopt;
   if (!there) return std::nullopt;
   return change_between(view, *there).head<5>();
 }
@@ -184,7 +184,8 @@ Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose) {
 // Five pose parameters move the edge: a shift, and rotations about two axes in the plane.
 Matrix3d position_covariance(const Camera& camera,
                              const CirclePose& pose,
-                             const RingUncertainty& picture) {
+                             const RingUncertainty& picture,
+                             double tilt_sigma_rad) {
   const Matrix3d plane = camera_from_plane(pose);
   const Matrix3d inverse = plane.inverse();
   RingMatrix changes;
@@ -198,7 +199,7 @@ Matrix3d position_covariance(const Camera& camera,
   const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
   RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
   // Near a frontal view the stretch is quadratic in the tilt. The tilt's sigma grows as the stretch
-  // comes within two sigma of its noise, up to a radian.
+  // comes within two sigma of its noise, up to the given one.
   const double noise = std::sqrt(covariance(3, 3) + covariance(4, 4));
   const double cosine = pose.normal.dot(pose.position.normalized());
   const double stretch =
@@ -207,7 +208,7 @@ Matrix3d position_covariance(const Camera& camera,
   covariance.bottomRows<2>() *= wider;
   covariance.rightCols<2>() *= wider;
   RingMatrix information = changes.transpose() * covariance.inverse() * changes;
-  information.diagonal().tail<2>().array() += 1.0;
+  information.diagonal().tail<2>().array() += std::pow(tilt_sigma_rad, -2);
   return information.inverse().topLeftCorner<3, 3>();
 }
 
@@ -311,7 +312,9 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
     pose.radius_m = radius_m;
     pose.position_m = radius_m * chosen.position;
     pose.other_position_m = radius_m * other.position;
-    pose.covariance_m2 = radius_m * radius_m * position_covariance(camera, chosen, uncertainty);
+    const double tilt_sigma_rad = evidence.gravity.squaredNorm() > 0.0 ? kLevelRad : 1.0;
+    pose.covariance_m2 =
+        radius_m * radius_m * position_covariance(camera, chosen, uncertainty, tilt_sigma_rad);
   }
   return pose;
 }

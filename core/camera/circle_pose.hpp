@@ -36,9 +36,12 @@ struct CirclePose {
 
 /// Covariance of a circle's position [radii^2], from the uncertainty of its image. Wider near a
 /// frontal view, where the ellipse determines the tilt to second order only.
+///
+/// @param tilt_sigma_rad  Standard deviation of the tilt that is known otherwise.
 [[nodiscard]] Eigen::Matrix3d position_covariance(const Camera& camera,
                                                   const CirclePose& pose,
-                                                  const RingUncertainty& picture);
+                                                  const RingUncertainty& picture,
+                                                  double tilt_sigma_rad = 1.0);
 
 /// The target's pose in the camera frame.
 struct TargetPose {

@@ -49,15 +49,17 @@ std::optional<Ellipse> project_circle(const Matrix3d& image_from_pad, double rad
   return from_conic(pad_from_image.transpose() * circle.asDiagonal() * pad_from_image);
 }
 
-std::optional<Matrix3d> with_outer_edge(const Matrix3d& image_from_pad, const Ellipse& outer_edge) {
+std::optional<Matrix3d> with_circle(const Matrix3d& image_from_pad,
+                                    const Ellipse& image,
+                                    double radius) {
   // The ellipse in pad coordinates: conics map as C = H^T C' H [HartleyZisserman2004] 2.3.
-  const auto on_pad =
-      from_conic(image_from_pad.transpose() * conic_matrix(outer_edge) * image_from_pad);
+  const auto on_pad = from_conic(image_from_pad.transpose() * conic_matrix(image) * image_from_pad);
   if (!on_pad) return std::nullopt;
   const Eigen::Matrix2d axes = Eigen::Rotation2Dd(on_pad->angle_rad).toRotationMatrix();
   Matrix3d stretch = Matrix3d::Identity();
-  stretch.topLeftCorner<2, 2>() =
-      axes * Vector2d(on_pad->semi_major, on_pad->semi_minor).asDiagonal() * axes.transpose();
+  stretch.topLeftCorner<2, 2>() = axes *
+                                  Vector2d(on_pad->semi_major, on_pad->semi_minor).asDiagonal() *
+                                  axes.transpose() / radius;
   stretch.topRightCorner<2, 1>() = on_pad->center();
   const Matrix3d view = image_from_pad * stretch;
   return view / view(2, 2);

@@ -18,10 +18,12 @@ namespace ellipse {
 [[nodiscard]] std::optional<Ellipse> project_circle(const Eigen::Matrix3d& image_from_pad,
                                                     double radius);
 
-/// Adjusts a view to map the outer circle exactly to this ellipse, by a shift and a symmetric
-/// stretch in the pad's plane, without rotation. nullopt if the ellipse has no such preimage.
-[[nodiscard]] std::optional<Eigen::Matrix3d> with_outer_edge(const Eigen::Matrix3d& image_from_pad,
-                                                             const Ellipse& outer_edge);
+/// Adjusts a view to map a circle around the pad's centre exactly to this ellipse, by a shift and a
+/// symmetric stretch in the pad's plane, without rotation. nullopt if the ellipse has no such
+/// preimage.
+[[nodiscard]] std::optional<Eigen::Matrix3d> with_circle(const Eigen::Matrix3d& image_from_pad,
+                                                         const Ellipse& image,
+                                                         double radius = 1.0);
 
 /// A small change of a view, in pad units: H becomes H exp(A) with
 /// A = [S+E1, E2-R, T1+B1; E2+R, S-E1, T2+B2; B1, B2, 0].

@@ -105,7 +105,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (needs_detection(target)) target = look(frame, target);
-  if (judge_->log_odds() < -kCertainLogOdds) pad_tracker_->release();
+  if (judge_->log_odds() < -kCertainLogOdds) pad_tracker_->forget();
 
   if (target || !pad_tracker_->is_locked()) hypothesis_.reset();
   if (target) hypothesis_ = target->ellipse;
@@ -146,30 +146,35 @@ bool Tracker::is_detection_due() const {
 // Reads only the search window of the pad.
 std::optional<Target> Tracker::follow_edges(const ScopedFrame& frame, double elapsed_s) {
   if (!pad_tracker_->is_locked()) return std::nullopt;
-  const int width = frame.pixels.width;
-  const int height = frame.pixels.height;
   const Rect region =
-      intersect(pad_tracker_->region_after(elapsed_s, width, height), frame.searchable);
+      intersect(pad_tracker_->region_after(elapsed_s, frame.pixels.width, frame.pixels.height),
+                frame.searchable);
   const LumaWindow window = window_on(frame, region);
   const auto track = pad_tracker_->track(window, elapsed_s);
-  if (!track) return std::nullopt;
-  const double visible = visible_fraction(frame.lens, track->ellipse, width, height);
-  const bool is_likely = visible >= kMajority && track->coverage >= kMinPredicted;
-  if (!track->is_visible && !is_likely) return std::nullopt;
-  Target target;
-  target.ellipse = track->ellipse;
-  target.state = track->is_visible ? TargetState::kTracked : TargetState::kPredicted;
-  target.id = id_;
-  target.contour_overlap = track->coverage;
-  target.ellipse_overlap = track->outline;
-  target.visible_fraction = visible;
-  target.search_region = region;
+  const std::optional<Target> target = track ? target_of(*track, frame, region) : std::nullopt;
   // At most one of the periodic evaluation and the periodic detection runs per frame.
   const bool is_put_off = judge_->is_sure() && is_detection_due() && !settings_.wants_candidates;
-  if (track->is_visible && !is_put_off) {
-    judge_->judge(search_->detector(), window, target, settings_.limits);
+  if (target && track->is_visible && !is_put_off) {
+    judge_->judge(search_->detector(), window, *target, settings_.limits);
   }
   return target;
+}
+
+// nullopt if too little is known about the pad's position.
+std::optional<Target> Tracker::target_of(const EdgeTrack& track,
+                                         const ScopedFrame& frame,
+                                         const Rect& region) const {
+  Target target;
+  target.ellipse = track.ellipse;
+  target.state = track.is_visible ? TargetState::kTracked : TargetState::kPredicted;
+  target.id = id_;
+  target.contour_overlap = track.coverage;
+  target.ellipse_overlap = track.outline;
+  target.visible_fraction =
+      visible_fraction(frame.lens, track.ellipse, frame.pixels.width, frame.pixels.height);
+  target.search_region = region;
+  const bool is_likely = target.visible_fraction >= kMajority && track.coverage >= kMinPredicted;
+  return track.is_visible || is_likely ? std::optional(target) : std::nullopt;
 }
 
 // Runs the detector. While the target is certain, searches a reduced frame first, and the full
@@ -179,7 +184,8 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const bool is_likely = is_visible && judge_->log_odds() >= required_log_odds();
   const auto is_rival = [&](const std::optional<Target>& candidate) {
-    return candidate && (!is_likely || is_better(*candidate, *followed));
+    return candidate && !is_inner_edge(candidate->ellipse) &&
+           (!is_likely || is_better(*candidate, *followed));
   };
   since_detection_s_ = 0.0;
   if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
@@ -188,22 +194,28 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
     if (!is_rival(detect(reduced))) return followed;
   }
   const std::optional<Target> chosen = detect(frame);
+  if (!chosen) return followed;
+  if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
   if (is_rival(chosen)) return acquire(frame, *chosen);
-  if (chosen && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
+  if (is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
     judge_->confirm(log_odds(chosen->probability), true);
   }
   return followed;
 }
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {
-  // A certain detection replaces an uncertain outline, unless it may be its inner edge.
-  if (!judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds) {
-    return is_same(chosen.ellipse, followed.ellipse, kSameTarget) ||
-           !are_concentric(chosen.ellipse, followed.ellipse) ||
-           chosen.ellipse.semi_major > followed.ellipse.semi_major;
-  }
-  if (is_too_large(followed.ellipse) && lies_in(chosen.ellipse, followed.ellipse)) return false;
+  // A certain detection replaces an uncertain outline.
+  if (!judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds) return true;
   return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
+}
+
+// Whether an ellipse may be an inner edge of the pad, which is predicted if it is not visible.
+bool Tracker::is_inner_edge(const Ellipse& e) const {
+  const auto outer = pad_tracker_->is_locked() ? pad_tracker_->outline() : std::nullopt;
+  if (!outer || judge_->log_odds() < required_log_odds()) return false;
+  if (is_same(e, *outer, kSameTarget)) return false;
+  if (is_too_large(*outer) && lies_in(e, *outer)) return true;
+  return are_concentric(e, *outer) && e.semi_major < outer->semi_major;
 }
 
 // Whether the detector can find only the inner edges of a target of this size.
@@ -212,26 +224,41 @@ bool Tracker::is_too_large(const Ellipse& e) const {
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
 }
 
-// Replaces or confirms the hypothesis by a detection. If most of its perimeter is visible, resumes
-// the known pad there or locks on a new one.
-Target Tracker::acquire(const ScopedFrame& frame, Target target) {
-  const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, target.ellipse);
-  if (hypothesis_ && is_same(*hypothesis_, target.ellipse, kSameTarget)) {
-    judge_->confirm(log_odds(target.probability), is_back);
-  } else {
-    judge_->start(log_odds(target.probability), is_back);
-    id_ = is_back ? last_id_ : last_id_ + 1;
-  }
-  target.id = id_;
-  if (target.visible_fraction < kMajority) {
-    pad_tracker_->release();
-    return target;
-  }
+// Continues with the known pad where the detector found one of its circles.
+std::optional<Target> Tracker::resume(const ScopedFrame& frame, const Target& detection) {
+  if (pad_tracker_->is_locked() && !is_near(last_ellipse_, detection.ellipse)) return std::nullopt;
   const LumaWindow window = window_on(frame, frame.searchable);
-  if (!is_back || !pad_tracker_->resume(window, target.ellipse)) {
-    (void)pad_tracker_->lock(window, target.ellipse);
+  const auto track = pad_tracker_->resume(window, detection.ellipse);
+  if (!track) return std::nullopt;
+  add_detection(track->ellipse, log_odds(detection.probability));
+  return target_of(*track, frame, detection.search_region);
+}
+
+// Replaces or confirms the hypothesis by a detection. Locks only if most of its perimeter is
+// visible.
+Target Tracker::acquire(const ScopedFrame& frame, Target target) {
+  const bool is_confirmed = add_detection(target.ellipse, log_odds(target.probability));
+  target.id = id_;
+  if (target.visible_fraction >= kMajority) {
+    (void)pad_tracker_->lock(window_on(frame, frame.searchable), target.ellipse);
+  } else if (!is_confirmed) {
+    pad_tracker_->release();
   }
   return target;
+}
+
+// Adds to the odds of the hypothesis if it has this outline, else starts another one.
+// Returns whether it has.
+bool Tracker::add_detection(const Ellipse& outline, double detected_log_odds) {
+  const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, outline);
+  const bool is_confirmed = hypothesis_ && is_same(*hypothesis_, outline, kSameTarget);
+  if (is_confirmed) {
+    judge_->confirm(detected_log_odds, is_back);
+  } else {
+    judge_->start(detected_log_odds, is_back);
+    id_ = is_back ? last_id_ : last_id_ + 1;
+  }
+  return is_confirmed;
 }
 
 LumaWindow Tracker::window_on(const ScopedFrame& frame, const Rect& region) {
@@ -305,7 +332,7 @@ void Tracker::reset() {
   clock_ = {};
   search_->begin({});
   *redetect_tracker_ = {};
-  pad_tracker_->release();
+  pad_tracker_->forget();
   pose_estimator_.reset();
 }
 

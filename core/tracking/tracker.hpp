@@ -18,6 +18,7 @@ class FrameSearch;
 class OutlineJudge;
 class PadTracker;
 class RedetectTracker;
+struct EdgeTrack;
 struct LumaWindow;
 struct ScopedFrame;
 
@@ -98,9 +99,15 @@ class Tracker {
   [[nodiscard]] std::optional<Target> follow_edges(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> look(const ScopedFrame& frame,
                                            const std::optional<Target>& followed);
+  [[nodiscard]] std::optional<Target> target_of(const EdgeTrack& track,
+                                                const ScopedFrame& frame,
+                                                const Rect& region) const;
   [[nodiscard]] bool is_better(const Target& chosen, const Target& followed) const;
+  [[nodiscard]] bool is_inner_edge(const Ellipse& e) const;
   [[nodiscard]] bool is_too_large(const Ellipse& e) const;
+  [[nodiscard]] std::optional<Target> resume(const ScopedFrame& frame, const Target& detection);
   [[nodiscard]] Target acquire(const ScopedFrame& frame, Target target);
+  bool add_detection(const Ellipse& outline, double detected_log_odds);
   [[nodiscard]] LumaWindow window_on(const ScopedFrame& frame, const Rect& region);
   void make_lens();
 

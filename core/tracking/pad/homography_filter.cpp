@@ -87,9 +87,11 @@ void HomographyFilter::fix_rotation() {
   }
 }
 
-double HomographyFilter::centre_sigma() const {
-  return std::sqrt(pose(0, 0) + pose(1, 1) + pose(6, 6) + pose(7, 7) +
-                   2.0 * (pose(0, 6) + pose(1, 7)));
+double centre_sigma(const HomographyCovariance& covariance) {
+  const double ring = covariance(0, 0) + covariance(1, 1);
+  const double pad =
+      ring + covariance(6, 6) + covariance(7, 7) + 2.0 * (covariance(0, 6) + covariance(1, 7));
+  return std::sqrt(std::min(ring, pad));
 }
 
 }  // namespace ellipse

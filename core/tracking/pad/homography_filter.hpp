@@ -36,9 +36,6 @@ struct HomographyFilter {
 
   /// Fixes the rotation about the pad's normal, which rings do not determine.
   void fix_rotation();
-
-  /// Standard deviation of the pad's centre [radii].
-  [[nodiscard]] double centre_sigma() const;
 };
 
 [[nodiscard]] HomographyCovariance inverse_of(const HomographyCovariance& matrix);
@@ -46,5 +43,9 @@ struct HomographyFilter {
 /// Growth of the velocity's covariance per second under random camera motion.
 [[nodiscard]] HomographyCovariance camera_noise(const Eigen::Matrix3d& image_from_pad,
                                                 const Camera& camera);
+
+/// Standard deviation of the centre of the pad or of its outer circle, whichever is smaller
+/// [radii]. Rings alone do not determine the first, nor the pattern the second.
+[[nodiscard]] double centre_sigma(const HomographyCovariance& covariance);
 
 }  // namespace ellipse

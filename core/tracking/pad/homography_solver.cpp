@@ -50,6 +50,11 @@ std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> s
   return estimate;
 }
 
+bool is_refuted(int matched, int visible) {
+  const double sigma = 0.5 * std::sqrt(visible);  // of the matches, if half are expected
+  return matched + 2.0 * sigma < kMajority * visible;
+}
+
 bool is_matched(const EdgeSample& sample, const HomographyChange& change, double max_px) {
   const double predicted = sample.predicted_px(change);
   const EdgeCandidate* edge = nearest_candidate(sample, predicted);
@@ -82,9 +87,9 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
   if (support.visible == 0) return support;
   support.coverage = static_cast<double>(support.matched) / support.visible;
   if (visible[0] > 0) support.outline = static_cast<double>(matched[0]) / visible[0];
-  support.weakest = 1.0;
+  support.has_all_circles = true;
   for (std::size_t i = 0; i < visible.size(); ++i) {
-    support.weakest = std::min(support.weakest, (matched[i] + 1.0) / (visible[i] + 1.0));
+    support.has_all_circles &= !is_refuted(matched[i], visible[i]);
   }
   if (support.matched > 0) {
     const auto middle = gains.begin() + support.matched / 2;

@@ -19,14 +19,17 @@ struct HomographyEstimate {
   HomographyCovariance information = HomographyCovariance::Zero();
 };
 
+/// Whether an edge is unmatched significantly more often than not.
+[[nodiscard]] bool is_refuted(int matched, int visible);
+
 /// How well a change agrees with the samples.
 struct HomographySupport {
   int visible = 0;        ///< Visible samples.
   int matched = 0;        ///< Of these, with an edge within the tolerance.
   double coverage = 0.0;  ///< matched over visible.
   double outline = 0.0;   ///< The same of the outer circle alone; 0 if none of it is visible.
-  double weakest = 0.0;   ///< Lowest (matched + 1) / (visible + 1) of a circle.
-  double gain = 1.0;      ///< Median ratio of image contrast to model contrast.
+  bool has_all_circles = false;  ///< No visible circle is refuted, see is_refuted().
+  double gain = 1.0;             ///< Median ratio of image contrast to model contrast.
 };
 
 /// Solves for the maximum a posteriori change that moves all edges to their matches: iteratively

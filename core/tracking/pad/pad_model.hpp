@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/edges/outline_samples.hpp"
+#include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_view.hpp"
 
@@ -27,6 +28,7 @@ struct PadCircle {
   bool is_bright_outside = true;
   double contrast = 0.0;  ///< [grey levels]
   bool is_given = false;  ///< Its radius is configured and not learned.
+  HomographyChange sensitivity = HomographyChange::Zero();  ///< As PadLine::sensitivity.
 };
 
 /// A straight edge on the pad.
@@ -37,6 +39,8 @@ struct PadLine {
   double contrast = 0.0;      ///< [grey levels]
   int visible = 0;            ///< Visible samples in all frames.
   int matched = 0;            ///< Of these, matched ones.
+  /// Error of the tracked view per error of the line's position [1/radius].
+  HomographyChange sensitivity = HomographyChange::Zero();
 };
 
 /// The edges by which a pad is tracked.

@@ -11,6 +11,7 @@
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/least_squares.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/roi.hpp"
 
@@ -25,8 +26,9 @@ constexpr double kDeformation = 0.012;     // distance of deformed edges from th
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
 constexpr double kMaxReach = 0.14;         // beyond it [radii]
 constexpr int kMaxSteps = 3;               // searches of a frame, and before a lock
-constexpr double kEnoughVisible = 0.15;    // share of the outer circle that determines the centre
-constexpr double kMaxCentreSigma = 0.035;  // [radii], if less is visible
+constexpr double kEnoughVisible = 0.3;     // share of the outer circle, to refine it
+constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
+constexpr double kFeatureSigma = 0.0014;   // of an inner circle or line in the model [radii]
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
 constexpr double kSharedVariance = 1.3;    // of the refined edge: errors of samples are correlated
 
@@ -88,12 +90,16 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
   return max_contrast > 0.0;
 }
 
-bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
-  is_locked_ = false;
-  refined_.reset();
-  inner_count_ = 0;
+void PadTracker::begin_frame(const LumaWindow& window) {
   camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
+  refined_.reset();
+  inner_count_ = 0;
+}
+
+bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
+  forget();
+  begin_frame(window);
   if (!learn_pad(window, outer_edge)) return false;
   line_learner_.reserve(model_);
   line_learner_.start();
@@ -107,25 +113,31 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     view_ = attempt->view;
     learn_radii(attempt->last, 1.0);
   }
-  if (!has_outer_edge(attempt->view, outer_edge)) return false;
+  if (!has_circle(attempt->view, 1.0, outer_edge)) return false;
   begin_motion(*attempt, HomographyChange::Zero());
-  is_locked_ = true;
+  is_known_ = true;
   if (window.camera) measure_edges(window, attempt->visible);
   return true;
 }
 
-bool PadTracker::resume(const LumaWindow& window, const Ellipse& outer_edge) {
-  if (!is_locked_ || unmatched_s_ == 0.0) return false;
-  const auto start = with_outer_edge(view_, outer_edge);
-  if (!start) return false;
-  const auto attempt = search_from(window, *start, detected_covariance());
-  if (!is_good(attempt) || !has_outer_edge(attempt->view, outer_edge)) return false;
-  // Two detections determine the shift and the scale; other changes are slower than their errors.
-  HomographyChange velocity = HomographyChange::Zero();
-  velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
-  begin_motion(*attempt, velocity);
-  if (window.camera) measure_edges(window, attempt->visible);
-  return true;
+std::optional<EdgeTrack> PadTracker::resume(const LumaWindow& window, const Ellipse& edge) {
+  if (!is_known_ || (is_locked_ && unmatched_s_ == 0.0)) return std::nullopt;
+  begin_frame(window);
+  for (const PadCircle& circle : model_.circles) {
+    const auto start = with_circle(view_, edge, circle.radius);
+    if (!start) continue;
+    const auto attempt = search_from(window, *start, detected_covariance());
+    if (!is_good(attempt) || !has_circle(attempt->view, circle.radius, edge)) continue;
+    // Two detections determine the shift and the scale; other changes are slower than their errors.
+    HomographyChange velocity = HomographyChange::Zero();
+    if (is_locked_) {
+      velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
+    }
+    begin_motion(*attempt, velocity);
+    measure_edges(window, attempt->visible);
+    return make_track(&*attempt);
+  }
+  return std::nullopt;
 }
 
 // Of the view of a detected pad.
@@ -135,20 +147,22 @@ HomographyCovariance PadTracker::detected_covariance() const {
 }
 
 // The search may have moved to another edge than the detected one.
-bool PadTracker::has_outer_edge(const Eigen::Matrix3d& view, const Ellipse& detected) {
-  const auto found = project_circle(view, 1.0);
+bool PadTracker::has_circle(const Eigen::Matrix3d& view, double radius, const Ellipse& detected) {
+  const auto found = project_circle(view, radius);
   return found && is_same(*found, detected, kOuterEdgeTolerance);
 }
 
 // Starts the filter as after a frame of unknown motion.
 void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& velocity) {
   view_ = matched_view_ = attempt.view;
+  is_locked_ = true;
   unmatched_s_ = 0.0;
   innovation_ratio_ = 1.0;
   motion_ = {};
   motion_.velocity = velocity;
   motion_.pose = inverse_of(attempt.estimate.information);
   motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
+  propagate_errors(attempt.last, HomographyCovariance::Zero());
 }
 
 HomographyFilter PadTracker::predicted(double elapsed_s, double looseness) const {
@@ -198,17 +212,13 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
 }
 
 bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
-  return attempt && attempt->support.coverage >= kMinCoverage &&
-         attempt->support.weakest >= kMajority &&
+  return attempt && attempt->support.coverage >= kMinCoverage && attempt->support.has_all_circles &&
          attempt->support.matched >= HomographyChange::SizeAtCompileTime;
 }
 
 std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double elapsed_s) {
   if (!is_locked_) return std::nullopt;
-  camera_ = window.camera.value_or(default_camera(window.frame_px));
-  lens_ = window.lens;
-  refined_.reset();
-  inner_count_ = 0;
+  begin_frame(window);
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
   double looseness = innovation_ratio_;
   HomographyFilter before = predicted(elapsed_s, looseness);
@@ -251,7 +261,7 @@ void PadTracker::forget_lines(Attempt& attempt) {
   Eigen::Matrix3d affine = attempt.view;
   affine.topLeftCorner<2, 2>() -= centre * attempt.view.row(2).head<2>();
   affine.row(2) = Eigen::RowVector3d(0.0, 0.0, 1.0);
-  attempt.view = with_outer_edge(affine, *outer).value_or(attempt.view);
+  attempt.view = with_circle(affine, *outer).value_or(attempt.view);
 }
 
 void PadTracker::accept(const Attempt& attempt,
@@ -273,10 +283,48 @@ void PadTracker::accept(const Attempt& attempt,
       innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
+  propagate_errors(attempt.last, inverse_of(before.pose));
   judge_lines(attempt.last);
   if (attempt.visible >= kMajority) learn_radii(attempt.last, adaptation);
   view_ = attempt.view;
   unmatched_s_ = 0.0;
+}
+
+// An error of an edge in the model is common to its samples and to all frames, so that averaging
+// does not reduce it. The prior carries its effect from the last frame.
+void PadTracker::propagate_errors(const HomographyChange& change,
+                                  const HomographyCovariance& prior_information) {
+  const HomographyCovariance kept = motion_.pose * prior_information;
+  for (PadCircle& circle : model_.circles) circle.sensitivity = (kept * circle.sensitivity).eval();
+  for (PadLine& line : model_.lines) line.sensitivity = (kept * line.sensitivity).eval();
+  for (const EdgeSample& sample : search_.samples()) {
+    HomographyChange* sensitivity = sensitivity_of(sample.feature);
+    const EdgeCandidate* edge = nearest_candidate(sample, sample.predicted_px(change));
+    if (sensitivity == nullptr || edge == nullptr) continue;
+    const double weight = tukey_weight(edge->distance_px - sample.predicted_px(change), kReachPx) /
+                          (kEdgeSigmaPx * kEdgeSigmaPx);
+    *sensitivity += weight * sample.view.px_per_unit * (motion_.pose * sample.view.row);
+  }
+}
+
+// nullptr for the outer circle, whose radius is the unit.
+HomographyChange* PadTracker::sensitivity_of(int feature) {
+  const auto index = static_cast<std::size_t>(feature);
+  if (index == 0) return nullptr;
+  const std::size_t circles = model_.circles.size();
+  return index < circles ? &model_.circles[index].sensitivity
+                         : &model_.lines[index - circles].sensitivity;
+}
+
+// Of the filter's view, and of the model's errors.
+HomographyCovariance PadTracker::covariance() const {
+  HomographyCovariance errors = HomographyCovariance::Zero();
+  for (const PadCircle& circle : model_.circles) {
+    errors += circle.sensitivity * circle.sensitivity.transpose();
+  }
+  for (const PadLine& line : model_.lines)
+    errors += line.sensitivity * line.sensitivity.transpose();
+  return motion_.pose + kFeatureSigma * kFeatureSigma * errors;
 }
 
 void PadTracker::measure_edges(const LumaWindow& window, double visible) {
@@ -291,10 +339,12 @@ void PadTracker::refine(const LumaWindow& window, double visible) {
   const auto exact =
       refined_outer_edge(window.luma, view_in(window, view_), model_, gain_, refinement_);
   if (!exact) return;
-  const auto view = with_outer_edge(
-      view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
+  const auto view =
+      with_circle(view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
   if (!view) return;
   view_ = *view;
+  for (PadCircle& circle : model_.circles) circle.sensitivity.head<5>().setZero();
+  for (PadLine& line : model_.lines) line.sensitivity.head<5>().setZero();
   refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
 }
 
@@ -354,10 +404,8 @@ void PadTracker::judge_lines(const HomographyChange& change) {
     ++line.visible;
     line.matched += is_matched(sample, change, max_px) ? 1 : 0;
   }
-  std::erase_if(model_.lines, [](const PadLine& line) {
-    const double sigma = 0.5 * std::sqrt(line.visible);  // of the matches, if half are expected
-    return line.matched + 2.0 * sigma < kMajority * line.visible;
-  });
+  std::erase_if(model_.lines,
+                [](const PadLine& line) { return is_refuted(line.matched, line.visible); });
 }
 
 void PadTracker::coast(const Eigen::Matrix3d& prediction,
@@ -370,7 +418,7 @@ void PadTracker::coast(const Eigen::Matrix3d& prediction,
 }
 
 std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
-  const auto ellipse = project_circle(view_, 1.0);
+  const auto ellipse = outline();
   if (!ellipse) return std::nullopt;
   EdgeTrack track;
   track.ellipse = *ellipse;
@@ -379,19 +427,19 @@ std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
   track.coverage = attempt->support.coverage;
   track.outline = attempt->support.outline;
   track.visible = attempt->visible;
-  track.is_visible = track.visible >= kEnoughVisible || motion_.centre_sigma() <= kMaxCentreSigma;
+  track.is_visible = centre_sigma(covariance()) <= kMaxCentreSigma;
   return track;
 }
 
 RingUncertainty PadTracker::uncertainty() const {
   if (refined_) return {refined_->view, refined_->information / kSharedVariance};
-  return {view_, motion_.pose.topLeftCorner<5, 5>().inverse()};
+  return {view_, covariance().topLeftCorner<5, 5>().inverse()};
 }
 
 // The perspective, of which rings alone tell little.
 std::optional<PatternView> PadTracker::pattern() const {
   if (model_.lines.empty()) return std::nullopt;
-  return PatternView{view_, motion_.pose.bottomRightCorner<2, 2>()};
+  return PatternView{view_, covariance().bottomRightCorner<2, 2>()};
 }
 
 Rect PadTracker::region_after(double elapsed_s, int width, int height) const {

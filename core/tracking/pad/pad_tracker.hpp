@@ -49,10 +49,11 @@ class PadTracker {
   /// @return Whether the learned edges match the image.
   [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
 
-  /// Continues with the learned pad where the detector found its outer edge, after the last call of
-  /// track() did not match it. The distance from the last match gives its velocity.
-  /// @return Whether the pad was tracked until then and its edges match the image.
-  [[nodiscard]] bool resume(const LumaWindow& window, const Ellipse& outer_edge);
+  /// Continues with the pad that was locked last where the detector found one of its circles. While
+  /// locked, the distance from the last match gives its velocity.
+  /// @return nullopt if no pad is known, the last call of track() matched it, or its edges do not
+  ///         match the image.
+  [[nodiscard]] std::optional<EdgeTrack> resume(const LumaWindow& window, const Ellipse& edge);
 
   /// @param elapsed_s  Since the last call.
   /// @return nullopt if the pad is lost.
@@ -66,6 +67,8 @@ class PadTracker {
   }
 
   [[nodiscard]] bool is_locked() const { return is_locked_; }
+  /// The outer circle in the last frame, as in EdgeTrack. nullopt if it is not an ellipse.
+  [[nodiscard]] std::optional<Ellipse> outline() const { return project_circle(view_, 1.0); }
 
   /// Uncertainty of the outer edge in the last frame: from its refinement, else from all edges and
   /// the motion.
@@ -77,7 +80,10 @@ class PadTracker {
   }
   /// The view by the lines of the pad's pattern; nullopt without lines.
   [[nodiscard]] std::optional<PatternView> pattern() const;
+  /// Ends tracking. The pad stays known to resume().
   void release() { is_locked_ = false; }
+  /// Ends tracking and forgets the pad.
+  void forget() { is_locked_ = is_known_ = false; }
 
   /// Region of the next frame to pass to track() [px]; covers its search range.
   /// @param elapsed_s  Until the next frame.
@@ -92,6 +98,7 @@ class PadTracker {
     double visible = 0.0;
   };
 
+  void begin_frame(const LumaWindow& window);
   [[nodiscard]] HomographyFilter predicted(double elapsed_s, double looseness) const;
   [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
                                                    const Eigen::Matrix3d& start,
@@ -106,8 +113,14 @@ class PadTracker {
               const HomographyFilter& before,
               double looseness,
               double elapsed_s);
+  void propagate_errors(const HomographyChange& change,
+                        const HomographyCovariance& prior_information);
+  [[nodiscard]] HomographyChange* sensitivity_of(int feature);
+  [[nodiscard]] HomographyCovariance covariance() const;
   [[nodiscard]] HomographyCovariance detected_covariance() const;
-  [[nodiscard]] static bool has_outer_edge(const Eigen::Matrix3d& view, const Ellipse& detected);
+  [[nodiscard]] static bool has_circle(const Eigen::Matrix3d& view,
+                                       double radius,
+                                       const Ellipse& detected);
   void begin_motion(const Attempt& attempt, const HomographyChange& velocity);
   void measure_edges(const LumaWindow& window, double visible);
   void refine(const LumaWindow& window, double visible);
@@ -139,6 +152,7 @@ class PadTracker {
   double unmatched_s_ = 0.0;       // since the last match
   double last_coverage_ = 0.0;     // of the search near the prediction
   bool is_locked_ = false;
+  bool is_known_ = false;  // the model is that of a pad that was locked
 };
 
 }  // namespace ellipse

@@ -40,17 +40,17 @@ TEST(Homography, IsAlignedToAGivenOuterEdge) {
                            translated(outer_edge, 3.0, -2.0),
                            Ellipse{312.0, 171.0, 90.0, 50.0, 0.7},
                            Ellipse{300.0, 165.0, 70.0, 70.0, 0.0}}) {
-    const auto laid = with_outer_edge(view, e);
+    const auto laid = with_circle(view, e);
     ASSERT_TRUE(laid);
     EXPECT_LT(max_difference_px(project_circle(*laid, 1.0).value(), e), 1e-8);
   }
-  EXPECT_LT((with_outer_edge(view, outer_edge).value() - view).norm(), 1e-8 * view.norm());
+  EXPECT_LT((with_circle(view, outer_edge).value() - view).norm(), 1e-8 * view.norm());
   const Ellipse moved_edge = translated(outer_edge, 3.0, -2.0);
   const Vector2d mark(0.4, 0.1);  // moves with the edge
   const Vector2d by =
-      projected(with_outer_edge(view, moved_edge).value(), mark) - projected(view, mark);
+      projected(with_circle(view, moved_edge).value(), mark) - projected(view, mark);
   EXPECT_LT((by - Vector2d(3.0, -2.0)).norm(), 0.2);
-  EXPECT_FALSE(with_outer_edge(Matrix3d::Zero(), outer_edge));
+  EXPECT_FALSE(with_circle(Matrix3d::Zero(), outer_edge));
 }
 
 TEST(Homography, RowsAreTheDerivativesAlongTheNormal) {

@@ -24,7 +24,7 @@ struct Shares {
 
 // The normalised squared error of an ellipse whose outline is that of `truth`.
 double squared_error(const Target& target, const Ellipse& truth) {
-  const auto view = with_outer_edge(target.uncertainty.view, truth);
+  const auto view = with_circle(target.uncertainty.view, truth);
   if (!view) return 1e9;
   Eigen::Matrix3d change = target.uncertainty.view.inverse() * *view;
   change = change / change(2, 2) - Eigen::Matrix3d::Identity();

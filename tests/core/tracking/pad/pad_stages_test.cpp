@@ -656,7 +656,7 @@ TEST(Support, DecreasesWithTheErrorOfTheView) {
     coverage = support.coverage;
     if (off > 0.0) continue;
     EXPECT_EQ(support.coverage, 1.0);
-    EXPECT_EQ(support.weakest, 1.0);
+    EXPECT_TRUE(support.has_all_circles);
     EXPECT_NEAR(support.gain, 0.75, 0.15);
   }
   EXPECT_LT(coverage, 0.3);
@@ -670,8 +670,16 @@ TEST(Support, ReportsMissingCircles) {
   search.sample(model, image_from_pad(kPad), picture.view());
   search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
   const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
-  EXPECT_LT(support.weakest, 0.1);
+  EXPECT_FALSE(support.has_all_circles);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
+}
+
+TEST(Refuted, NeedsMoreThanAFewUnmatchedSamples) {
+  EXPECT_FALSE(is_refuted(0, 0));
+  EXPECT_FALSE(is_refuted(0, 3));
+  EXPECT_TRUE(is_refuted(0, 5));
+  EXPECT_FALSE(is_refuted(20, 40));
+  EXPECT_TRUE(is_refuted(13, 40));
 }
 
 TEST(Support, ReportsTheLight) {

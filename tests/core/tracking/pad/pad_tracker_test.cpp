@@ -44,6 +44,11 @@ Picture frame_of(const Ellipse& pad, const Scene& scene = pad_scene(), std::uint
   return rendered(scene, pad, kWidth, kHeight, number);
 }
 
+// Of the affine view of kPad.
+Ellipse circle_of_pad(double radius) {
+  return {kPad.cx, kPad.cy, radius * kPad.semi_major, radius * kPad.semi_minor, kPad.angle_rad};
+}
+
 Picture empty_frame() {
   return frame_of(kPad, pad_scene(Pattern::kNone), 1);
 }
@@ -313,7 +318,7 @@ TEST(PadTracker, ResumesAFastPadAndThenFollowsIt) {
   }
 }
 
-TEST(PadTracker, ResumesOnlyTheUnmatchedPadAtItsOuterEdge) {
+TEST(PadTracker, ResumesAnyCircleOfAnUnmatchedPad) {
   const Picture picture = frame_of(kPad);
   PadTracker tracker;
   EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "never locked";
@@ -321,15 +326,28 @@ TEST(PadTracker, ResumesOnlyTheUnmatchedPadAtItsOuterEdge) {
   EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "matched";
   (void)tracker.track(whole(empty_frame()), kFrame_s);
   EXPECT_FALSE(tracker.resume(whole(empty_frame()), kPad)) << "no edges";
-  Ellipse inner = kPad;
-  inner.semi_major *= 0.5;
-  inner.semi_minor *= 0.5;
-  EXPECT_FALSE(tracker.resume(whole(picture), inner)) << "another circle";
+  EXPECT_FALSE(tracker.resume(whole(picture), circle_of_pad(0.5))) << "another circle";
   EXPECT_TRUE(tracker.is_locked());
   EXPECT_TRUE(tracker.resume(whole(picture), kPad));
+
   (void)tracker.track(whole(empty_frame()), kFrame_s);
+  const auto inside =
+      tracker.resume(whole(picture), circle_of_pad(inner_radius(pad_scene().pad).value()));
+  ASSERT_TRUE(inside && inside->is_visible);
+  EXPECT_LT(max_difference_px(inside->ellipse, kPad), 0.3);
+}
+
+TEST(PadTracker, ResumesAReleasedPadUntilItIsForgotten) {
+  const Picture picture = frame_of(kPad);
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
   tracker.release();
-  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "released";
+  EXPECT_FALSE(tracker.is_locked());
+  EXPECT_TRUE(tracker.resume(whole(picture), kPad));
+  EXPECT_TRUE(tracker.is_locked());
+  tracker.forget();
+  EXPECT_FALSE(tracker.is_locked());
+  EXPECT_FALSE(tracker.resume(whole(picture), kPad));
 }
 
 TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
