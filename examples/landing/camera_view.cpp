@@ -41,4 +41,10 @@ Vector3d pad_from_body(const Rig& rig, const Motion& vehicle, const Vector3d& pa
   return vehicle.world_from_body * (rig.body_from_camera() * pad_in_camera + rig.position);
 }
 
+Vector3d errors_from_body(const Rig& rig, const Motion& vehicle, const Matrix3d& covariance) {
+  const Matrix3d world_from_camera =
+      vehicle.world_from_body.toRotationMatrix() * rig.body_from_camera();
+  return (world_from_camera * covariance * world_from_camera.transpose()).diagonal().cwiseSqrt();
+}
+
 }  // namespace landing

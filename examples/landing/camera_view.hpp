@@ -36,4 +36,10 @@ struct Rig {
                                             const Motion& vehicle,
                                             const Eigen::Vector3d& pad_in_camera);
 
+/// Standard deviations of that vector's coordinates [m].
+/// @param covariance  Of the position in the camera frame [m^2].
+[[nodiscard]] Eigen::Vector3d errors_from_body(const Rig& rig,
+                                               const Motion& vehicle,
+                                               const Eigen::Matrix3d& covariance);
+
 }  // namespace landing

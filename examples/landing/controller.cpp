@@ -70,7 +70,7 @@ void Controller::look(const Observation& seen) {
   }
   // An attitude error, which the picture cannot show, rotates the measurement.
   const double attitude = 0.01 + 0.01 * seen.pad->norm();
-  const double error = std::hypot(attitude, seen.error);
+  const Vector3d error = (seen.error.array().square() + attitude * attitude).sqrt();
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
     consecutive_ = 0;
     rejected_ = rejected_ % kMaxRejected + 1;

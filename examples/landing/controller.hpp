@@ -38,7 +38,7 @@ struct ControllerSettings {
   double max_unseen_s = 0.6;          ///< Maximum time without detection while descending,
   double max_unseen_low_s = 1.5;      ///< and below `blind_height`.
   double blind_height = 1.0;          ///< Below it the camera sees little of the pad [m].
-  double last_height = 0.2;           ///< Below it the vehicle always lands [m].
+  double last_height = 0.4;           ///< Below it no climb stops the descent in time [m].
   double max_off_touching = 0.22;     ///< Maximum distance from the centre at touchdown [m].
 };
 
@@ -51,10 +51,10 @@ struct Radio {
 /// A measurement and the vehicle's state estimate at that time.
 struct Observation {
   double time_s = 0.0;
-  Motion own;                          ///< The autopilot's estimate.
-  std::optional<Eigen::Vector3d> pad;  ///< Vector from the body's origin, in world axes [m].
-  double error = 0.0;             ///< Its standard deviation as estimated from the picture [m].
-  double visible_fraction = 1.0;  ///< Visible fraction of the pad's outline.
+  Motion own;                            ///< The autopilot's estimate.
+  std::optional<Eigen::Vector3d> pad;    ///< Vector from the body's origin, in world axes [m].
+  Eigen::Vector3d error{0.0, 0.0, 0.0};  ///< Its standard deviations by the picture alone [m].
+  double visible_fraction = 1.0;         ///< Visible fraction of the pad's outline.
   std::optional<Radio> radio;
 };
 

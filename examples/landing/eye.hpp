@@ -16,10 +16,10 @@ namespace landing {
 /// A method's result for one picture.
 struct Look {
   bool has_target = false;
-  std::optional<Eigen::Vector3d> position;  ///< Pad centre in the camera frame [m].
-  double error = 0.0;                       ///< Standard deviation of the position [m].
-  double visible_fraction = 0.0;            ///< Visible fraction of the outline.
-  Sample sample;                            ///< The picture with its metadata.
+  std::optional<Eigen::Vector3d> position;               ///< Pad centre in the camera frame [m].
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of the position [m^2].
+  double visible_fraction = 0.0;                         ///< Visible fraction of the outline.
+  Sample sample;                                         ///< The picture with its metadata.
 };
 
 /// Renders a picture into an image.

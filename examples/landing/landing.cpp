@@ -125,7 +125,7 @@ class Run {
         });
     if (look.position) {
       seen.pad = pad_from_body(flight_.rig, seen.own, *look.position);
-      seen.error = look.error;
+      seen.error = errors_from_body(flight_.rig, seen.own, look.covariance);
       seen.visible_fraction = look.visible_fraction;
     }
     under_way_.push_back(seen);

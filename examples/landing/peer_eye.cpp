@@ -20,7 +20,7 @@ Look PeerEye::look(const Eigen::Vector3d& gravity, const Draw& draw) {
   look.has_target = seen.has_value();
   if (seen) {
     look.position = seen->position;
-    look.error = seen->error();
+    look.covariance.diagonal().setConstant(seen->error() * seen->error());
     look.visible_fraction = 1.0;
   }
   return look;

@@ -18,7 +18,7 @@ struct Sighting {
   Eigen::Vector3d position;  ///< Pad centre in the camera frame [m].
   double half_size_px;       ///< Half the marker's size in the picture.
 
-  /// Standard deviation of the position [m]. Distance is inversely proportional to the marker's
+  /// Standard deviation of each coordinate [m]. Distance is inversely proportional to the marker's
   /// size, so both have the same relative error: that of one edge.
   [[nodiscard]] double error() const { return position.norm() * kPixelError_px / half_size_px; }
 };

@@ -52,8 +52,8 @@ Look PipelineEye::look(const Eigen::Vector3d& gravity, const Draw& draw) {
   look.has_target = meta != nullptr;
   if (look.has_target && meta->has_position != FALSE) {
     look.position = {meta->position_x, meta->position_y, meta->position_z};
-    const gdouble* covariance = meta->position_covariance;  // xx, xy, xz, yy, yz, zz
-    look.error = std::sqrt(covariance[0] + covariance[3] + covariance[5]);
+    const gdouble* c = meta->position_covariance;  // xx, xy, xz, yy, yz, zz
+    look.covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
     look.visible_fraction = meta->visible_fraction;
   }
   return look;

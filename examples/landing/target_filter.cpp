@@ -88,15 +88,15 @@ void TargetFilter::move_to(double time_s) {
   time_s_ = time_s;
 }
 
-bool TargetFilter::see(double time_s, const Vector3d& position, double error) {
+bool TargetFilter::see(double time_s, const Vector3d& position, const Vector3d& error) {
   move_to(time_s);
-  const double variance = error * error;
+  const Vector3d variance = error.cwiseAbs2();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (!(normalized_innovation(axis, position[i], variance) <= kGate)) return false;  // or NaN
+    if (!(normalized_innovation(axis, position[i], variance[i]) <= kGate)) return false;  // or NaN
   }
   for (Eigen::Index i = 0; i < 3; ++i) {
-    correct(axes_[static_cast<std::size_t>(i)], 0, position[i], variance);
+    correct(axes_[static_cast<std::size_t>(i)], 0, position[i], variance[i]);
   }
   return true;
 }

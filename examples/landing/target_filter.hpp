@@ -18,9 +18,9 @@ class TargetFilter {
                double velocity_error);
 
   /// Updates with a detection, in order of time.
-  /// @param error  Standard deviation of each coordinate [m].
+  /// @param error  Standard deviations of the coordinates [m].
   /// @return false if it is rejected as an outlier and ignored.
-  bool see(double time_s, const Eigen::Vector3d& position, double error);
+  bool see(double time_s, const Eigen::Vector3d& position, const Eigen::Vector3d& error);
 
   /// Forgets the height, which came from a wrong object, and starts at this one [m].
   void restart_height(double height);

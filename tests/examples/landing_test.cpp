@@ -140,19 +140,19 @@ TEST(TargetFilter, EstimatesVelocityAndRejectsOutliers) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
   for (int i = 0; i <= 60; ++i) {
     const double time_s = i / 30.0;
-    EXPECT_TRUE(filter.see(time_s, {3.0 * time_s, 0.0, 0.0}, 0.02)) << i;
+    EXPECT_TRUE(filter.see(time_s, {3.0 * time_s, 0.0, 0.0}, Vector3d::Constant(0.02))) << i;
   }
   EXPECT_NEAR(filter.at(2.5).velocity.x(), 3.0, 0.1);
   EXPECT_NEAR(filter.at(2.5).position.x(), 7.5, 0.1);
-  EXPECT_FALSE(filter.see(2.1, {3.0 * 2.1, 4.0, 0.0}, 0.02));
+  EXPECT_FALSE(filter.see(2.1, {3.0 * 2.1, 4.0, 0.0}, Vector3d::Constant(0.02)));
   EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
 }
 
 TEST(TargetFilter, RejectsWhatIsNotANumber) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(filter.see(0.1, {0.0, nan, 0.0}, 0.02));
-  EXPECT_FALSE(filter.see(0.1, Vector3d::Zero(), nan));
+  EXPECT_FALSE(filter.see(0.1, {0.0, nan, 0.0}, Vector3d::Constant(0.02)));
+  EXPECT_FALSE(filter.see(0.1, Vector3d::Zero(), {0.0, nan, 0.0}));
   EXPECT_TRUE(filter.at(0.2).position.allFinite());
 }
 
@@ -172,11 +172,11 @@ TEST(TargetFilter, DampsTheVerticalVelocityAfterALoss) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1);
   for (int i = 0; i < 15; ++i) {
     const double time_s = i / 30.0;
-    EXPECT_TRUE(filter.see(time_s, {0.0, 0.0, -0.3 * time_s}, 0.05)) << i;
+    EXPECT_TRUE(filter.see(time_s, {0.0, 0.0, -0.3 * time_s}, Vector3d::Constant(0.05))) << i;
   }
   for (int i = 1; i <= 60; ++i) filter.hear(i, {0.0, 0.0}, {0.0, 0.0}, 1.8, 0.4, i < 3);
   EXPECT_GT(filter.at(60.0).position.z(), -1.5);
-  EXPECT_TRUE(filter.see(60.1, {0.2, 0.1, 3.0}, 0.05));
+  EXPECT_TRUE(filter.see(60.1, {0.2, 0.1, 3.0}, Vector3d::Constant(0.05)));
 }
 
 // A vehicle that follows its commands without delay, over a static pad.
@@ -195,7 +195,7 @@ class Hover {
       observation.time_s = frame_ / 30.0;
       observation.own = own_;
       if (is_visible) observation.pad = aside_ - own_.position;
-      observation.error = error_;
+      observation.error.setConstant(error_);
       observation.visible_fraction = visible_fraction;
       last_ = controller_->update(observation.time_s, own_, observation);
       own_.velocity = last_.velocity;
