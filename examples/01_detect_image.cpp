@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Uses the core library without GStreamer: detects the ellipses in a picture and selects the
-// target.
+// target. For a stream, ellipse::Tracker (core/tracking/tracker.hpp) takes frame by frame.
 //   ./01_detect_image picture.jpg
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/detection/contours/contour_detector.hpp"
+#include "core/detection/detectors.hpp"
 #include "core/detection/target_selection.hpp"
 
 int main(int argc, char** argv) {
@@ -15,8 +15,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s PICTURE\n", argv[0]);
     return 1;
   }
-  ellipse::ContourDetector detector;
-  const auto found = detector.detect(
+  const auto detector = ellipse::make_detector(ellipse::DetectorKind::kArcs);
+  const auto found = detector->detect(
       {picture.data, picture.cols, picture.rows, static_cast<std::ptrdiff_t>(picture.step)},
       ellipse::Thresholds{});
   for (const ellipse::Detection& d : found) {

@@ -12,6 +12,7 @@ possible, and the variance is large.
 """
 import json
 import math
+import signal
 import sys
 
 UNKNOWN = 1e6  # variance [rad^2]
@@ -58,6 +59,7 @@ def document(line, target, frame_id):
 
 
 def main():
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends quietly if its reader does, such as head
     frame_id = sys.argv[1] if len(sys.argv) > 1 else "camera_optical_frame"
     for text in sys.stdin:
         line = json.loads(text)

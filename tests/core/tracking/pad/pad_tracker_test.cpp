@@ -433,6 +433,30 @@ TEST(PadTracker, ContinuesWithLittleOfTheRingInView) {
   EXPECT_EQ(tracked, nearly_hidden);
 }
 
+// The pad stands still with only its pattern in view.
+TEST(PadTracker, DoesNotAverageTheErrorsOfItsModelAway) {
+  const Scene scene = scene_by_name("touchdown", 201);
+  SceneRenderer renderer(scene);
+  Picture picture(kWidth, kHeight);
+  PadTracker tracker;
+  const auto centre_sigma_after = [&](int frames) {
+    for (int i = 0; i < frames; ++i) (void)tracker.track(whole(picture), kFrame_s);
+    return std::sqrt(tracker.pattern().value().centre_covariance.trace());
+  };
+  for (int i = 0; i < 75; ++i) {
+    const Truth truth = renderer.render(3.0 + i / 30.0, std::uint64_t(i), picture.writable());
+    if (i == 0) ASSERT_TRUE(tracker.lock(whole(picture), *truth.outer_edge));
+    if (i > 0) ASSERT_TRUE(tracker.track(whole(picture), kFrame_s)) << i;
+    if (i > 40 && truth.visible_fraction < 0.05) break;
+  }
+  const double soon = centre_sigma_after(10);
+  const double late = centre_sigma_after(100);
+  RecordProperty("soon", std::to_string(soon));
+  RecordProperty("late", std::to_string(late));
+  EXPECT_GT(late, 0.001);  // a line's error in the model is .0014
+  EXPECT_GT(late, 0.5 * soon);
+}
+
 TEST(PadTracker, IsDeterministic) {
   PadTracker trackers[2];
   SceneRenderer renderer(scene_by_name("approach", 201));
