@@ -445,8 +445,9 @@ TEST(PadTracker, DoesNotAverageTheErrorsOfItsModelAway) {
   };
   for (int i = 0; i < 75; ++i) {
     const Truth truth = renderer.render(3.0 + i / 30.0, std::uint64_t(i), picture.writable());
-    if (i == 0) ASSERT_TRUE(tracker.lock(whole(picture), *truth.outer_edge));
-    if (i > 0) ASSERT_TRUE(tracker.track(whole(picture), kFrame_s)) << i;
+    const bool is_found = i == 0 ? tracker.lock(whole(picture), *truth.outer_edge)
+                                 : tracker.track(whole(picture), kFrame_s).has_value();
+    ASSERT_TRUE(is_found) << i;
     if (i > 40 && truth.visible_fraction < 0.05) break;
   }
   const double soon = centre_sigma_after(10);
