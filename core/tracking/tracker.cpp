@@ -214,7 +214,7 @@ bool Tracker::is_inner_edge(const Ellipse& e) const {
   const auto outer = pad_tracker_->is_locked() ? pad_tracker_->outline() : std::nullopt;
   if (!outer || judge_->log_odds() < required_log_odds()) return false;
   if (is_same(e, *outer, kSameTarget)) return false;
-  if (is_too_large(*outer) && lies_in(e, *outer)) return true;
+  if (judge_->is_sure() && is_too_large(*outer) && lies_in(e, *outer)) return true;
   return are_concentric(e, *outer) && e.semi_major < outer->semi_major;
 }
 
@@ -231,7 +231,9 @@ std::optional<Target> Tracker::resume(const ScopedFrame& frame, const Target& de
   const auto track = pad_tracker_->resume(window, detection.ellipse);
   if (!track) return std::nullopt;
   add_detection(track->ellipse, log_odds(detection.probability));
-  return target_of(*track, frame, detection.search_region);
+  std::optional<Target> target = target_of(*track, frame, detection.search_region);
+  if (target && id_ != last_id_) target->state = TargetState::kDetected;
+  return target;
 }
 
 // Replaces or confirms the hypothesis by a detection. Locks only if most of its perimeter is
