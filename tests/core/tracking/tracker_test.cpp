@@ -291,6 +291,32 @@ TEST_F(InnerEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
   EXPECT_EQ(corrected_at(-1.0), 1);
 }
 
+// After the ring, a disc of the size of its inner circle: an inner edge while the ring is
+// predicted, another target once the ring is lost.
+TEST(FollowingTracker, TakesNoInnerEdgeOfAPredictedPad) {
+  const Film ring(plain_ring());
+  Scene disc_scene = plain_ring();
+  disc_scene.pad.pattern = Pattern::kDisc;
+  const Ellipse outer = Film::truth_at(0);
+  Ellipse inner = outer;
+  inner.semi_major *= 0.8;
+  inner.semi_minor *= 0.8;
+  const Picture disc = rendered(disc_scene, inner, 320, 240);
+  Tracker tracker;
+  for (int frame = 0; frame < 20; ++frame) {
+    ASSERT_TRUE(tracker.process(ring.at(0).view(), frame * kFrameNs)) << frame;
+  }
+  for (int frame = 20; frame < 60; ++frame) {
+    const auto target = tracker.process(disc.view(), frame * kFrameNs);
+    if (frame < 28 && target) {
+      EXPECT_GT(target->ellipse.semi_major, 0.9 * outer.semi_major) << frame;
+    }
+    if (frame < 40) continue;
+    ASSERT_TRUE(target) << frame;
+    EXPECT_LT(max_difference_px(target->ellipse, inner), 0.5) << frame;
+  }
+}
+
 // Half a disc alone is ambiguous; the probability grows as more of it becomes visible.
 TEST(FollowingTracker, ConfirmsOverSeveralFrames) {
   Scene scene = plain_ring();
