@@ -11,14 +11,13 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kDirections = 8;  // over half a turn, see maxima_distances()
-constexpr double kWidest = 6.0;         // largest corrected gap [px]
-constexpr int kPhases = 8;              // sub-pixel positions of the bar to average over
+constexpr double kWidest = 6.0;    // largest corrected gap [px]
+constexpr std::size_t kSteps = 8;  // of averages: over half a turn, and over a pixel
 
 using PerWidth = std::array<double, 31>;  // for widths from 0 to kWidest
 
 Eigen::Vector2d direction(std::size_t i) {
-  const double angle = std::numbers::pi * static_cast<double>(i) / kDirections;
+  const double angle = std::numbers::pi * static_cast<double>(i) / kSteps;
   return {std::cos(angle), std::sin(angle)};
 }
 
@@ -49,8 +48,8 @@ double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
 // with the largest gradient and its neighbours, averaged over sub-pixel positions of the bar.
 double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
   double sum = 0.0;
-  for (int phase = 0; phase < kPhases; ++phase) {
-    double x = (phase + 0.5) / kPhases;
+  for (std::size_t phase = 0; phase < kSteps; ++phase) {
+    double x = (static_cast<double>(phase) + 0.5) / kSteps;
     std::array<double, 3> slopes = {slope_of_bar(normal, x - 1.0, width),
                                     slope_of_bar(normal, x, width),
                                     slope_of_bar(normal, x + 1.0, width)};
@@ -61,7 +60,7 @@ double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
     const double curvature = slopes[0] - 2.0 * slopes[1] + slopes[2];
     sum += x + 0.5 * (slopes[0] - slopes[2]) / curvature;
   }
-  return normal.x() * sum / kPhases;
+  return normal.x() * sum / kSteps;
 }
 
 // Distance between a bar's gradient maxima by its width, for normals at 0, 1/16 and 1/8 of a turn
@@ -109,7 +108,7 @@ double min_maxima_distance() {
 bool is_thin(const RingEdges& maxima) {
   const Eigen::Matrix2d outer = stretch_of(maxima.outer);
   const Eigen::Matrix2d inner = stretch_of(maxima.inner);
-  for (std::size_t i = 0; i < kDirections; ++i) {
+  for (std::size_t i = 0; i < kSteps; ++i) {
     if (tangent_distance(outer, i) - tangent_distance(inner, i) > kWidest) return false;
   }
   return true;
@@ -120,9 +119,9 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
   const Eigen::Matrix2d outer = stretch_of(maxima.outer);
   const Eigen::Matrix2d inner = stretch_of(maxima.inner);
   const Eigen::Matrix2d middle = 0.5 * (outer + inner);
-  std::array<double, kDirections> radii;  // of the ring's middle line [px]
+  std::array<double, kSteps> radii;  // of the ring's middle line [px]
   double gaps = 0.0;
-  for (std::size_t i = 0; i < kDirections; ++i) {
+  for (std::size_t i = 0; i < kSteps; ++i) {
     radii[i] = tangent_distance(middle, i);
     gaps += tangent_distance(outer, i) - tangent_distance(inner, i);
   }
@@ -134,7 +133,7 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
   float high = 2.0F;
   for (float share = 1.0F; low < share && share < high; share = 0.5F * (low + high)) {
     double predicted = 0.0;
-    for (std::size_t i = 0; i < kDirections; ++i) {
+    for (std::size_t i = 0; i < kSteps; ++i) {
       predicted += maxima_distance(share * radii[i], i);
     }
     (predicted < gaps ? low : high) = share;

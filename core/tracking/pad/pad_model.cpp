@@ -153,4 +153,10 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
   return model;
 }
 
+PadLine* line_of(PadModel& model, int feature) {
+  const int line = feature - static_cast<int>(model.circles.size());
+  if (line < 0 || line >= static_cast<int>(model.lines.size())) return nullptr;
+  return &model.lines[static_cast<std::size_t>(line)];
+}
+
 }  // namespace ellipse

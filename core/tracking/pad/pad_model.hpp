@@ -39,7 +39,8 @@ struct PadLine {
   double contrast = 0.0;      ///< [grey levels]
   int visible = 0;            ///< Visible samples in all frames.
   int matched = 0;            ///< Of these, matched ones.
-  /// Error of the tracked view per error of the line's position [1/radius].
+  /// Change of the tracked view by an error of the line's position of a radius, see
+  /// core/tracking/pad/model_errors.hpp.
   HomographyChange sensitivity = HomographyChange::Zero();
 };
 
@@ -48,6 +49,10 @@ struct PadModel {
   std::vector<PadCircle> circles;  ///< The outer one first.
   std::vector<PadLine> lines;
 };
+
+/// The line of a sample's feature, see EdgeSample::feature. nullptr for a circle, or if the model's
+/// lines have been removed since.
+[[nodiscard]] PadLine* line_of(PadModel& model, int feature);
 
 /// Learns the circles of a pad: steps of the median brightness over all angles as a function of the
 /// radius.

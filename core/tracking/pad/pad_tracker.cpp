@@ -11,8 +11,8 @@
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
-#include "core/geometry/least_squares.hpp"
 #include "core/tracking/frame_clock.hpp"
+#include "core/tracking/pad/model_errors.hpp"
 #include "core/tracking/roi.hpp"
 
 namespace ellipse {
@@ -28,7 +28,6 @@ constexpr double kMaxReach = 0.14;         // beyond it [radii]
 constexpr int kMaxSteps = 3;               // searches of a frame, and before a lock
 constexpr double kEnoughVisible = 0.3;     // share of the outer circle, to refine it
 constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
-constexpr double kFeatureSigma = 0.0014;   // of an inner circle or line in the model [radii]
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
 constexpr double kSharedVariance = 1.3;    // of the refined edge: errors of samples are correlated
 
@@ -290,41 +289,15 @@ void PadTracker::accept(const Attempt& attempt,
   unmatched_s_ = 0.0;
 }
 
-// An error of an edge in the model is common to its samples and to all frames, so that averaging
-// does not reduce it. The prior carries its effect from the last frame.
 void PadTracker::propagate_errors(const HomographyChange& change,
                                   const HomographyCovariance& prior_information) {
-  const HomographyCovariance kept = motion_.pose * prior_information;
-  for (PadCircle& circle : model_.circles) circle.sensitivity = (kept * circle.sensitivity).eval();
-  for (PadLine& line : model_.lines) line.sensitivity = (kept * line.sensitivity).eval();
-  for (const EdgeSample& sample : search_.samples()) {
-    HomographyChange* sensitivity = sensitivity_of(sample.feature);
-    const EdgeCandidate* edge = nearest_candidate(sample, sample.predicted_px(change));
-    if (sensitivity == nullptr || edge == nullptr) continue;
-    const double weight = tukey_weight(edge->distance_px - sample.predicted_px(change), kReachPx) /
-                          (kEdgeSigmaPx * kEdgeSigmaPx);
-    *sensitivity += weight * sample.view.px_per_unit * (motion_.pose * sample.view.row);
-  }
-}
-
-// nullptr for the outer circle, whose radius is the unit.
-HomographyChange* PadTracker::sensitivity_of(int feature) {
-  const auto index = static_cast<std::size_t>(feature);
-  if (index == 0) return nullptr;
-  const std::size_t circles = model_.circles.size();
-  return index < circles ? &model_.circles[index].sensitivity
-                         : &model_.lines[index - circles].sensitivity;
+  propagate_model_errors(
+      model_, search_.samples(), {change, motion_.pose, prior_information, kReachPx, kEdgeSigmaPx});
 }
 
 // Of the filter's view, and of the model's errors.
 HomographyCovariance PadTracker::covariance() const {
-  HomographyCovariance errors = HomographyCovariance::Zero();
-  for (const PadCircle& circle : model_.circles) {
-    errors += circle.sensitivity * circle.sensitivity.transpose();
-  }
-  for (const PadLine& line : model_.lines)
-    errors += line.sensitivity * line.sensitivity.transpose();
-  return motion_.pose + kFeatureSigma * kFeatureSigma * errors;
+  return motion_.pose + model_error_covariance(model_);
 }
 
 void PadTracker::measure_edges(const LumaWindow& window, double visible) {
@@ -343,8 +316,7 @@ void PadTracker::refine(const LumaWindow& window, double visible) {
       with_circle(view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
   if (!view) return;
   view_ = *view;
-  for (PadCircle& circle : model_.circles) circle.sensitivity.head<5>().setZero();
-  for (PadLine& line : model_.lines) line.sensitivity.head<5>().setZero();
+  clear_ring_errors(model_);
   refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
 }
 
@@ -396,13 +368,12 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
 // Removes lines that are unmatched significantly more often than not, such as edges of shadows or
 // occluders.
 void PadTracker::judge_lines(const HomographyChange& change) {
-  const auto circles = static_cast<int>(model_.circles.size());
   const double max_px = tolerance_px(radius_px());
   for (const EdgeSample& sample : search_.samples()) {
-    if (sample.feature < circles || !sample.is_visible) continue;
-    PadLine& line = model_.lines[static_cast<std::size_t>(sample.feature - circles)];
-    ++line.visible;
-    line.matched += is_matched(sample, change, max_px) ? 1 : 0;
+    PadLine* line = line_of(model_, sample.feature);
+    if (line == nullptr || !sample.is_visible) continue;
+    ++line->visible;
+    line->matched += is_matched(sample, change, max_px) ? 1 : 0;
   }
   std::erase_if(model_.lines,
                 [](const PadLine& line) { return is_refuted(line.matched, line.visible); });

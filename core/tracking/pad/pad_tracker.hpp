@@ -115,7 +115,6 @@ class PadTracker {
               double elapsed_s);
   void propagate_errors(const HomographyChange& change,
                         const HomographyCovariance& prior_information);
-  [[nodiscard]] HomographyChange* sensitivity_of(int feature);
   [[nodiscard]] HomographyCovariance covariance() const;
   [[nodiscard]] HomographyCovariance detected_covariance() const;
   [[nodiscard]] static bool has_circle(const Eigen::Matrix3d& view,

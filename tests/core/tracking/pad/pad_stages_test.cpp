@@ -12,8 +12,10 @@
 
 #include "core/edges/noise.hpp"
 #include "core/tracking/pad/edge_search.hpp"
+#include "core/tracking/pad/homography_filter.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
 #include "core/tracking/pad/line_learner.hpp"
+#include "core/tracking/pad/model_errors.hpp"
 #include "core/tracking/pad/pad_model.hpp"
 #include "tests/support/picture.hpp"
 
@@ -672,6 +674,47 @@ TEST(Support, ReportsMissingCircles) {
   const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
   EXPECT_FALSE(support.has_all_circles);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
+}
+
+TEST(LineOf, IsNoCircleAndNoRemovedLine) {
+  PadModel model = ring_model();
+  model.lines.resize(2);
+  EXPECT_EQ(line_of(model, 0), nullptr);
+  EXPECT_EQ(line_of(model, 1), nullptr);
+  EXPECT_EQ(line_of(model, 3), &model.lines[1]);
+  EXPECT_EQ(line_of(model, 4), nullptr);
+  model.lines.clear();
+  EXPECT_EQ(line_of(model, 3), nullptr);
+}
+
+// An inner circle that is the only edge: the view errs by the error of its radius, however many
+// samples and frames there are.
+TEST(ModelErrors, DoNotFallWithTheNumberOfSamplesOrFrames) {
+  const SearchedRing searched(HomographyChange::Zero());
+  std::vector<EdgeSample> inner;
+  for (const EdgeSample& sample : searched.search.samples()) {
+    if (sample.feature == 1) inner.push_back(sample);
+  }
+  PadModel model = ring_model();
+  HomographyPrior prior = weak_prior();
+  prior.information *= 1e-4;
+  double sigma = 0.0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto estimate = solve_homography(inner, prior, 6.0, 6.0, 0.6);
+    ASSERT_TRUE(estimate);
+    const HomographyCovariance covariance = inverse_of(estimate->information);
+    propagate_model_errors(
+        model, inner, {estimate->change, covariance, prior.information, 6.0, 0.6});
+    const double now = std::sqrt(model_error_covariance(model)(2, 2));
+    if (frame > 0) {
+      EXPECT_NEAR(now, sigma, 0.01 * sigma) << frame;
+    }
+    sigma = now;
+    prior = {HomographyChange::Zero(), estimate->information};
+  }
+  EXPECT_NEAR(sigma, 0.0014 / model.circles[1].radius, 0.0001);
+  clear_ring_errors(model);
+  EXPECT_EQ(model_error_covariance(model)(2, 2), 0.0);
 }
 
 TEST(Refuted, NeedsMoreThanAFewUnmatchedSamples) {

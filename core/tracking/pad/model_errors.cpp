@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/pad/model_errors.hpp"
+
+#include <cstddef>
+
+#include "core/geometry/least_squares.hpp"
+#include "core/tracking/pad/homography_solver.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr double kFeatureSigma = 0.0014;  // of an inner circle or line in the model [radii]
+
+// nullptr for the outer circle, whose radius is the unit, and for lines that have been removed.
+HomographyChange* sensitivity_of(PadModel& model, int feature) {
+  if (feature == 0) return nullptr;
+  if (PadLine* line = line_of(model, feature)) return &line->sensitivity;
+  const auto circle = static_cast<std::size_t>(feature);
+  return circle < model.circles.size() ? &model.circles[circle].sensitivity : nullptr;
+}
+
+}  // namespace
+
+void propagate_model_errors(PadModel& model,
+                            std::span<const EdgeSample> samples,
+                            const ViewCorrection& correction) {
+  const HomographyCovariance kept = correction.covariance * correction.prior_information;
+  for (PadCircle& circle : model.circles) circle.sensitivity = (kept * circle.sensitivity).eval();
+  for (PadLine& line : model.lines) line.sensitivity = (kept * line.sensitivity).eval();
+  for (const EdgeSample& sample : samples) {
+    HomographyChange* sensitivity = sensitivity_of(model, sample.feature);
+    const double predicted_px = sample.predicted_px(correction.change);
+    const EdgeCandidate* edge = nearest_candidate(sample, predicted_px);
+    if (sensitivity == nullptr || edge == nullptr) continue;
+    const double weight = tukey_weight(edge->distance_px - predicted_px, correction.reach_px) /
+                          (correction.sigma_px * correction.sigma_px);
+    *sensitivity += weight * sample.view.px_per_unit * (correction.covariance * sample.view.row);
+  }
+}
+
+void clear_ring_errors(PadModel& model) {
+  for (PadCircle& circle : model.circles) circle.sensitivity.head<5>().setZero();
+  for (PadLine& line : model.lines) line.sensitivity.head<5>().setZero();
+}
+
+HomographyCovariance model_error_covariance(const PadModel& model) {
+  HomographyCovariance sum = HomographyCovariance::Zero();
+  for (const PadCircle& circle : model.circles) {
+    sum += circle.sensitivity * circle.sensitivity.transpose();
+  }
+  for (const PadLine& line : model.lines) sum += line.sensitivity * line.sensitivity.transpose();
+  return kFeatureSigma * kFeatureSigma * sum;
+}
+
+}  // namespace ellipse
