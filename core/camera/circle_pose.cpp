@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
 constexpr double kMemory_s = 1.7;        // of the inner edges' evidence
-constexpr double kErrorOverSigma = 0.4;  // measured .25 to .6: stated sigmas are too large
 constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
 constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
 
@@ -97,7 +96,6 @@ void add_misfit(const Camera& camera,
   const RingMatrix along = ring_changes(outer.view, view);
   RingMatrix covariance = inner.uncertainty.information.inverse() +
                           along * outer.information.inverse() * along.transpose();
-  covariance *= kErrorOverSigma * kErrorOverSigma;
   covariance.diagonal().array() += std::pow(kInnerBiasPx / size_px, 2);
   const RingMatrix information = covariance.inverse();
 

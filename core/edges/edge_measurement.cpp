@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/edges/noise.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -15,6 +17,7 @@ struct FoundMaximum {
   Eigen::Vector2f gradient;
   float along_px;  // from the sample's pixel
   float sharpness;
+  float sigma_px = 0.0F;
 };
 
 // Whether a gradient is within 30 degrees of a direction.
@@ -65,7 +68,7 @@ EdgeMeasurement measured(const OutlineSamples& outline,
           outline.point(k) + from_sample + kMaximumShift * curvature * normal,
           normal,
           {outline.anomaly(k), outline.px_per_unit(k), distance},
-          0.0F,
+          maximum.sigma_px,
           sine * (1.0F + sine * sine / 6.0F),  // arc sine, within .003 up to 30 degrees
           contrast,
           outline.length_px(k),
@@ -154,8 +157,15 @@ class PictureSearch {
           return height_of(a) < height_of(b);
         });
     if (height_of(*top) < min_gradient_ || !agrees(*top, to_bright)) return std::nullopt;
-    const FoundMaximum found = maximum_at(&*top, 1, (top - line.begin()) + first);
-    return found.sharpness > 0.0F ? std::optional(found) : std::nullopt;
+    const std::ptrdiff_t offset = top - line.begin();
+    FoundMaximum found = maximum_at(&*top, 1, offset + first);
+    if (!(found.sharpness > 0.0F)) return std::nullopt;
+    // The brightest pixel in the reach of the kernels.
+    const bool is_brighter_before = to_bright[is_flat ? 0 : 1] < 0.0F;
+    const int bright = static_cast<int>(offset) + (is_brighter_before ? -2 : 2);
+    const std::uint8_t level = is_flat ? luma_.row(y)[x + bright] : luma_.row(y + bright)[x];
+    found.sigma_px = is_saturated(level) ? kPixelError : kVertexError;
+    return found;
   }
 
   SearchableArea area;

@@ -24,13 +24,16 @@ inline constexpr float kMinSquaredCosine = 0.75F;
 /// Standard deviation of an edge in focus without noise [px].
 inline constexpr float kVertexError = 0.017F;
 
+/// Standard deviation of a position that is known to a pixel: 1 / sqrt(12) [px].
+inline constexpr float kPixelError = 0.289F;
+
 /// An edge matched to a sample of an outline, in the distorted picture.
 struct EdgeMeasurement {
   int sample = 0;                    ///< Index of the sample.
   Eigen::Vector2f point;             ///< Position of the edge, from the outline's origin [px].
   Eigen::Vector2f normal;            ///< Outward normal of the outline at the sample.
   PerimeterOffset offset;            ///< Of the edge; the anomaly is the sample's.
-  float sigma_px = 0.0F;             ///< Standard deviation of the offset; 0 if not computed.
+  float sigma_px = 0.0F;             ///< Standard deviation of the offset.
   float direction_error_rad = 0.0F;  ///< Angle from the normal to the gradient.
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
   float length_px = 0.0F;            ///< Length of the outline that the sample represents.
@@ -63,7 +66,8 @@ class EdgeMeasurer {
                          int reach_px);
 
   /// Matches the highest gradient maxima within two pixels on the picture itself; computes no
-  /// gradient elsewhere. Leaves the standard deviations at 0, since the noise is unknown.
+  /// gradient elsewhere. The standard deviations are those without noise, which is unknown:
+  /// kPixelError beside a saturated pixel, since clipping moves the maximum of the gradient.
   /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
   OutlineSupport measure(const Picture& picture,
                          const Ellipse& e,

@@ -113,6 +113,6 @@ struct FittedEllipse {
                                                    double sigma_px);
 
 /// Min distance along the perimeter between edges with independent errors [px].
-inline constexpr double kIndependentPx = 6.0;
+inline constexpr double kIndependentPx = 8.0;
 
 }  // namespace ellipse

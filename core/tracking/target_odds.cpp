@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/tracking/frame_clock.hpp"
-
 namespace ellipse {
 namespace {
 
@@ -29,7 +27,7 @@ void TargetOdds::raise(double log_odds, bool is_known) {
 }
 
 void TargetOdds::add(double log_odds, double elapsed_s) {
-  const double correlation = std::exp(-elapsed_s / kMemory_s);
+  const double correlation = std::exp(-elapsed_s / kCorrelation_s);
   const double now = bounded(log_odds);
   const double news = (now - correlation * last_) / (1.0 + correlation);
   sum_ = bounded(sum_ + news);

@@ -15,6 +15,8 @@ class TargetOdds {
   /// Bound of the log odds' magnitude. Larger values of one frame are not calibrated. For the sum,
   /// it limits how long a target that has left is still reported.
   static constexpr double kMax = 5.0;
+  /// Correlation time of the evidence in a stream.
+  static constexpr double kCorrelation_s = 0.5;
 
   /// Starts a new hypothesis.
   /// @param log_odds  From its first frame; may be infinite.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/detection/target_selection.hpp"
+#include "core/edges/edge_measurement.hpp"
 #include "core/tracking/frame_search.hpp"
 #include "core/tracking/outline_judge.hpp"
 #include "core/tracking/pad/pad_tracker.hpp"
@@ -13,8 +14,7 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinPredicted = 0.4;     // min matched share of a reported prediction
-constexpr double kDetectedSigmaPx = 0.3;  // edge sigma of an ellipse that is not tracked
+constexpr double kMinPredicted = 0.4;  // min matched share of a reported prediction
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -101,6 +101,7 @@ std::optional<Target> Tracker::detect(const ScopedFrame& frame) {
 std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s) {
   judge_->advance(elapsed_s);
   since_detection_s_ += elapsed_s;
+  since_full_search_s_ += elapsed_s;
   absence_s_ += elapsed_s;
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
@@ -177,8 +178,8 @@ std::optional<Target> Tracker::target_of(const EdgeTrack& track,
   return track.is_visible || is_likely ? std::optional(target) : std::nullopt;
 }
 
-// Runs the detector. While the target is certain, searches a reduced frame first, and the full
-// resolution only if the reduced frame shows a better target. This limits the frame time.
+// Runs the detector. Cheaper searches come first, which limits the frame time: near a lost pad, or
+// in a reduced frame. The full resolution follows if the reduced frame shows a better target.
 std::optional<Target> Tracker::look(const ScopedFrame& frame,
                                     const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
@@ -188,11 +189,11 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
            (!is_likely || is_better(*candidate, *followed));
   };
   since_detection_s_ = 0.0;
-  if (is_visible && judge_->is_sure() && !settings_.wants_candidates) {
-    ScopedFrame reduced = frame;
-    reduced.finest_scale = std::max(frame.finest_scale, kCoarsestScale);
-    if (!is_rival(detect(reduced))) return followed;
-  }
+  if (auto resumed = is_visible ? std::nullopt : resume_nearby(frame)) return resumed;
+  ScopedFrame reduced = frame;
+  reduced.finest_scale = std::max(frame.finest_scale, first_scale(is_visible));
+  if (reduced.finest_scale > frame.finest_scale && !is_rival(detect(reduced))) return followed;
+  since_full_search_s_ = 0.0;
   const std::optional<Target> chosen = detect(frame);
   if (!chosen) return followed;
   if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
@@ -201,6 +202,15 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
     judge_->confirm(log_odds(chosen->probability), true);
   }
   return followed;
+}
+
+// The scale of the first search of the whole frame. While a target is certain, or absent for long,
+// the full resolution is searched periodically only.
+int Tracker::first_scale(bool is_visible) const {
+  if (settings_.wants_candidates) return 1;
+  if (is_visible && judge_->is_sure()) return kCoarsestScale;
+  const bool is_absent = !hypothesis_ && absence_s_ > kLongPause_s;
+  return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
 }
 
 bool Tracker::is_better(const Target& chosen, const Target& followed) const {
@@ -222,6 +232,17 @@ bool Tracker::is_inner_edge(const Ellipse& e) const {
 bool Tracker::is_too_large(const Ellipse& e) const {
   return !settings_.limits.accepts_axes(e) ||
          2.0 * e.semi_major > std::max(frame_bounds_.width, frame_bounds_.height);
+}
+
+// Searches a lost pad where it is predicted. Only a certain detection spares the whole frame.
+std::optional<Target> Tracker::resume_nearby(const ScopedFrame& frame) {
+  if (!pad_tracker_->is_locked() || settings_.wants_candidates) return std::nullopt;
+  ScopedFrame nearby = frame;
+  nearby.searchable = intersect(
+      pad_tracker_->region_after(0.0, frame.pixels.width, frame.pixels.height), frame.searchable);
+  const std::optional<Target> found = detect(nearby);
+  const bool is_certain = found && log_odds(found->probability) >= kCertainLogOdds;
+  return is_certain ? resume(frame, *found) : std::nullopt;
 }
 
 // Continues with the known pad where the detector found one of its circles.
@@ -281,7 +302,7 @@ void Tracker::remember(const std::optional<Target>& target) {
 RingUncertainty Tracker::uncertainty_of(const Target& target) const {
   if (pad_tracker_->is_locked()) return pad_tracker_->uncertainty();
   return expected_uncertainty(
-      target.ellipse, frame_bounds_.width, frame_bounds_.height, kDetectedSigmaPx);
+      target.ellipse, frame_bounds_.width, frame_bounds_.height, kPixelError);
 }
 
 // Adds the pose, which needs a camera.
@@ -330,7 +351,7 @@ void Tracker::reset() {
   had_target_ = false;
   state_ = TrackerState::kSearching;
   hypothesis_.reset();
-  absence_s_ = std::numeric_limits<double>::infinity();
+  absence_s_ = kMemory_s;
   clock_ = {};
   search_->begin({});
   *redetect_tracker_ = {};

@@ -1,7 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -102,9 +101,11 @@ class Tracker {
   [[nodiscard]] std::optional<Target> target_of(const EdgeTrack& track,
                                                 const ScopedFrame& frame,
                                                 const Rect& region) const;
+  [[nodiscard]] int first_scale(bool is_visible) const;
   [[nodiscard]] bool is_better(const Target& chosen, const Target& followed) const;
   [[nodiscard]] bool is_inner_edge(const Ellipse& e) const;
   [[nodiscard]] bool is_too_large(const Ellipse& e) const;
+  [[nodiscard]] std::optional<Target> resume_nearby(const ScopedFrame& frame);
   [[nodiscard]] std::optional<Target> resume(const ScopedFrame& frame, const Target& detection);
   [[nodiscard]] Target acquire(const ScopedFrame& frame, Target target);
   bool add_detection(const Ellipse& outline, double detected_log_odds);
@@ -127,9 +128,10 @@ class Tracker {
   Ellipse last_ellipse_;               // last reported target
   std::uint64_t last_id_ = 0;          // its id
   std::uint64_t located_id_ = 0;       // target of the pose estimator
-  double absence_s_ = std::numeric_limits<double>::infinity();  // since a target was reported
-  double since_detection_s_ = 0.0;                              // since the detector ran
-  bool had_target_ = false;  // in the last frame, reported or not
+  double absence_s_ = kMemory_s;       // since a target was reported, or since the start
+  double since_detection_s_ = 0.0;     // since the detector ran
+  double since_full_search_s_ = 0.0;   // since it ran on the whole frame at the full resolution
+  bool had_target_ = false;            // in the last frame, reported or not
   bool is_lens_stale_ = true;
   bool is_detector_given_ = false;  // by the constructor; overrides the settings
 };

@@ -29,7 +29,6 @@ constexpr int kMaxSteps = 3;               // searches of a frame, and before a 
 constexpr double kEnoughVisible = 0.3;     // share of the outer circle, to refine it
 constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
-constexpr double kSharedVariance = 1.3;    // of the refined edge: errors of samples are correlated
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
   Eigen::Matrix3d result = view;
@@ -403,7 +402,7 @@ std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
 }
 
 RingUncertainty PadTracker::uncertainty() const {
-  if (refined_) return {refined_->view, refined_->information / kSharedVariance};
+  if (refined_) return {refined_->view, refined_->information};
   return {view_, covariance().topLeftCorner<5, 5>().inverse()};
 }
 

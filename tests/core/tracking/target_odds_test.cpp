@@ -9,8 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/tracking/frame_clock.hpp"
-
 namespace ellipse {
 namespace {
 
@@ -41,7 +39,7 @@ TEST(TargetOdds, EqualTheLogLikelihoodRatioOfCorrelatedSamples) {
   for (Eigen::Index i = 0; i < 5; ++i) {
     for (Eigen::Index k = 0; k < 5; ++k) {
       const double apart = times_s[std::size_t(i)] - times_s[std::size_t(k)];
-      covariance(i, k) = 2.0 * kMean * std::exp(-std::abs(apart) / kMemory_s);
+      covariance(i, k) = 2.0 * kMean * std::exp(-std::abs(apart) / TargetOdds::kCorrelation_s);
     }
   }
   const auto x = Eigen::Map<const Eigen::Matrix<double, 5, 1>>(samples.data());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -183,15 +184,15 @@ TEST(FollowingTracker, FollowsFromTheSecondFrameOn) {
   }
 }
 
-// The pad moves by .9 of its radius in each frame: the first search after the lock finds it again,
+// The pad moves by .9 of its radius in each frame: a search around the last ellipse finds it again,
 // and its velocity is known from then on.
 TEST(FollowingTracker, FollowsAFastPadAfterTwoDetections) {
-  class CountingDetector final : public Detector {
+  class RecordingDetector final : public Detector {
    public:
-    explicit CountingDetector(int& searches) : searches_(searches) {}
+    explicit RecordingDetector(std::vector<int>& widths) : widths_(widths) {}
     [[nodiscard]] std::span<const Detection> detect(const ellipse::Picture& picture,
                                                     const Thresholds& thresholds) override {
-      ++searches_;
+      widths_.push_back(picture.luma.width);
       return detector_->detect(picture, thresholds);
     }
     [[nodiscard]] bool has_probability() const override { return detector_->has_probability(); }
@@ -199,11 +200,11 @@ TEST(FollowingTracker, FollowsAFastPadAfterTwoDetections) {
     [[nodiscard]] Overlaps tracking_overlaps() const override { return {}; }
 
    private:
-    int& searches_;
+    std::vector<int>& widths_;
     std::unique_ptr<Detector> detector_ = make_detector(DetectorKind::kArcs);
   };
-  int searches = 0;
-  Tracker tracker({}, std::make_unique<CountingDetector>(searches));
+  std::vector<int> widths;
+  Tracker tracker({}, std::make_unique<RecordingDetector>(widths));
   for (int frame = 0; frame < 5; ++frame) {
     const Ellipse truth{80.0 + 30.0 * frame, 80.0 + 15.0 * frame, 40.0, 32.0, 0.3};
     const auto picture = rendered(plain_ring(), truth, 320, 240, static_cast<std::uint64_t>(frame));
@@ -211,8 +212,55 @@ TEST(FollowingTracker, FollowsAFastPadAfterTwoDetections) {
     ASSERT_TRUE(target) << frame;
     EXPECT_EQ(target->id, 1U) << frame;
     EXPECT_LT(max_difference_px(target->ellipse, truth), 0.3) << frame;
-    EXPECT_EQ(searches, std::min(frame + 1, 2)) << frame;
+    EXPECT_EQ(widths.size(), frame == 0 ? 1U : 2U) << frame;
   }
+  EXPECT_EQ(widths.front(), 320);
+  EXPECT_LT(widths.back(), 320);
+}
+
+// The widths of the pictures searched in a stream without a target, frame by frame.
+std::vector<std::vector<int>> searched_widths(const TrackerSettings& settings, int frames) {
+  ScriptedDetector::Script script;
+  script.answers = {{}};
+  script.region = [] { return Rect{}; };
+  Tracker tracker(settings, std::make_unique<ScriptedDetector>(script));
+  const Picture picture(640, 360);
+  std::vector<std::vector<int>> widths;
+  for (int frame = 0; frame < frames; ++frame) {
+    script.calls.clear();
+    EXPECT_FALSE(tracker.process(picture.view(), frame * kFrameNs));
+    std::vector<int>& of_frame = widths.emplace_back();
+    for (const ScriptedDetector::Call& call : script.calls) of_frame.push_back(call.width);
+  }
+  return widths;
+}
+
+TEST(FollowingTracker, SearchesTheFullSizeOnlyPeriodicallyAfterASecondWithoutATarget) {
+  const std::vector<int> full = {640};
+  const std::vector<int> half = {320};
+  const auto widths = searched_widths({}, 90);
+  EXPECT_EQ(std::count(widths.begin(), widths.begin() + 20, full), 20);
+  EXPECT_EQ(std::count(widths.begin() + 30, widths.end(), half), 50);
+  EXPECT_EQ(std::count(widths.begin() + 30, widths.end(), full), 10);
+}
+
+TEST(FollowingTracker, SearchesTheFullSizeInEveryFrameForCandidates) {
+  TrackerSettings settings;
+  settings.wants_candidates = true;
+  const auto widths = searched_widths(settings, 60);
+  EXPECT_EQ(std::count(widths.begin(), widths.end(), std::vector<int>{640}), 60);
+}
+
+// A target at half the size is searched at the full size in the same frame.
+TEST(FollowingTracker, ConfirmsATargetAtHalfTheSizeAtOnce) {
+  const Film film(plain_ring());
+  Tracker tracker;
+  for (int frame = 0; frame < 40; ++frame) {
+    EXPECT_FALSE(tracker.process(film.empty().view(), frame * kFrameNs));
+  }
+  const auto target = tracker.process(film.at(0).view(), 40 * kFrameNs);
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->scale, 1);
 }
 
 TEST(FollowingTracker, ReportsItsState) {

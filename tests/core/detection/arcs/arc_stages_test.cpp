@@ -304,5 +304,21 @@ TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
   EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, {200.0}));
 }
 
+// Glare on the right half clips the picture, which moves its edges towards the dark disc.
+TEST(PictureRefinement, GivesEdgesBesideSaturatedPixelsLittleWeight) {
+  const Ellipse truth{100.3, 80.6, 50.0, 30.0, 0.3};
+  Picture picture = rendered(disc(), truth, 200, 160);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      std::uint8_t& level = picture.pixels[static_cast<std::size_t>(y * picture.width + x)];
+      const int glare = std::clamp(4 * (x - 90), 0, 180);
+      level = static_cast<std::uint8_t>(std::min(255, level + glare));
+    }
+  }
+  const auto refined = refined_on_picture(picture.view(), truth, Polarity::kDarkInside, {200.0});
+  ASSERT_TRUE(refined);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.1);
+}
+
 }  // namespace
 }  // namespace ellipse
