@@ -16,9 +16,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMemory_s = 1.7;        // of the inner edges' evidence
-constexpr double kInnerBiasPx = 0.02;    // standard deviation of an edge's systematic error
-constexpr double kLevelRad = 0.1;        // standard deviation of a level target's normal
+constexpr double kMemory_s = 1.7;      // of the inner edges' evidence
+constexpr double kInnerBiasPx = 0.02;  // standard deviation of an edge's systematic error
+constexpr double kLevelRad = 0.1;      // standard deviation of a level target's normal
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
