@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/edges/edge_refinement.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -10,10 +10,6 @@ inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Assumed time between frames
 /// Longest time without a match after which a target is still the same.
 inline constexpr double kMemory_s = 0.3;
 
-/// Longest interval between frames that counts, and time after which an absent target is not
-/// expected any moment.
-inline constexpr double kLongPause_s = 1.0;
-
 /// Time between frames. Depacketizers and decoders omit some time stamps: a frame without one
 /// repeats the previous interval.
 class FrameClock {

@@ -14,7 +14,8 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinPredicted = 0.4;  // min matched share of a reported prediction
+constexpr double kMinPredicted = 0.4;   // min matched share of a reported prediction
+constexpr double kLongAbsence_s = 1.0;  // of a target, after which full searches are periodic
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -209,7 +210,7 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
 int Tracker::first_scale(bool is_visible) const {
   if (settings_.wants_candidates) return 1;
   if (is_visible && judge_->is_sure()) return kCoarsestScale;
-  const bool is_absent = !hypothesis_ && absence_s_ > kLongPause_s;
+  const bool is_absent = !hypothesis_ && absence_s_ > kLongAbsence_s;
   return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
 }
 

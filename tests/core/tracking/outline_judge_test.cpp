@@ -108,6 +108,8 @@ TEST_F(OutlineJudgeTest, OddsFallWithTheEvidence) {
   detector_.answer = -5.0;
   (void)calls_in_a_second();
   EXPECT_LT(judge_.log_odds(), -kCertainLogOdds);
+  (void)calls_in_a_second();
+  EXPECT_EQ(judge_.log_odds(), -TargetOdds::kMax);
 }
 
 }  // namespace
