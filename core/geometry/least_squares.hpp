@@ -2,10 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <optional>
+#include <utility>
 
 namespace ellipse {
 
@@ -28,20 +27,13 @@ class LeastSquares {
   using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
 
   LeastSquares() = default;
-  LeastSquares(const Vector& mean, const Matrix& information) : right_side_(information * mean) {
-    std::size_t term = 0;
-    for (int i = 0; i < kParameters; ++i) {
-      for (int k = i; k < kParameters; ++k) normal_[term++] = information(k, i);
-    }
-  }
+  LeastSquares(const Vector& mean, const Matrix& information)
+      : normal_(information), right_side_(information * mean) {}
 
   void add(const Vector& row, double value, double weight) {
-    std::size_t term = 0;
-    for (int i = 0; i < kParameters; ++i) {
-      const double weighted = weight * row[i];
-      for (int k = i; k < kParameters; ++k) normal_[term++] += weighted * row[k];
-      right_side_[i] += weighted * value;
-    }
+    const Vector weighted = weight * row;
+    add_columns(row, weighted, std::make_integer_sequence<int, kParameters>());
+    right_side_ += value * weighted;
     ++samples_;
   }
 
@@ -49,17 +41,12 @@ class LeastSquares {
 
   /// Inverse covariance of the solution, if each weight is 1 over the variance of its value.
   [[nodiscard]] Matrix information() const {
-    Matrix information;
-    std::size_t term = 0;
-    for (int i = 0; i < kParameters; ++i) {
-      for (int k = i; k < kParameters; ++k) information(k, i) = information(i, k) = normal_[term++];
-    }
-    return information;
+    return normal_.template selfadjointView<Eigen::Lower>();
   }
 
   /// nullopt if the system is singular.
   [[nodiscard]] std::optional<Vector> solve() const {
-    Matrix normal = information();
+    Matrix normal = normal_;
     normal.diagonal() *= 1.0 + kRidge;
     const Eigen::LDLT<Matrix> factors(normal);
     if (!(factors.vectorD().minCoeff() > 0.0)) return std::nullopt;
@@ -70,7 +57,17 @@ class LeastSquares {
  private:
   static constexpr double kRidge = 1e-9;  // far below any standard deviation, above rounding
 
-  std::array<double, kParameters*(kParameters + 1) / 2> normal_{};  // upper triangle, row by row
+  // Adds to the lower triangle, from an even row on, which fills whole vectors of two numbers.
+  template <int... kColumns>
+  void add_columns(const Vector& row,
+                   const Vector& weighted,
+                   std::integer_sequence<int, kColumns...> /*columns*/) {
+    ((normal_.col(kColumns).template tail<kParameters - (kColumns & ~1)>() +=
+      weighted[kColumns] * row.template tail<kParameters - (kColumns & ~1)>()),
+     ...);
+  }
+
+  Matrix normal_ = Matrix::Zero();  // lower triangle
   Vector right_side_ = Vector::Zero();
   int samples_ = 0;
 };

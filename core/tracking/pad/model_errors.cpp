@@ -19,14 +19,18 @@ HomographyChange* sensitivity_of(PadModel& model, int feature) {
   return circle < model.circles.size() ? &model.circles[circle].sensitivity : nullptr;
 }
 
+void multiply_sensitivities(PadModel& model, const HomographyCovariance& factor) {
+  const auto multiply = [&](HomographyChange& s) { s = factor.lazyProduct(s).eval(); };
+  for (PadCircle& circle : model.circles) multiply(circle.sensitivity);
+  for (PadLine& line : model.lines) multiply(line.sensitivity);
+}
+
 }  // namespace
 
 void propagate_model_errors(PadModel& model,
                             std::span<const EdgeSample> samples,
                             const ViewCorrection& correction) {
-  const HomographyCovariance kept = correction.covariance * correction.prior_information;
-  for (PadCircle& circle : model.circles) circle.sensitivity = (kept * circle.sensitivity).eval();
-  for (PadLine& line : model.lines) line.sensitivity = (kept * line.sensitivity).eval();
+  multiply_sensitivities(model, correction.prior_information);
   for (const EdgeSample& sample : samples) {
     HomographyChange* sensitivity = sensitivity_of(model, sample.feature);
     const double predicted_px = sample.predicted_px(correction.change);
@@ -34,8 +38,9 @@ void propagate_model_errors(PadModel& model,
     if (sensitivity == nullptr || edge == nullptr) continue;
     const double weight = tukey_weight(edge->distance_px - predicted_px, correction.reach_px) /
                           (correction.sigma_px * correction.sigma_px);
-    *sensitivity += weight * sample.view.px_per_unit * (correction.covariance * sample.view.row);
+    *sensitivity += weight * sample.view.px_per_unit * sample.view.row;
   }
+  multiply_sensitivities(model, correction.covariance);
 }
 
 void clear_ring_errors(PadModel& model) {
