@@ -32,6 +32,13 @@ namespace ellipse {
 using HomographyChange = Eigen::Matrix<double, 8, 1>;
 using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 
+/// Variance of row . x, where x has this covariance. lazyProduct() is Eigen's faster product for
+/// matrices of this size.
+[[nodiscard]] inline double variance_along(const HomographyChange& row,
+                                           const HomographyCovariance& covariance) {
+  return row.dot(covariance.lazyProduct(row));
+}
+
 [[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
                                     const HomographyChange& change);
 

@@ -57,7 +57,7 @@ class LeastSquares {
  private:
   static constexpr double kRidge = 1e-9;  // far below any standard deviation, above rounding
 
-  // Adds to the lower triangle, from an even row on, which fills whole vectors of two numbers.
+  // Adds each column of the lower triangle from an even row on: pairs of numbers are added at once.
   template <int... kColumns>
   void add_columns(const Vector& row,
                    const Vector& weighted,

@@ -197,7 +197,7 @@ void EdgeSearch::search(const ImageView& luma,
   for (EdgeSample& sample : samples_) {
     double reach = reach_px;
     if (covariance != nullptr) {
-      const double variance = sample.view.row.dot(covariance->lazyProduct(sample.view.row));
+      const double variance = variance_along(sample.view.row, *covariance);
       // Rounding may make the variance negative.
       reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)), reach_px, max_px);
     }

@@ -273,7 +273,7 @@ void PadTracker::accept(const Attempt& attempt,
   double expected_px = 0.0;
   for (const EdgeSample& sample : search_.samples()) {
     moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
-    expected_px += sample.view.row.dot(before.pose.lazyProduct(sample.view.row));
+    expected_px += variance_along(sample.view.row, before.pose);
   }
   const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   const double needed = looseness * moved_px / expected_px;
