@@ -66,7 +66,8 @@ struct TracedCandidate {
 /// object serves one thread at a time.
 class DetectionTrace {
  public:
-  /// In order of the search. `contours` makes one pass; `arcs` one per scale, half the size first.
+  /// In order of the search. `contours` makes one pass; `arcs` one per scale, a quarter of the size
+  /// first.
   [[nodiscard]] std::span<const TracedPass> passes() const { return passes_; }
   [[nodiscard]] std::span<const TracedCandidate> candidates() const { return candidates_; }
 

@@ -91,20 +91,21 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
          std::abs(a / stride - b / stride) <= kClosingGap;
 }
 
-// Calls use(index) for each unvisited seed until it returns false. Skips blocks without seeds,
-// which are most of them.
+// Calls use(index) for each unvisited seed until it returns false. Skips words of eight pixels
+// without seeds, which are most of them.
 template <class Use>
 void for_each_seed(const GradientMap& map, const Use& use) {
+  constexpr std::int32_t kWord = sizeof(std::uint64_t);
   constexpr std::uint64_t kAllSeeds = 0x0101010101010101U * maximum::kSeed;
   const std::uint8_t* maxima = map.maxima();
   for (const std::int32_t block : map.blocks()) {
-    std::array<std::uint64_t, GradientMap::kBlock / 8> words;
-    std::memcpy(words.data(), maxima + block, sizeof words);
-    std::uint64_t all = 0;
-    for (const std::uint64_t word : words) all |= word;
-    if ((all & kAllSeeds) == 0) continue;
-    for (std::int32_t i = block; i < block + GradientMap::kBlock; ++i) {
-      if ((maxima[i] & maximum::kSeed) != 0 && !use(i)) return;
+    for (std::int32_t begin = block; begin < block + GradientMap::kBlock; begin += kWord) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, maxima + begin, sizeof word);
+      if ((word & kAllSeeds) == 0) continue;
+      for (std::int32_t i = begin; i < begin + kWord; ++i) {
+        if ((maxima[i] & maximum::kSeed) != 0 && !use(i)) return;
+      }
     }
   }
 }

@@ -13,7 +13,7 @@
 namespace ellipse {
 namespace {
 
-constexpr int kScales[] = {2, 4, 1};    // in order of the search
+constexpr int kScales[] = {4, 2, 1};    // in order of the search
 constexpr double kConvexSlack = 0.1;    // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;          // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;  // semi-minor axis below which reduction hides corners
@@ -63,8 +63,9 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
                                                const Thresholds& thresholds) {
   if (trace_ != nullptr) trace_->clear();
   found_.clear();
-  search_scales(picture, thresholds);
-  refine_at_full_size(picture, thresholds);
+  reduce(picture);
+  search_scales(thresholds);
+  refine_at_finer_scales(thresholds);
   report();
   ring_corrector_.correct(picture, min_gradient_, polarities_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
@@ -80,10 +81,11 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   limits.edge_high = thresholds.edge_high;
   limits.contour_overlap = thresholds.contour_overlap;
   limits.ellipse_overlap = thresholds.ellipse_overlap;
+  reduce(picture);
   std::optional<Found> best;
   for (const int scale : kScales) {
     if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
-    find_edges(picture, scale, limits);
+    find_edges(scale, limits);
     const auto measured = judged_at(scale, e, limits);
     if (!measured) continue;
     if (is_certain(measured->probability)) return log_odds(measured->probability);
@@ -92,9 +94,9 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   return best ? confirmed_log_odds(*best, limits) : -std::numeric_limits<double>::infinity();
 }
 
-void ArcDetector::find_edges(const Picture& picture, int scale, const Thresholds& thresholds) {
+void ArcDetector::find_edges(int scale, const Thresholds& thresholds) {
   GradientMap& map = map_at(scale);
-  map.compute(reduced(picture, scale), {thresholds.edge_low, thresholds.edge_high});
+  map.compute(picture_at(scale), {thresholds.edge_low, thresholds.edge_high});
   chains_.trace(map);
 }
 
@@ -113,19 +115,25 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
   return measured;
 }
 
-Picture ArcDetector::reduced(const Picture& picture, int scale) {
-  return {scaler_.reduce(picture.luma, scale), picture.lens.reduced(scale)};
+void ArcDetector::reduce(const Picture& picture) {
+  pictures_[0] = picture;
+  for (std::size_t level = 1; level < kLevels; ++level) {
+    const Picture& finer = pictures_[level - 1];
+    pictures_[level] = {scalers_[level - 1].reduce(finer.luma, 2),
+                        picture.lens.reduced(1 << level)};
+  }
 }
 
-void ArcDetector::search_scales(const Picture& picture, const Thresholds& thresholds) {
+void ArcDetector::search_scales(const Thresholds& thresholds) {
   for (const int scale : kScales) {
-    search(reduced(picture, scale), thresholds, scale);
+    search(scale, thresholds);
     if (!thresholds.wants_all && has_certain_target()) return;
   }
   confirm_at_finer_scales(thresholds);
 }
 
-void ArcDetector::search(const Picture& picture, const Thresholds& full, int scale) {
+void ArcDetector::search(int scale, const Thresholds& full) {
+  const Picture& picture = picture_at(scale);
   scale_ = scale;
   rejected_.clear();
   if (picture.luma.empty()) return;
@@ -300,17 +308,23 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
 }
 
 // Drops ellipses whose refined axes are beyond the limits.
-void ArcDetector::refine_at_full_size(const Picture& picture, const Thresholds& thresholds) {
+void ArcDetector::refine_at_finer_scales(const Thresholds& thresholds) {
   std::erase_if(found_, [&](Found& found) {
     if (found.scale == 1) return false;
     MeasuredEllipse& measured = found.measured;
-    const auto refined =
-        refined_on_picture(picture, measured.ellipse, measured.polarity, {min_gradient_});
-    if (refined) measured.ellipse = refined->ellipse;
+    for (int scale = found.scale / 2; scale >= 1; scale /= 2) refine(scale, measured);
     const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
     if (!verdict.is_accepted()) reject(measured.candidate, verdict);
     return !verdict.is_accepted();
   });
+}
+
+void ArcDetector::refine(int scale, MeasuredEllipse& measured) const {
+  const auto refined = refined_on_picture(picture_at(scale),
+                                          to_region(measured.ellipse, {}, scale),
+                                          measured.polarity,
+                                          {scale * min_gradient_});
+  if (refined) measured.ellipse = to_frame(refined->ellipse, {}, scale);
 }
 
 void ArcDetector::report() {

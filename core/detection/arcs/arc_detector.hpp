@@ -25,9 +25,9 @@ struct TracedPiece;
 /// is fitted from its moments and measured on the edges around its whole perimeter; the probability
 /// of an ellipse decides.
 ///
-/// Searches at half size, then at a quarter, then at full size, and stops early if the best target
-/// is certain. Otherwise confirms ellipses from reduced pictures at the finer sizes. Merges
-/// duplicates across sizes. Refines ellipses from reduced pictures on the full one.
+/// Searches at a quarter of the size, then at half, then at full size, and stops early if the best
+/// target is certain. Otherwise confirms ellipses from reduced pictures at the finer sizes. Merges
+/// duplicates across sizes. Refines ellipses from reduced pictures on each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
 /// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
@@ -57,12 +57,14 @@ class ArcDetector final : public Detector {
     int scale;                 // of its pass
   };
 
-  [[nodiscard]] Picture reduced(const Picture& picture, int scale);
-  void search_scales(const Picture& picture, const Thresholds& thresholds);
-  void search(const Picture& picture, const Thresholds& thresholds, int scale);
-  [[nodiscard]] GradientMap& map_at(int scale) {
-    return maps_[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)))];
+  [[nodiscard]] static std::size_t level_of(int scale) {
+    return static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)));
   }
+  [[nodiscard]] const Picture& picture_at(int scale) const { return pictures_[level_of(scale)]; }
+  [[nodiscard]] GradientMap& map_at(int scale) { return maps_[level_of(scale)]; }
+  void reduce(const Picture& picture);
+  void search_scales(const Thresholds& thresholds);
+  void search(int scale, const Thresholds& full);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
@@ -76,21 +78,25 @@ class ArcDetector final : public Detector {
   void add(const MeasuredEllipse& measured);
   void use_arcs_on(const Ellipse& e, Polarity polarity);
   [[nodiscard]] bool has_certain_target();
-  void find_edges(const Picture& picture, int scale, const Thresholds& thresholds);
+  void find_edges(int scale, const Thresholds& thresholds);
   [[nodiscard]] std::optional<MeasuredEllipse> judged_at(int scale,
                                                          const Ellipse& e,
                                                          const Thresholds& thresholds);
   [[nodiscard]] double confirmed_log_odds(const Found& found, const Thresholds& thresholds);
   void confirm_at_finer_scales(const Thresholds& full);
-  void refine_at_full_size(const Picture& picture, const Thresholds& thresholds);
+  void refine_at_finer_scales(const Thresholds& thresholds);
+  void refine(int scale, MeasuredEllipse& measured) const;
   void report();
   void reject(int candidate, const Verdict& verdict);
   void trace_edges(const ImageView& luma);
   void trace_arcs();
 
-  Scaler scaler_;
-  std::array<GradientMap, 3> maps_;  // at full size, half and a quarter
-  GradientMap* map_ = nullptr;       // of this pass
+  static constexpr std::size_t kLevels = 3;  // full size, half and a quarter
+
+  std::array<Scaler, kLevels - 1> scalers_;  // each from one level to the next
+  std::array<Picture, kLevels> pictures_;
+  std::array<GradientMap, kLevels> maps_;
+  GradientMap* map_ = nullptr;  // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
   EllipseVerifier verifier_;

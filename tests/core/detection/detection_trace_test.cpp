@@ -304,7 +304,7 @@ TEST(DetectionTrace, OfArcsReportsReasonsOfArcsOnly) {
   } kCases[] = {
       {Reason::kPoorFit, "glare", 4.0, 50},
       {Reason::kDuplicateOfRejected, "negative", 0.5, 20},
-      {Reason::kTooFewEdges, "glare", 4.0, 50},
+      {Reason::kTooFewEdges, "negative", 2.0, 50},
       {Reason::kUnlikely, "oblique", 2.0, 50},
   };
   for (const auto& one : kCases) {
@@ -363,8 +363,8 @@ TEST(DetectionTrace, OfArcsMeasuresTheProbabilityThatWouldAcceptIt) {
 TEST(DetectionTrace, OfArcsHasThreeScalesIfUncertain) {
   const Look look = look_at(DetectorKind::kArcs, of_scene("negative", 0.5));
   ASSERT_EQ(look.trace.passes().size(), 3U);
-  EXPECT_EQ(look.trace.passes()[0].scale, 2);
-  EXPECT_EQ(look.trace.passes()[1].scale, 4);
+  EXPECT_EQ(look.trace.passes()[0].scale, 4);
+  EXPECT_EQ(look.trace.passes()[1].scale, 2);
   EXPECT_EQ(look.trace.passes()[2].scale, 1);
 }
 
