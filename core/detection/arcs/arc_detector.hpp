@@ -91,7 +91,7 @@ class ArcDetector final : public Detector {
   void trace_edges(const ImageView& luma);
   void trace_arcs();
 
-  static constexpr std::size_t kLevels = 3;  // full size, half and a quarter
+  static constexpr std::size_t kLevels = std::bit_width(static_cast<unsigned>(kCoarsestScale));
 
   std::array<Scaler, kLevels - 1> scalers_;  // each from one level to the next
   std::array<Picture, kLevels> pictures_;
