@@ -186,8 +186,11 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const bool is_likely = is_visible && judge_->log_odds() >= required_log_odds();
   const auto is_rival = [&](const std::optional<Target>& candidate) {
-    return candidate && !is_inner_edge(candidate->ellipse) &&
-           (!is_likely || is_better(*candidate, *followed));
+    if (!candidate) return false;
+    if (is_surer(*candidate)) return true;
+    return !is_inner_edge(candidate->ellipse) &&
+           (!is_likely ||
+            is_better_target(candidate->ellipse, followed->ellipse, search_->candidates()));
   };
   since_detection_s_ = 0.0;
   if (auto resumed = is_visible ? std::nullopt : resume_nearby(frame)) return resumed;
@@ -214,10 +217,9 @@ int Tracker::first_scale(bool is_visible) const {
   return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
 }
 
-bool Tracker::is_better(const Target& chosen, const Target& followed) const {
-  // A certain detection replaces an uncertain outline.
-  if (!judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds) return true;
-  return is_better_target(chosen.ellipse, followed.ellipse, search_->candidates());
+// Whether a certain detection competes with an uncertain outline.
+bool Tracker::is_surer(const Target& chosen) const {
+  return !judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds;
 }
 
 // Whether an ellipse may be an inner edge of the pad, which is predicted if it is not visible.

@@ -102,7 +102,7 @@ class Tracker {
                                                 const ScopedFrame& frame,
                                                 const Rect& region) const;
   [[nodiscard]] int first_scale(bool is_visible) const;
-  [[nodiscard]] bool is_better(const Target& chosen, const Target& followed) const;
+  [[nodiscard]] bool is_surer(const Target& chosen) const;
   [[nodiscard]] bool is_inner_edge(const Ellipse& e) const;
   [[nodiscard]] bool is_too_large(const Ellipse& e) const;
   [[nodiscard]] std::optional<Target> resume_nearby(const ScopedFrame& frame);

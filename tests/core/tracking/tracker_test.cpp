@@ -285,10 +285,9 @@ class InnerEdgeFirst : public testing::Test {
    public:
     std::span<const Detection> detect(const ellipse::Picture& picture, const Thresholds&) override {
       Detection& detection = answer_.front();
-      detection = {Film::truth_at(0), 1.0, 1.0, 100.0};
-      detection.probability = is_first_ ? 0.9 : 0.99;
-      if (is_first_) detection.ellipse.semi_major *= 1.0 - kRingWidth;
-      if (is_first_) detection.ellipse.semi_minor *= 1.0 - kRingWidth;
+      const bool is_inner = is_first_ == is_inner_first;
+      detection = {is_inner ? inner_edge() : Film::truth_at(0), 1.0, 1.0, 100.0};
+      detection.probability = is_first_ ? first_probability : 0.99;
       is_first_ = false;
       const int scale = picture.luma.empty() ? 1 : 320 / picture.luma.width;
       detection.ellipse = to_region(detection.ellipse, {}, scale);
@@ -303,6 +302,8 @@ class InnerEdgeFirst : public testing::Test {
     Overlaps tracking_overlaps() const override { return {0.7, 0.3}; }
 
     std::optional<double> judged;
+    bool is_inner_first = true;
+    double first_probability = 0.9;
 
    private:
     bool is_first_ = true;
@@ -314,14 +315,23 @@ class InnerEdgeFirst : public testing::Test {
     scene.pad.ring_width = kRingWidth;
     picture_ = rendered(scene, Film::truth_at(0));
   }
-  // The first frame whose ellipse is the outer edge; 60 = none.
+  static Ellipse inner_edge() {
+    Ellipse inner = Film::truth_at(0);
+    inner.semi_major *= 1.0 - kRingWidth;
+    inner.semi_minor *= 1.0 - kRingWidth;
+    return inner;
+  }
   int corrected_at(std::optional<double> judged) {
     auto detector = std::make_unique<TwoEdges>();
     detector->judged = judged;
+    return followed_at(Film::truth_at(0), std::move(detector));
+  }
+  // The first frame in which this edge is the target; 60 = none.
+  int followed_at(const Ellipse& edge, std::unique_ptr<TwoEdges> detector) {
     Tracker tracker({}, std::move(detector));
     for (int frame = 0; frame < 60; ++frame) {
       const auto target = tracker.process(picture_.view(), frame * kFrameNs);
-      if (target && max_difference_px(target->ellipse, Film::truth_at(0)) < 1.0) return frame;
+      if (target && max_difference_px(target->ellipse, edge) < 1.0) return frame;
     }
     return 60;
   }
@@ -337,6 +347,19 @@ TEST_F(InnerEdgeFirst, IsCorrectedByTheNextDetection) {
 
 TEST_F(InnerEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
   EXPECT_EQ(corrected_at(-1.0), 1);
+}
+
+// A pupil inside an uncertain iris, for example.
+TEST_F(InnerEdgeFirst, ACertainInnerEdgeReplacesAnUncertainOutline) {
+  const auto replaced_at = [&](double judged) {
+    auto detector = std::make_unique<TwoEdges>();
+    detector->judged = judged;
+    detector->is_inner_first = false;
+    detector->first_probability = 0.7;
+    return followed_at(inner_edge(), std::move(detector));
+  };
+  EXPECT_LE(replaced_at(0.3), 7);
+  EXPECT_EQ(replaced_at(6.0), 60);  // a certain outline keeps its inner edges
 }
 
 // After the ring, a disc of the size of its inner circle: an inner edge while the ring is
