@@ -65,7 +65,7 @@ std::optional<RingCorrector::Edge> RingCorrector::edge_near(const Picture& pictu
                                                             double min_gradient) {
   const OutlineSupport found =
       measurer_.measure(picture, guess, polarity, kRefinementSamples, min_gradient);
-  if (found.support < kMajority) return std::nullopt;
+  if (found.turn_support < kMajority) return std::nullopt;
   const auto refined = fitted_to_edges(measurer_, picture.lens, guess);
   if (!refined) return std::nullopt;
   return Edge{refined->ellipse, measurer_.mean_contrast()};

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/detection/target_selection.hpp"
+#include "core/scene/catalog.hpp"
 #include "core/scene/random.hpp"
 #include "tests/support/picture.hpp"
 
@@ -69,6 +70,22 @@ TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
     }
   }
   EXPECT_GT(best_iou(picture, truth, detecting()), 0.95);
+}
+
+// The inner edge is 4 px away on the long sides and too far to be its blurred partner elsewhere.
+TEST(ArcDetector, IsExactOnAFlatRingFoundInAReducedPicture) {
+  Picture picture(640, 360);
+  ArcDetector detector;
+  for (const std::uint64_t seed : {6U, 8U, 9U, 42U}) {
+    SceneRenderer renderer(scene_by_name("oblique", seed));
+    for (std::uint64_t frame = 0; frame < 15; ++frame) {
+      const Truth truth =
+          renderer.render(static_cast<double>(frame) / 30.0, frame, picture.writable());
+      const auto target = select_target(detector.detect(picture.view(), detecting()));
+      ASSERT_TRUE(target);
+      EXPECT_LT(max_difference_px(target->ellipse, *truth.outer_edge), 0.1) << seed << " " << frame;
+    }
+  }
 }
 
 const Ellipse kNoisyDisc{160.2, 119.7, 50.0, 42.0, 0.6};
