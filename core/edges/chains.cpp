@@ -95,15 +95,16 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
 // without seeds, which are most of them.
 template <class Use>
 void for_each_seed(const GradientMap& map, const Use& use) {
-  constexpr std::int32_t kWord = sizeof(std::uint64_t);
   constexpr std::uint64_t kAllSeeds = 0x0101010101010101U * maximum::kSeed;
   const std::uint8_t* maxima = map.maxima();
   for (const std::int32_t block : map.blocks()) {
-    for (std::int32_t begin = block; begin < block + GradientMap::kBlock; begin += kWord) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, maxima + begin, sizeof word);
-      if ((word & kAllSeeds) == 0) continue;
-      for (std::int32_t i = begin; i < begin + kWord; ++i) {
+    std::array<std::uint64_t, GradientMap::kBlock / sizeof(std::uint64_t)> words;
+    std::memcpy(words.data(), maxima + block, sizeof words);
+    std::int32_t i = block;
+    for (const std::uint64_t word : words) {
+      const std::int32_t end = i + static_cast<std::int32_t>(sizeof word);
+      if ((word & kAllSeeds) == 0) i = end;
+      for (; i < end; ++i) {
         if ((maxima[i] & maximum::kSeed) != 0 && !use(i)) return;
       }
     }

@@ -85,7 +85,7 @@ constexpr Limits kLimits[] = {
     {"occluded", 2.0, 0.1, 40, "arcs", "none", 40, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "redetect", 20, 0},
     {"dash", 2.0, 1.0 / 30.0, 20, "arcs", "none", 20, 0},
-    {"touchdown", 2.0, 0.1, 40, "arcs", "redetect", 22, 3},
+    {"touchdown", 2.0, 0.1, 40, "arcs", "redetect", 22, 2},
     {"touchdown", 2.0, 0.1, 40, "arcs", "none", 25, 0},
     {"reenter", 2.0, 0.1, 40, "arcs", "redetect", 15, 0},
     {"reenter", 2.0, 0.1, 40, "arcs", "none", 16, 0},

@@ -13,16 +13,11 @@
 namespace ellipse {
 namespace {
 
-constexpr int kScales[] = {4, 2, 1};    // in order of the search
 constexpr double kConvexSlack = 0.1;    // tolerance of the convexity test, share of the distance
 constexpr double kSame = 0.05;          // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;  // semi-minor axis below which reduction hides corners
+constexpr int kMinSidePx = 30;          // smaller side of a reduced picture that is searched
 constexpr double kSameInside = 0.8;  // IoU inside the picture of an ellipse before and after a fit
-
-// Gradient of an edge in focus over that at half the size. The blur has a variance of 1 px^2 from
-// the kernels and .36 from the lens; at half the size, of 1 + .36 / 4 + 1 / 16 from averaging
-// pixels.
-constexpr double kFinerOverCoarser = 0.92;
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .ellipse_overlap = 0.0,
@@ -83,7 +78,7 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   limits.ellipse_overlap = thresholds.ellipse_overlap;
   reduce(picture);
   std::optional<Found> best;
-  for (const int scale : kScales) {
+  for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
     if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
     find_edges(scale, limits);
     const auto measured = judged_at(scale, e, limits);
@@ -117,15 +112,25 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
 
 void ArcDetector::reduce(const Picture& picture) {
   pictures_[0] = picture;
-  for (std::size_t level = 1; level < kLevels; ++level) {
+  for (std::size_t level = 1; level < pictures_.size(); ++level) {
     const Picture& finer = pictures_[level - 1];
     pictures_[level] = {scalers_[level - 1].reduce(finer.luma, 2),
                         picture.lens.reduced(1 << level)};
   }
 }
 
+int ArcDetector::coarsest_scale() const {
+  const auto is_too_small = [&](int scale) {
+    const ImageView& luma = picture_at(scale).luma;
+    return std::min(luma.width, luma.height) < kMinSidePx;
+  };
+  int scale = kCoarsestScale;
+  while (scale > 1 && is_too_small(scale)) scale /= 2;
+  return scale;
+}
+
 void ArcDetector::search_scales(const Thresholds& thresholds) {
-  for (const int scale : kScales) {
+  for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
     search(scale, thresholds);
     if (!thresholds.wants_all && has_certain_target()) return;
   }
@@ -274,8 +279,9 @@ bool ArcDetector::has_certain_target() {
 
 // Averages the log odds at the ellipse's scale with those at the finer scales: reduction hides the
 // corners of a polygon, which show again at the finer scales. Skips a scale whose noise may hide
-// the outline, since blur reduces the gradient by up to the ratio of the scales. The noise counts
-// at least as much as at the coarser scale: compression removes the finer part of it.
+// the outline, since blur reduces the gradient by up to the ratio of the scales. The threshold of a
+// finer scale is at least that of the coarser one: compression removes fine noise, but not the
+// errors that it causes.
 double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thresholds) {
   const MeasuredEllipse& measured = found.measured;
   double high = map_at(found.scale).thresholds().high;
@@ -283,7 +289,7 @@ double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thr
   int scales = 1;
   for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
     const GradientMap& map = map_at(scale);
-    high = std::max(map.thresholds().high, kFinerOverCoarser * high);
+    high = std::max(high, map.thresholds().high);
     if (measured.gradient * scale / found.scale < kGradientGain * high) continue;
     const Ellipse guess = to_region(measured.ellipse, {}, scale);
     MeasuredEllipse finer;

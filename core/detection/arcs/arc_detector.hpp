@@ -62,6 +62,7 @@ class ArcDetector final : public Detector {
   }
   [[nodiscard]] const Picture& picture_at(int scale) const { return pictures_[level_of(scale)]; }
   [[nodiscard]] GradientMap& map_at(int scale) { return maps_[level_of(scale)]; }
+  [[nodiscard]] int coarsest_scale() const;
   void reduce(const Picture& picture);
   void search_scales(const Thresholds& thresholds);
   void search(int scale, const Thresholds& full);
@@ -91,12 +92,11 @@ class ArcDetector final : public Detector {
   void trace_edges(const ImageView& luma);
   void trace_arcs();
 
-  static constexpr std::size_t kLevels = std::bit_width(static_cast<unsigned>(kCoarsestScale));
-
-  std::array<Scaler, kLevels - 1> scalers_;  // each from one level to the next
-  std::array<Picture, kLevels> pictures_;
-  std::array<GradientMap, kLevels> maps_;
-  GradientMap* map_ = nullptr;  // of this pass
+  // At full size, half and a quarter.
+  std::array<Picture, 3> pictures_;
+  std::array<GradientMap, 3> maps_;
+  std::array<Scaler, 2> scalers_;  // each to the next smaller picture
+  GradientMap* map_ = nullptr;     // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
   EllipseVerifier verifier_;

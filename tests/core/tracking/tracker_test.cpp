@@ -276,8 +276,9 @@ TEST(FollowingTracker, ReportsItsState) {
   EXPECT_EQ(tracker.state(), TrackerState::kSearching);
 }
 
-// Detects the inner edge of a ring in the first frame and the outer edge from then on.
-class InnerEdgeFirst : public testing::Test {
+// Detects one edge of a ring in the first frame, by default the inner one, and the other from then
+// on.
+class OneEdgeFirst : public testing::Test {
  protected:
   static constexpr double kRingWidth = 0.1;
 
@@ -321,6 +322,7 @@ class InnerEdgeFirst : public testing::Test {
     inner.semi_minor *= 1.0 - kRingWidth;
     return inner;
   }
+  // The first frame in which the outer edge replaces the inner one; 60 = none.
   int corrected_at(std::optional<double> judged) {
     auto detector = std::make_unique<TwoEdges>();
     detector->judged = judged;
@@ -339,18 +341,18 @@ class InnerEdgeFirst : public testing::Test {
   support::Picture picture_{320, 240};
 };
 
-TEST_F(InnerEdgeFirst, IsCorrectedByTheNextDetection) {
+TEST_F(OneEdgeFirst, IsCorrectedByTheNextDetection) {
   const int frame = corrected_at(std::nullopt);
   EXPECT_GT(frame, 1);
   EXPECT_LE(frame, 7);  // kCheckPeriod_s, and a frame in which an evaluation goes first
 }
 
-TEST_F(InnerEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
+TEST_F(OneEdgeFirst, IsCorrectedAtOnceIfItLooksWrong) {
   EXPECT_EQ(corrected_at(-1.0), 1);
 }
 
-// A pupil inside an uncertain iris, for example.
-TEST_F(InnerEdgeFirst, ACertainInnerEdgeReplacesAnUncertainOutline) {
+// For example, a pupil inside an iris.
+TEST_F(OneEdgeFirst, CertainInsideAnUncertainOutlineReplacesIt) {
   const auto replaced_at = [&](double judged) {
     auto detector = std::make_unique<TwoEdges>();
     detector->judged = judged;

@@ -72,7 +72,8 @@ TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   EXPECT_GT(best_iou(picture, truth, detecting()), 0.95);
 }
 
-// The inner edge is 4 px away on the long sides and too far to be its blurred partner elsewhere.
+// The ring is 4 px wide on its long sides and 8 px at its ends. The correction for thin rings does
+// not apply.
 TEST(ArcDetector, IsExactOnAFlatRingFoundInAReducedPicture) {
   Picture picture(640, 360);
   ArcDetector detector;
