@@ -13,7 +13,6 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kSamples = 48;    // half of the detector's, since this runs in each frame
 constexpr double kBlurBiasShare = 0.2;  // sigma of the blur correction, share of it
 
 Polarity polarity_of(bool is_bright_outside) {
@@ -38,7 +37,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                             *predicted,
                             polarity_of(circle.is_bright_outside),
                             {kGradientOfStep * min_contrast, kMajority},
-                            kSamples);
+                            kRefinementSamples / 2);  // since this runs in each frame
 }
 
 // Removes the blur bias that separates the gradient maxima of a thin ring's two edges.
