@@ -30,6 +30,9 @@ struct Truth {
   /// False if the frame is not judged: the target's position is unknown, or the data set ignores
   /// the frame. Trackers still process it.
   bool is_labelled = true;
+  /// False if the frame shows more ellipses than it lists: a candidate that is not listed is then
+  /// not known to be wrong.
+  bool is_complete = true;
   /// Further ellipses in the frame. An answer that matches one of them is also right.
   std::vector<TrueEllipse> others{};
 };

@@ -40,7 +40,8 @@ Label label_of(const ellipse::Ellipse& e, const Truth& truth, const FrameSize& s
     is_concentric = is_concentric || ellipse::are_concentric(e, each.ellipse);
   }
   if (best >= kRightIou) return Label::kRight;
-  return best < kWrongIou && !is_concentric ? Label::kWrong : Label::kUnclear;
+  const bool is_known_wrong = truth.is_complete && best < kWrongIou && !is_concentric;
+  return is_known_wrong ? Label::kWrong : Label::kUnclear;
 }
 
 struct Sample {

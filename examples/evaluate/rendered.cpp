@@ -19,8 +19,10 @@ constexpr FrameSize kSize{kRenderedWidth, kRenderedHeight};
 Truth truth_at(const ellipse::Scene& scene, const ellipse::Camera& camera, double time_s) {
   const Eigen::Matrix3d view = image_from_pad(pose_at(scene.flight, time_s), camera);
   const ellipse::Truth shown = ellipse::truth_of(scene.pad, view, camera);
-  const Truth truth{shown.outer_edge, shown.visible_fraction, true};
-  return is_in_view(truth, kSize) ? truth : Truth{};
+  Truth truth{shown.outer_edge, shown.visible_fraction};
+  if (!is_in_view(truth, kSize)) truth = {};
+  truth.is_complete = scene.ground.kind != ellipse::GroundKind::kCircles;
+  return truth;
 }
 
 class RenderedPictures : public PictureSource {

@@ -88,6 +88,18 @@ TEST(EvidenceFit, UsesOnlyTheGivenSources) {
   EXPECT_NE(all.fit_all(), both.fit_all());
 }
 
+TEST(EvidenceFit, CountsNoUnlistedEllipseAsWrong) {
+  const std::vector<Sequence> distractors = {
+      make_rendered("mine", "distractors", ellipse::scene_by_name("distractors", 1), {0.0, 1, 1})};
+  ASSERT_FALSE(distractors.front().frames.front().truth.is_complete);
+  try {
+    (void)EvidenceFitter({}, distractors, go_on).fit_all();
+    FAIL() << "was fitted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "--fit-evidence: every candidate in the frames is an ellipse");
+  }
+}
+
 // The scene "occluded" behind bars eight times as wide.
 std::vector<Sequence> behind_wide_bars(std::uint64_t seed) {
   ellipse::Scene scene = ellipse::scene_by_name("occluded", seed);
