@@ -43,8 +43,8 @@ struct Calibration {
 /// wrong below .6. Candidates in between, or concentric with a true ellipse, are not used, nor are
 /// wrong ones of a frame with an incomplete truth. Sources with at least 100 candidates have equal
 /// weight; so have the right and the wrong candidates of a source. Most wrong candidates are easy
-/// to reject. After the first fit, the table is therefore fitted twice more, to all right candidates
-/// and the most probable wrong ones of each frame.
+/// to reject. After the first fit, the table is therefore fitted twice more, to all right
+/// candidates and the most probable wrong ones of each frame.
 class EvidenceFitter : public Chooser {
  public:
   /// Runs the detector on all labelled frames.

@@ -26,9 +26,9 @@ using support::TemporaryFolder;
 using support::Terminal;
 using support::TerminalCalls;
 
-std::vector<pid_t> signalled;  // recorded by record_kill
+std::vector<pid_t> signalled;  // recorded by record_signal
 
-int record_kill(pid_t process, int /*number*/) {
+int record_signal(pid_t process, int /*number*/) {
   signalled.push_back(process);
   return 0;
 }
@@ -36,7 +36,7 @@ pid_t fail_to_fork() {
   errno = EAGAIN;
   return -1;
 }
-constexpr ProcessCalls kNoFork{fail_to_fork, record_kill};
+constexpr ProcessCalls kNoFork{fail_to_fork, record_signal};
 
 template <int kErrno>
 int fail_to_open(int* near, int* far, char*, const termios*, const winsize*) {
@@ -100,7 +100,7 @@ TEST_F(Children, AFailedForkAtATerminalSignalsNobody) {
 
 TEST_F(Children, MissingTerminalSupportIsDetected) {
   for (const auto open : {fail_to_open<ENOENT>, fail_to_open<ENODEV>}) {
-    Terminal terminal({"sleep", "60"}, {open, {fork, record_kill}});
+    Terminal terminal({"sleep", "60"}, {open, {fork, record_signal}});
     EXPECT_TRUE(terminal.is_missing());
     EXPECT_TRUE(terminal.reason().starts_with("no pseudo terminal: No such")) << terminal.reason();
     terminal.type('\x03');
@@ -113,7 +113,7 @@ TEST_F(Children, MissingTerminalSupportIsDetected) {
 TEST_F(Children, ATerminalThatCannotBeOpenedFailsTheTest) {
   EXPECT_NONFATAL_FAILURE(
       {
-        const Terminal terminal({"sleep", "60"}, {fail_to_open<EMFILE>, {fork, record_kill}});
+        const Terminal terminal({"sleep", "60"}, {fail_to_open<EMFILE>, {fork, record_signal}});
         EXPECT_FALSE(terminal.is_missing());
       },
       "no pseudo terminal: Too many open files");
@@ -123,7 +123,7 @@ TEST_F(Children, ATerminalThatCannotBeOpenedFailsTheTest) {
 TEST_F(Children, ErrorNamesMissingPrograms) {
   EXPECT_NONFATAL_FAILURE(
       {
-        ChildProcess child({.arguments = {"no-such-program"}}, {fork, record_kill});
+        ChildProcess child({.arguments = {"no-such-program"}}, {fork, record_signal});
         EXPECT_EQ(child.wait(), -1);
       },
       "cannot start no-such-program: No such file or directory");
@@ -147,7 +147,7 @@ TEST_F(Children, AreKilledWithTheirOwner) {
 
 TEST_F(Children, AreNotSignalledOnceTheyHaveBeenWaitedFor) {
   {
-    ChildProcess child({.arguments = {"true"}}, {fork, record_kill});
+    ChildProcess child({.arguments = {"true"}}, {fork, record_signal});
     EXPECT_EQ(child.wait(), 0);
     child.signal(SIGINT);
   }
@@ -157,7 +157,7 @@ TEST_F(Children, AreNotSignalledOnceTheyHaveBeenWaitedFor) {
 TEST_F(Children, AreSignalledWithTheirGroupWhereTheyHaveOne) {
   for (const Session session : {Session::kShared, Session::kOwnGroup}) {
     ChildProcess child({.arguments = {"sh", "-c", "read line"}, .session = session},
-                       {fork, record_kill});
+                       {fork, record_signal});
     child.signal(SIGINT);
     const pid_t expected = session == Session::kShared ? child.id() : -child.id();
     EXPECT_EQ(signalled, std::vector<pid_t>{expected});
