@@ -4,10 +4,15 @@
 // the tables and figures of [Keipour2021] III.
 #include <gst/gst.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <opencv2/core.hpp>
 
 #include "examples/evaluate/program.hpp"
@@ -149,12 +154,22 @@ void add_options(CLI::App& app, Options& options) {
   }
 }
 
+// Keeps freed memory. Otherwise glibc may return it to the system after each frame, and the page
+// faults slow methods that allocate: the reference took up to 4.7 times as long.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // glibc's own maximum
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 }  // namespace
 }  // namespace evaluate
 
 int main(int argc, char** argv) {
   gst_init(nullptr, nullptr);
   cv::setNumThreads(1);
+  evaluate::keep_freed_memory();
   evaluate::Options options;
   CLI::App app{"Measures the ellipse tracker and its peers on data sets with ground truth."};
   app.name("ellipse-evaluate");
