@@ -158,7 +158,7 @@ void add_options(CLI::App& app, Options& options) {
 // faults slow methods that allocate: the reference took up to 4.7 times as long.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // glibc's own maximum
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that glibc chooses by itself
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif
 }
