@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 
@@ -17,7 +18,8 @@ constexpr std::array<std::uint32_t, 8> kOpen = [] {
   std::array<std::uint32_t, 8> open{};
   for (unsigned octant = 0; octant < 8; ++octant) {
     for (const unsigned turn : {7U, 0U, 1U}) {
-      open[octant] |= 1U << (maximum::kFree | ((octant + turn) & maximum::kOctant));
+      const unsigned next = maximum::kFree | ((octant + turn) & maximum::kOctant);
+      open[octant] |= 1U << next | 1U << (next | maximum::kSeed);
     }
   }
   return open;
@@ -44,9 +46,8 @@ class ChainTracer::Walk {
     while (out != last) {
       at = next_of(at, octant);
       if (at < 0) break;
-      const unsigned code = maxima_[at];
-      octant = code & maximum::kOctant;
-      maxima_[at] = static_cast<std::uint8_t>(octant | maximum::kChained);
+      octant = maxima_[at] & maximum::kOctant;
+      maxima_[at] = static_cast<std::uint8_t>(octant);
       *out++ = at;
     }
     return out;
@@ -55,26 +56,34 @@ class ChainTracer::Walk {
  private:
   // Whether a pixel's code is in the bit set `open`.
   [[nodiscard]] bool is_open(std::int32_t pixel, std::uint32_t open) const {
-    return ((open >> (maxima_[pixel] & (maximum::kFree | maximum::kOctant))) & 1U) != 0;
+    const unsigned code = maxima_[pixel] & (maximum::kOctant | maximum::kFree | maximum::kSeed);
+    return ((open >> code) & 1U) != 0;
   }
 
   [[nodiscard]] int strength(std::int32_t pixel) const {
     return std::abs(gradients_[pixel].x) + std::abs(gradients_[pixel].y);
   }
 
-  // Prefers straight ahead, then the stronger side, then a gap of one pixel. -1 at the end.
+  // Prefers straight ahead, then the stronger side, then a gap of one pixel. -1 at the end. Selects
+  // the neighbour without branches, since texture makes it unpredictable.
   [[nodiscard]] std::int32_t next_of(std::int32_t at, unsigned octant) const {
     const std::uint32_t open = kOpen[octant];
-    const std::int32_t ahead = at + steps_[octant + 1U];
-    if (is_open(ahead, open)) return ahead;
     const std::int32_t left = at + steps_[octant];
+    const std::int32_t ahead = at + steps_[octant + 1U];
     const std::int32_t right = at + steps_[octant + 2U];
+    const bool has_left = is_open(left, open);
+    const bool has_ahead = is_open(ahead, open);
     const bool has_right = is_open(right, open);
-    if (is_open(left, open)) return has_right && strength(right) >= strength(left) ? right : left;
-    if (has_right) return right;
+    if (!(has_left | has_ahead | has_right)) return beyond(ahead, octant);
+    if (!has_ahead & has_left & has_right) return strength(right) >= strength(left) ? right : left;
+    const std::int32_t side = has_right ? right : left;
+    return has_ahead ? ahead : side;
+  }
+
+  [[nodiscard]] std::int32_t beyond(std::int32_t gap, unsigned octant) const {
     for (const std::size_t side : {1U, 2U, 0U}) {
-      const std::int32_t beyond = ahead + steps_[octant + side];
-      if (is_open(beyond, open)) return beyond;
+      const std::int32_t pixel = gap + steps_[octant + side];
+      if (is_open(pixel, kOpen[octant])) return pixel;
     }
     return -1;
   }
@@ -91,21 +100,27 @@ bool are_near(std::int32_t a, std::int32_t b, int stride) {
          std::abs(a / stride - b / stride) <= kClosingGap;
 }
 
-// Calls use(index) for each unvisited seed until it returns false. Skips words of eight pixels
-// without seeds, which are most of them.
-template <class Use>
-void for_each_seed(const GradientMap& map, const Use& use) {
-  constexpr std::uint64_t kAllSeeds = 0x0101010101010101U * maximum::kSeed;
-  const std::uint8_t* maxima = map.maxima();
+// Index of the first byte in memory that is not 0.
+int first_byte_of(std::uint64_t word) {
+  const bool is_little = std::endian::native == std::endian::little;
+  return (is_little ? std::countr_zero(word) : std::countl_zero(word)) / 8;
+}
+
+// Calls visit(index) for each unvisited seed, which it marks as visited, until it returns false.
+// Skips words of eight pixels without seeds, which are most of them.
+template <class Visit>
+void for_each_seed(const GradientMap& map, const Visit& visit) {
+  using Word = std::uint64_t;
+  constexpr Word kAllSeeds = 0x0101010101010101U * maximum::kSeed;
+  const auto seeds_at = [&](std::int32_t pixel) {
+    Word word = 0;
+    std::memcpy(&word, map.maxima() + pixel, sizeof word);
+    return word & kAllSeeds;
+  };
   for (const std::int32_t block : map.blocks()) {
-    std::array<std::uint64_t, GradientMap::kBlock / sizeof(std::uint64_t)> words;
-    std::memcpy(words.data(), maxima + block, sizeof words);
-    std::int32_t i = block;
-    for (const std::uint64_t word : words) {
-      const std::int32_t end = i + static_cast<std::int32_t>(sizeof word);
-      if ((word & kAllSeeds) == 0) i = end;
-      for (; i < end; ++i) {
-        if ((maxima[i] & maximum::kSeed) != 0 && !use(i)) return;
+    for (std::int32_t i = block; i < block + GradientMap::kBlock; i += sizeof(Word)) {
+      while (const Word seeds = seeds_at(i)) {
+        if (!visit(i + first_byte_of(seeds))) return;
       }
     }
   }
@@ -118,23 +133,21 @@ void ChainTracer::add_chain(std::int32_t seed,
                             std::uint8_t* maxima,
                             const Walk& against,
                             const Walk& along) {
-  maxima[seed] = static_cast<std::uint8_t>((maxima[seed] & maximum::kOctant) | maximum::kChained);
+  maxima[seed] &= maximum::kOctant;
   std::int32_t* const begin = pixels_.data() + count_;
   const std::int32_t* const last = pixels_.data() + pixels_.size();
-  std::int32_t* out = against.run(seed, begin, last - 1);
-  std::reverse(begin, out);
-  *out++ = seed;
-  out = along.run(seed, out, last);
-  const auto length = static_cast<std::size_t>(out - begin);
-  if (length < kMinLength) {
-    for (const std::int32_t* pixel = begin; pixel != out; ++pixel) {
-      maxima[*pixel] &= maximum::kOctant;
-    }
-    return;
+  std::int32_t* const middle = against.run(seed, begin, last - 1);
+  *middle = seed;
+  std::int32_t* const end = along.run(seed, middle + 1, last);
+  const auto length = static_cast<std::size_t>(end - begin);
+  if (length < kMinLength) return;
+  std::reverse(begin, middle);
+  for (const std::int32_t* pixel = begin; pixel != end; ++pixel) {
+    maxima[*pixel] |= maximum::kChained;
   }
   count_ += length;
   begins_.push_back(count_);
-  is_closed_.push_back(are_near(*begin, *(out - 1), stride_));
+  is_closed_.push_back(are_near(*begin, *(end - 1), stride_));
 }
 
 void ChainTracer::reserve(std::size_t chains) {
