@@ -19,7 +19,7 @@ constexpr std::array<FeatureInfo, kFeatures> kInfos = {{
     {"coverage", "the same, reduced by the longest gap"},
     {"length", "length inside the picture"},
     {"deviation", "distance of the edges from the ellipse"},
-    {"radius", "radius"},
+    {"changes", "changes of polarity per edge"},
     {"contrast", "gradient over noise"},
     {"straight", "share of edges that are straight"},
 }};

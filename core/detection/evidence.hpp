@@ -31,7 +31,7 @@ enum class Feature : std::size_t {
   kCoverage,        ///< ln of turn support x (1 - longest gap between edges, as a share).
   kLength,          ///< ln(1 + length of the outline inside the picture) [px].
   kDeviation,       ///< ln of the RMS distance of the edges from the outline [radii].
-  kRadius,          ///< ln of the radius sqrt(ab) [px].
+  kChanges,         ///< Number of changes of polarity around the outline, per edge.
   kContrast,        ///< ln of the mean gradient over GradientMap::texture().
   kStraight,        ///< Share of edges whose gradient does not turn with the outline, 0 to 1.
 };

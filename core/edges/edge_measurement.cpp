@@ -20,13 +20,31 @@ struct FoundMaximum {
   float sigma_px = 0.0F;
 };
 
-// Whether a gradient is within 30 degrees of a direction.
-bool agrees(const Gradient& g, const Eigen::Vector2f& direction) {
-  const float gx = g.x;
-  const float gy = g.y;
-  const float along = gx * direction.x() + gy * direction.y();
-  return along > 0.0F && along * along >= kMinSquaredCosine * (gx * gx + gy * gy);
-}
+// The outward normal of an outline, and the sign of the gradients along it.
+class SignedNormal {
+ public:
+  SignedNormal(const Eigen::Vector2f& normal, Polarity polarity)
+      : normal_(normal), sign_(static_cast<float>(polarity)) {}
+
+  // The gradient along the normal: positive if its sign is right.
+  [[nodiscard]] float component(const Gradient& g) const {
+    const float along =
+        static_cast<float>(g.x) * normal_.x() + static_cast<float>(g.y) * normal_.y();
+    return sign_ == 0.0F ? std::abs(along) : sign_ * along;
+  }
+
+  // Whether a gradient is within 30 degrees of the normal, and its sign is right.
+  [[nodiscard]] bool agrees(const Gradient& g) const {
+    const float along = component(g);
+    const float gx = g.x;
+    const float gy = g.y;
+    return along > 0.0F && along * along >= kMinSquaredCosine * (gx * gx + gy * gy);
+  }
+
+ private:
+  Eigen::Vector2f normal_;
+  float sign_;  // 1: outwards, -1: inwards, 0: either
+};
 
 // @param offset  From the sample's pixel to the maximum's, in steps.
 FoundMaximum maximum_at(const Gradient* here, std::ptrdiff_t step, std::ptrdiff_t offset) {
@@ -49,7 +67,6 @@ float vertex_variance(float noise, float cosine, float curvature) {
 
 EdgeMeasurement measured(const OutlineSamples& outline,
                          std::size_t k,
-                         float sign,
                          const FoundMaximum& maximum) {
   const Eigen::Vector2f normal = outline.normal(k);
   Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
@@ -58,7 +75,8 @@ EdgeMeasurement measured(const OutlineSamples& outline,
   const Eigen::Vector2f& gradient = maximum.gradient;
   const float contrast = gradient.norm();
   const float across = gradient.y() * normal.x() - gradient.x() * normal.y();
-  const float sine = sign * across / contrast;
+  const bool is_bright_inside = gradient.dot(normal) < 0.0F;
+  const float sine = (is_bright_inside ? -across : across) / contrast;
   // The outline curves away from its tangent to both sides of the sample.
   const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
   const float curvature = outline.curvature(k);
@@ -72,7 +90,8 @@ EdgeMeasurement measured(const OutlineSamples& outline,
           sine * (1.0F + sine * sine / 6.0F),  // arc sine, within .003 up to 30 degrees
           contrast,
           outline.length_px(k),
-          outline.px_per_ideal(k)};
+          outline.px_per_ideal(k),
+          is_bright_inside};
 }
 
 // The pixels whose search stays inside the picture: a rectangle relative to an outline's origin.
@@ -109,14 +128,14 @@ class MapSearch {
 
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
                                                  bool is_flat,
-                                                 const Eigen::Vector2f& to_bright) const {
+                                                 const SignedNormal& normal) const {
     const std::ptrdiff_t step = is_flat ? 1 : stride_;
     const std::ptrdiff_t at = origin_ + std::ptrdiff_t(pixel.y()) * stride_ + pixel.x();
     for (std::ptrdiff_t k = 0; k <= 2 * reach_; ++k) {
       const std::ptrdiff_t offset = (k & 1) != 0 ? (k + 1) / 2 : -(k / 2);
       const std::ptrdiff_t beside = at + offset * step;
       if ((maxima_[beside] & maximum::kChained) == 0) continue;
-      if (!agrees(gradients_[beside], to_bright)) continue;
+      if (!normal.agrees(gradients_[beside])) continue;
       return maximum_at(gradients_ + beside, step, offset);
     }
     return std::nullopt;
@@ -143,25 +162,22 @@ class PictureSearch {
 
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
                                                  bool is_flat,
-                                                 const Eigen::Vector2f& to_bright) const {
+                                                 const SignedNormal& normal) const {
     const int first = -kReachOnPicture - 1;
     const int x = pixel.x() + origin_.x() + (is_flat ? first : 0);
     const int y = pixel.y() + origin_.y() + (is_flat ? 0 : first);
     std::array<Gradient, 2 * kReachOnPicture + 3> line;
     gradients_along(luma_, x, y, is_flat, line);
-    const auto height_of = [&](const Gradient& g) {
-      return static_cast<float>(g.x) * to_bright.x() + static_cast<float>(g.y) * to_bright.y();
-    };
     const auto top = std::max_element(
         line.begin() + 1, line.end() - 1, [&](const Gradient& a, const Gradient& b) {
-          return height_of(a) < height_of(b);
+          return normal.component(a) < normal.component(b);
         });
-    if (height_of(*top) < min_gradient_ || !agrees(*top, to_bright)) return std::nullopt;
+    if (normal.component(*top) < min_gradient_ || !normal.agrees(*top)) return std::nullopt;
     const std::ptrdiff_t offset = top - line.begin();
     FoundMaximum found = maximum_at(&*top, 1, offset + first);
     if (!(found.sharpness > 0.0F)) return std::nullopt;
     // The brightest pixel in the reach of the kernels.
-    const bool is_brighter_before = to_bright[is_flat ? 0 : 1] < 0.0F;
+    const bool is_brighter_before = (is_flat ? top->x : top->y) < 0;
     const int bright = static_cast<int>(offset) + (is_brighter_before ? -2 : 2);
     const std::uint8_t level = is_flat ? luma_.row(y)[x + bright] : luma_.row(y + bright)[x];
     found.sigma_px = is_saturated(level) ? kPixelError : kVertexError;
@@ -200,7 +216,6 @@ template <class Search>
 OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
                                            Polarity polarity,
                                            const Search& search) {
-  const auto sign = static_cast<float>(polarity);  // dark inside: the gradient points outwards
   count_ = 0;
   origin_ = outline.origin().cast<double>();
   float total = 0.0F;
@@ -216,11 +231,12 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     if (!search.area.has(pixel)) continue;
     inside += length;
     inside_turn += outline.turn(k);
-    const auto maximum = search.find(pixel, outline.is_flat(k), sign * outline.normal(k));
+    const Eigen::Vector2f normal = outline.normal(k);
+    const auto maximum = search.find(pixel, outline.is_flat(k), {normal, polarity});
     if (!maximum) continue;
     matched += length;
     matched_turn += outline.turn(k);
-    edges_[count_++] = measured(outline, k, sign, *maximum);
+    edges_[count_++] = measured(outline, k, *maximum);
     sharpness += maximum->sharpness;
   }
   if (!(inside > 0.0F)) return {};

@@ -38,6 +38,7 @@ struct EdgeMeasurement {
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
   float length_px = 0.0F;            ///< Length of the outline that the sample represents.
   float px_per_ideal = 1.0F;         ///< As OutlineSamples::px_per_ideal().
+  bool is_bright_inside = false;     ///< Whether the gradient points inwards.
 };
 
 /// Share of an outline that is matched by edges.
@@ -50,8 +51,8 @@ struct OutlineSupport {
 
 /// Matches edges to an ellipse's outline: searches at each sample, along the row or column closest
 /// to the normal, for the nearest or highest gradient maximum within 30 degrees of the normal and
-/// of the right sign. Locates it to sub-pixel accuracy [Devernay1995] and corrects the shift of
-/// curved edges by smoothing.
+/// of the right sign, or of either sign if the polarity is mixed. Locates it to sub-pixel accuracy
+/// [Devernay1995] and corrects the shift of curved edges by smoothing.
 ///
 /// One object serves one thread. Allocates nothing; O(samples x reach).
 class EdgeMeasurer {

@@ -6,11 +6,12 @@
 
 namespace ellipse {
 
-/// Which side of an edge is dark.
-enum class Polarity { kDarkInside = 1, kBrightInside = -1 };
+/// Which side of an outline is dark: one side all along, or each in a part of the outline, as of a
+/// shaded ball.
+enum class Polarity { kDarkInside = 1, kBrightInside = -1, kMixed = 0 };
 
 [[nodiscard]] constexpr Polarity opposite(Polarity polarity) {
-  return polarity == Polarity::kDarkInside ? Polarity::kBrightInside : Polarity::kDarkInside;
+  return static_cast<Polarity>(-static_cast<int>(polarity));
 }
 
 /// Sub-pixel position and sharpness of a gradient maximum.

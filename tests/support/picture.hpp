@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -38,6 +39,24 @@ inline Picture rendered(const ellipse::Scene& scene,
   Picture picture(width, height);
   ellipse::SceneRenderer(scene).render(
       ellipse::image_from_pad(outer_edge), frame, picture.writable());
+  return picture;
+}
+
+/// A ball lit from above: brighter than its ground above the centre and darker below. `outline` is
+/// a circle.
+inline Picture lit_ball(const ellipse::Ellipse& outline, int width, int height) {
+  constexpr double kGround = 120.0;
+  constexpr double kShade = 40.0;  // largest difference from the ground
+  Picture picture(width, height);
+  ellipse::Random noise(1);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double inside_px = outline.semi_major - std::hypot(x - outline.cx, y - outline.cy);
+      const double covered = std::clamp(0.5 + inside_px, 0.0, 1.0);
+      const double shade = kShade * (outline.cy - y) / outline.semi_major;
+      picture.at(x, y) = static_cast<std::uint8_t>(kGround + covered * shade + 2.0 * noise.unit());
+    }
+  }
   return picture;
 }
 

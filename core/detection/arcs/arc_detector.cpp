@@ -48,6 +48,11 @@ bool is_inside_of(const Arc& b, const Arc& a) {
   return true;
 }
 
+// Whether an outline of polarity a may have a part of polarity b, or the reverse.
+bool may_agree(Polarity a, Polarity b) {
+  return a == b || a == Polarity::kMixed || b == Polarity::kMixed;
+}
+
 bool is_certain(double probability) {
   return log_odds(probability) >= kCertainLogOdds;
 }
@@ -95,19 +100,23 @@ void ArcDetector::find_edges(int scale, const Thresholds& thresholds) {
   chains_.trace(map);
 }
 
-// The outline at its better polarity, if the edges of this scale keep it in place [px of the
-// frame].
+// The outline, if the edges of this scale keep it in place [px of the frame]. Uses its better
+// polarity, or both if they make an unlikely outline more probable.
 std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
                                                       const Ellipse& e,
                                                       const Thresholds& thresholds) {
   const GradientMap& map = map_at(scale);
   const Ellipse guess = to_region(e, {}, scale);
-  const Polarity polarity = verifier_.better_polarity(map, guess);
-  MeasuredEllipse measured;
-  const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
-  if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) return std::nullopt;
-  measured.ellipse = to_frame(measured.ellipse, {}, scale);
-  return measured;
+  std::optional<MeasuredEllipse> best;
+  for (const Polarity polarity : {verifier_.better_polarity(map, guess), Polarity::kMixed}) {
+    if (best && log_odds(best->probability) >= 0.0) break;
+    MeasuredEllipse measured;
+    const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
+    if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) continue;
+    measured.ellipse = to_frame(measured.ellipse, {}, scale);
+    if (!best || measured.probability > best->probability) best = measured;
+  }
+  return best;
 }
 
 void ArcDetector::reduce(const Picture& picture) {
@@ -161,16 +170,22 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   }
 }
 
-// Tries pairs in ascending sum of ranks, so that the best arcs come first.
+// Tries pairs of one polarity first, in ascending sum of ranks, so that the best arcs come first.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
-  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxTried);
   std::size_t pairs = 0;
+  for (const bool is_mixed : {false, true}) try_pairs(is_mixed, pairs, thresholds);
+}
+
+// @param is_mixed  Whether the arcs of a pair differ in polarity.
+// @param pairs     Number of pairs tried so far.
+void ArcDetector::try_pairs(bool is_mixed, std::size_t& pairs, const Thresholds& thresholds) {
+  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxTried);
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
       const Arc& a = arcs_[i];
       const Arc& b = arcs_[k];
-      if (is_used_[i] != 0 || is_used_[k] != 0 || a.polarity != b.polarity) continue;
+      if (is_used_[i] != 0 || is_used_[k] != 0 || (a.polarity != b.polarity) != is_mixed) continue;
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
       if (++pairs > ArcSplitter::kMaxTried) return;
       try_arcs({&a, &b}, thresholds);
@@ -181,7 +196,11 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
 void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds) {
   const Arc& first = **arcs.begin();
   Moments moments = first.moments;
-  for (const Arc* other : std::span(arcs).subspan(1)) moments.add(other->moments);
+  Polarity polarity = first.polarity;
+  for (const Arc* other : std::span(arcs).subspan(1)) {
+    moments.add(other->moments);
+    if (other->polarity != polarity) polarity = Polarity::kMixed;
+  }
   TracedPiece pieces[2];
   std::transform(arcs.begin(), arcs.end(), pieces, [](const Arc* arc) {
     return TracedPiece{arc->begin, arc->end};
@@ -189,7 +208,7 @@ void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresho
   const std::span<const TracedPiece> made_of(pieces, arcs.size());
   const auto fit = fit_with_residual(moments);
   if (fit) {
-    try_guess({fit->ellipse, first.polarity, fit->rms_px}, made_of, thresholds);
+    try_guess({fit->ellipse, polarity, fit->rms_px}, made_of, thresholds);
   } else if (trace_ != nullptr) {
     (void)trace_->add(made_of, std::nullopt, {Reason::kNoEllipse});
   }
@@ -227,7 +246,7 @@ Verdict ArcDetector::examine(const Guess& guess,
 Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
   for (const Found& known : found_) {
-    if (known.scale == scale_ && known.measured.polarity == guess.polarity &&
+    if (known.scale == scale_ && may_agree(known.measured.polarity, guess.polarity) &&
         are_same(known.measured.ellipse, in_frame, scale_)) {
       return {Reason::kKnown};
     }
@@ -247,7 +266,7 @@ void ArcDetector::add(const MeasuredEllipse& measured) {
   found.measured.ellipse = to_frame(measured.ellipse, {}, scale_);
   for (Found& known : found_) {
     const int coarser = std::max(known.scale, scale_);
-    if (known.measured.polarity != measured.polarity ||
+    if (!may_agree(known.measured.polarity, measured.polarity) ||
         !are_same(known.measured.ellipse, found.measured.ellipse, coarser)) {
       continue;
     }
@@ -262,7 +281,7 @@ void ArcDetector::add(const MeasuredEllipse& measured) {
 void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
   const double tolerance_px = EllipseVerifier::deformation_px(e);
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
-    if (is_used_[i] != 0 || arcs_[i].polarity != polarity) continue;
+    if (is_used_[i] != 0 || !may_agree(arcs_[i].polarity, polarity)) continue;
     const auto& points = arcs_[i].points;
     is_used_[i] = std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
       return std::abs(sampson_distance(e, point)) <= tolerance_px;

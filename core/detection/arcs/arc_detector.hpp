@@ -68,6 +68,7 @@ class ArcDetector final : public Detector {
   void search(int scale, const Thresholds& full);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
+  void try_pairs(bool is_mixed, std::size_t& pairs, const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,
                  std::span<const TracedPiece> pieces,

@@ -54,6 +54,16 @@ double longest_gap(std::span<const EdgeMeasurement> edges, std::size_t samples) 
   return static_cast<double>(longest) / count;
 }
 
+// Number of neighbouring edges that differ in polarity, as a share of all edges.
+double share_of_changes(std::span<const EdgeMeasurement> edges) {
+  int changes = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const EdgeMeasurement& next = edges[(i + 1) % edges.size()];
+    if (edges[i].is_bright_inside != next.is_bright_inside) ++changes;
+  }
+  return edges.empty() ? 0.0 : changes / static_cast<double>(edges.size());
+}
+
 bool is_on_outline(const EdgeMeasurement& edge, double reach_px) {
   return std::abs(edge.offset.distance_px) <= reach_px;
 }
@@ -221,7 +231,7 @@ void EllipseVerifier::measure(const GradientMap& map,
   set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest_gap(edges, samples))));
   set(Feature::kLength, std::log1p(found.inside_px));
   set(Feature::kDeviation, std::log(0.002 + std::min(1.0, sums.rms_px() / radius)));
-  set(Feature::kRadius, std::log(radius));
+  set(Feature::kChanges, share_of_changes(edges));
   set(Feature::kContrast, std::log(std::clamp(signal_to_noise, 1.0, 100.0)));
   set(Feature::kStraight, 0.0);
 }

@@ -27,6 +27,7 @@ struct MeasuredEllipse {
 /// Fits a candidate ellipse to the edges around it and measures their evidence.
 ///
 /// Rigid and deformed outlines share one model: the edges' deviation from the ellipse is a feature.
+/// So do outlines of one and of mixed polarity: the changes of polarity are a feature.
 /// Rejects a candidate early once it is unlikely to reach the minimum probability.
 class EllipseVerifier {
  public:
@@ -35,7 +36,7 @@ class EllipseVerifier {
                                            const GradientMap& map,
                                            const Thresholds& thresholds);
 
-  /// The polarity with more edges on the outline.
+  /// The polarity with more edges on the outline; not kMixed.
   [[nodiscard]] Polarity better_polarity(const GradientMap& map, const Ellipse& e);
 
   /// @param measured  Always written; its probability only if the last fit has enough edges.

@@ -30,6 +30,7 @@ void RingCorrector::correct(const Picture& picture,
   for (const Detection& detection : detections) maxima_.push_back(detection.ellipse);
   for (std::size_t i = 0; i < maxima_.size(); ++i) {
     const Ellipse& maximum = maxima_[i];
+    if (polarities[i] == Polarity::kMixed) continue;
     const Polarity other = opposite(polarities[i]);
     const Ellipse* partner = closest_partner(polarities, i);
     if (partner != nullptr && !is_thin(ordered(maximum, *partner))) continue;
@@ -50,7 +51,7 @@ const Ellipse* RingCorrector::closest_partner(std::span<const Polarity> polariti
   const Ellipse& edge = maxima_[i];
   const Ellipse* closest = nullptr;
   for (std::size_t k = 0; k < maxima_.size(); ++k) {
-    if (polarities[k] == polarities[i] || !are_partners(edge, maxima_[k])) continue;
+    if (polarities[k] != opposite(polarities[i]) || !are_partners(edge, maxima_[k])) continue;
     const double gap = std::abs(maxima_[k].semi_major - edge.semi_major);
     if (closest == nullptr || gap < std::abs(closest->semi_major - edge.semi_major)) {
       closest = &maxima_[k];

@@ -60,5 +60,25 @@ TEST(EdgeMeasurer, ReportsItsStandardDeviation) {
   }
 }
 
+TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
+  const Ellipse truth{160.3, 120.6, 50.0, 50.0, 0.0};
+  const Picture ball = support::lit_ball(truth, 320, 240);
+  GradientMap map;
+  ChainTracer chains;
+  map.compute(ball.view());
+  chains.trace(map);
+  EdgeMeasurer measurer;
+  EXPECT_LT(measurer.measure(map, truth, Polarity::kDarkInside, 64, 2).support, 0.6);
+  EXPECT_LT(measurer.measure(map, truth, Polarity::kBrightInside, 64, 2).support, 0.6);
+  EXPECT_GT(measurer.measure(map, truth, Polarity::kMixed, 64, 2).support, 0.8);
+  for (const EdgeMeasurement& edge : measurer.edges()) {
+    if (std::abs(edge.normal.y()) < 0.5F) continue;  // little contrast
+    EXPECT_EQ(edge.is_bright_inside, edge.normal.y() < 0.0F);
+    EXPECT_NEAR(edge.direction_error_rad, 0.0F, 0.1F);
+    EXPECT_NEAR(edge.offset.distance_px, 0.0F, 0.3F);
+  }
+  EXPECT_GT(measurer.measure(ball.view(), truth, Polarity::kMixed, 64, 10.0).support, 0.8);
+}
+
 }  // namespace
 }  // namespace ellipse

@@ -55,6 +55,16 @@ TEST(ArcDetector, FindsRingsOfEitherPolarity) {
   EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
 }
 
+TEST(ArcDetector, FindsABallBrighterThanTheGroundAboveAndDarkerBelow) {
+  const Ellipse truth{160.3, 120.6, 50.0, 50.0, 0.0};
+  const Picture ball = support::lit_ball(truth, 320, 240);
+  EXPECT_GT(best_iou(ball, truth, detecting()), 0.97);
+  ArcDetector detector;
+  const auto odds = detector.log_odds_of({ball.view()}, truth, detecting());
+  ASSERT_TRUE(odds);
+  EXPECT_GT(*odds, 0.0);
+}
+
 // The slope of the ground is not noise, although its gradient exceeds that of the noise.
 TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
