@@ -443,6 +443,19 @@ TEST(FollowingTracker, DropsTargetsThatAreNoLongerEllipses) {
   EXPECT_LE(reports, 3);
 }
 
+// The pad's model has edges of one polarity, so that the outline is less exact than a detected one.
+TEST(FollowingTracker, FollowsABallBrighterThanTheGroundAboveAndDarkerBelow) {
+  Tracker tracker;
+  for (int frame = 0; frame < 60; ++frame) {
+    const Ellipse truth{130.3 + frame, 120.6, 50.0, 50.0, 0.0};
+    const auto target =
+        tracker.process(support::lit_ball(truth, 320, 240).view(), frame * kFrameNs);
+    ASSERT_TRUE(target) << frame;
+    EXPECT_EQ(target->id, 1U) << frame;
+    EXPECT_LT(max_difference_px(target->ellipse, truth), 0.15 * truth.semi_major) << frame;
+  }
+}
+
 TEST(FollowingTracker, KeepsTheIdThroughFramesWithoutTheTarget) {
   const Film film(plain_ring());
   Tracker tracker;
