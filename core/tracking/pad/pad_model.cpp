@@ -131,6 +131,7 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
   const std::optional<int> found = outer_circle(profile, pixel_noise(luma));
   if (!found) return std::nullopt;
   const int outer = *found;
+  if (profile.agreement(outer) < kMinCoverage) return std::nullopt;  // no single polarity
   PadModel model;
   const auto add = [&](int i) {
     model.circles.push_back(

@@ -62,7 +62,8 @@ struct PadModel {
 ///                    the image is too coarse to resolve it. 0 = learned.
 /// @param min_apart   Min distance of neighbouring circles of the same polarity [radii]. The search
 ///                    would take the edge of one for the other if they were closer.
-/// @return nullopt if there is no step at the outer circle. Allocates only the model.
+/// @return nullopt if there is no step of one polarity at the outer circle. Allocates only the
+/// model.
 [[nodiscard]] std::optional<PadModel> learn_circles(const ImageView& luma,
                                                     const PadView& view,
                                                     double ring_ratio = 0.0,

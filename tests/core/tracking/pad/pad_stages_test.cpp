@@ -128,6 +128,14 @@ TEST(LearnCirclesFrom, TheOuterEdgeOfAThinRing) {
   }
 }
 
+TEST(LearnCirclesFrom, NoOutlineOfBothPolarities) {
+  for (int x = 0; x < 60; ++x) {
+    const Ellipse ball{130.3 + x, 120.6, 50.0, 50.0, 0.0};
+    const Picture picture = support::lit_ball(ball, 320, 240);
+    EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(ball))) << x;
+  }
+}
+
 TEST(LearnCirclesFrom, AGivenRingRatio) {
   // Too coarse to resolve the ring.
   Scene scene = scene_of(Pattern::kRing, false);
