@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/detection/arcs/arc_detector.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,10 +14,10 @@
 namespace ellipse {
 namespace {
 
-constexpr double kConvexSlack = 0.1;    // tolerance of the convexity test, share of the distance
-constexpr double kSame = 0.05;          // tolerance for duplicates, share of the semi-major axis
-constexpr double kMinReducedPx = 10.0;  // semi-minor axis below which reduction hides corners
-constexpr int kMinSidePx = 30;          // smaller side of a reduced picture that is searched
+constexpr std::size_t kMaxMeasured = 20;  // pairs per scale
+constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
+constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
+constexpr int kMinSidePx = 30;            // smaller side of a reduced picture that is searched
 constexpr double kSameInside = 0.8;  // IoU inside the picture of an ellipse before and after a fit
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
@@ -38,14 +39,33 @@ bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) 
 
 // Whether b lies on the inner side of a's tangents, as arcs of one convex curve do.
 bool is_inside_of(const Arc& b, const Arc& a) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::Vector2d apart = b.points[k] - a.points[i];
-      const double slack = kConvexSlack * apart.lpNorm<1>();
-      if (apart.dot(a.inwards[i]) < -slack) return false;
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    for (const Eigen::Vector2d& point : b.points) {
+      if (!((point - a.points[i]).dot(a.inwards[i]) >= 0.0)) return false;  // also NaN
     }
   }
   return true;
+}
+
+Moments moments_of(std::initializer_list<const Arc*> arcs) {
+  Moments sum = (*arcs.begin())->moments;
+  for (const Arc* other : std::span(arcs).subspan(1)) sum.add(other->moments);
+  return sum;
+}
+
+// Sum of 1 - cos of the angles between the normals of arcs and those of an ellipse.
+double direction_error(std::initializer_list<const Arc*> arcs, const Ellipse& e) {
+  const Eigen::Rotation2Dd rotation(-e.angle_rad);
+  const Eigen::Vector2d axes(e.semi_major, e.semi_minor);
+  double sum = 0.0;
+  for (const Arc* arc : arcs) {
+    for (std::size_t i = 0; i < arc->points.size(); ++i) {
+      const Eigen::Vector2d point = rotation * (arc->points[i] - e.center());
+      const Eigen::Vector2d outwards = point.cwiseQuotient(axes.cwiseAbs2()).normalized();
+      sum += 1.0 + outwards.dot(rotation * arc->inwards[i]);
+    }
+  }
+  return sum;
 }
 
 // Whether an outline of polarity a may have a part of polarity b, or the reverse.
@@ -170,35 +190,43 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   }
 }
 
-// Tries pairs of one polarity first, in ascending sum of ranks, so that the best arcs come first.
+// Measures the pairs whose directions agree best with their ellipse. Arcs of one ellipse may differ
+// in polarity.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
-  std::size_t pairs = 0;
-  for (const bool is_mixed : {false, true}) try_pairs(is_mixed, pairs, thresholds);
+  fit_pairs();
+  const auto agrees_better = [](const Pair& a, const Pair& b) {
+    return a.direction_error < b.direction_error;
+  };
+  std::sort(pairs_.begin(), pairs_.end(), agrees_better);
+  std::size_t measured = 0;
+  for (const Pair& pair : pairs_) {
+    if (is_used_[pair.first] != 0 || is_used_[pair.second] != 0) continue;
+    if (++measured > kMaxMeasured) return;
+    try_arcs({&arcs_[pair.first], &arcs_[pair.second]}, thresholds);
+  }
 }
 
-// @param is_mixed  Whether the arcs of a pair differ in polarity.
-// @param pairs     Number of pairs tried so far.
-void ArcDetector::try_pairs(bool is_mixed, std::size_t& pairs, const Thresholds& thresholds) {
+// Pairs on one convex curve, in ascending sum of ranks, so that the best arcs come first.
+void ArcDetector::fit_pairs() {
+  pairs_.clear();
   const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxTried);
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
       const Arc& a = arcs_[i];
       const Arc& b = arcs_[k];
-      if (is_used_[i] != 0 || is_used_[k] != 0 || (a.polarity != b.polarity) != is_mixed) continue;
+      if (is_used_[i] != 0 || is_used_[k] != 0) continue;
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
-      if (++pairs > ArcSplitter::kMaxTried) return;
-      try_arcs({&a, &b}, thresholds);
+      const auto ellipse = fit_ellipse(moments_of({&a, &b}));
+      if (ellipse) pairs_.push_back({i, k, direction_error({&a, &b}, *ellipse)});
+      if (pairs_.size() == ArcSplitter::kMaxTried) return;
     }
   }
 }
 
 void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds) {
-  const Arc& first = **arcs.begin();
-  Moments moments = first.moments;
-  Polarity polarity = first.polarity;
-  for (const Arc* other : std::span(arcs).subspan(1)) {
-    moments.add(other->moments);
+  Polarity polarity = (*arcs.begin())->polarity;
+  for (const Arc* other : arcs) {
     if (other->polarity != polarity) polarity = Polarity::kMixed;
   }
   TracedPiece pieces[2];
@@ -206,7 +234,7 @@ void ArcDetector::try_arcs(std::initializer_list<const Arc*> arcs, const Thresho
     return TracedPiece{arc->begin, arc->end};
   });
   const std::span<const TracedPiece> made_of(pieces, arcs.size());
-  const auto fit = fit_with_residual(moments);
+  const auto fit = fit_with_residual(moments_of(arcs));
   if (fit) {
     try_guess({fit->ellipse, polarity, fit->rms_px}, made_of, thresholds);
   } else if (trace_ != nullptr) {
@@ -243,11 +271,13 @@ Verdict ArcDetector::examine(const Guess& guess,
   return verdict;
 }
 
+// An uncertain ellipse may be a wrong fit to a part of another one.
 Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
   for (const Found& known : found_) {
-    if (known.scale == scale_ && may_agree(known.measured.polarity, guess.polarity) &&
-        are_same(known.measured.ellipse, in_frame, scale_)) {
+    const auto& [one, scale] = known;
+    if (scale == scale_ && is_certain(one.probability) && may_agree(one.polarity, guess.polarity) &&
+        are_same(one.ellipse, in_frame, scale_)) {
       return {Reason::kKnown};
     }
   }
@@ -259,9 +289,10 @@ Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   return {};
 }
 
-// Keeps the more probable one of two duplicates.
+// Keeps the more probable one of two duplicates. The arcs of an uncertain ellipse may belong to
+// another one.
 void ArcDetector::add(const MeasuredEllipse& measured) {
-  use_arcs_on(measured.ellipse, measured.polarity);
+  if (is_certain(measured.probability)) use_arcs_on(measured.ellipse, measured.polarity);
   Found found{measured, scale_};
   found.measured.ellipse = to_frame(measured.ellipse, {}, scale_);
   for (Found& known : found_) {

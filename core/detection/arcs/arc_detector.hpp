@@ -30,7 +30,7 @@ struct TracedPiece;
 /// duplicates across sizes. Refines ellipses from reduced pictures on each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
-/// ArcSplitter::kMaxArcs, and by a fixed number of pairs among the best arcs.
+/// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs.
 class ArcDetector final : public Detector {
  public:
   explicit ArcDetector(Simd simd = best_simd())
@@ -52,6 +52,12 @@ class ArcDetector final : public Detector {
     double rms_px;  // RMS distance of the points of its arcs
   };
 
+  struct Pair {
+    std::size_t first;  // index of an arc
+    std::size_t second;
+    double direction_error;
+  };
+
   struct Found {
     MeasuredEllipse measured;  // [px of the picture]
     int scale;                 // of its pass
@@ -68,7 +74,7 @@ class ArcDetector final : public Detector {
   void search(int scale, const Thresholds& full);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
-  void try_pairs(bool is_mixed, std::size_t& pairs, const Thresholds& thresholds);
+  void fit_pairs();
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,
                  std::span<const TracedPiece> pieces,
@@ -104,6 +110,7 @@ class ArcDetector final : public Detector {
   RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // per arc: whether it lies on a found ellipse
+  std::vector<Pair> pairs_;
   std::vector<Found> found_;
   std::vector<Guess> rejected_;
   std::vector<Detection> detections_;

@@ -65,6 +65,17 @@ TEST(ArcDetector, FindsABallBrighterThanTheGroundAboveAndDarkerBelow) {
   EXPECT_GT(*odds, 0.0);
 }
 
+// Shading inside the ball may continue the edge of one half; that uncertain ellipse does not
+// prevent the right one.
+TEST(ArcDetector, FindsABallBesideAnUncertainFitToItsHalf) {
+  Thresholds thresholds = detecting();
+  thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
+  for (int x = 0; x < 60; ++x) {
+    const Ellipse truth{130.3 + x, 120.6, 50.0, 50.0, 0.0};
+    EXPECT_GT(best_iou(support::lit_ball(truth, 320, 240), truth, thresholds), 0.99) << x;
+  }
+}
+
 // The slope of the ground is not noise, although its gradient exceeds that of the noise.
 TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
