@@ -271,7 +271,7 @@ Verdict ArcDetector::examine(const Guess& guess,
   return verdict;
 }
 
-// An uncertain ellipse may be a wrong fit to a part of another one.
+// Only a certain ellipse excludes similar guesses: an uncertain one may be a wrong fit.
 Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
   for (const Found& known : found_) {
@@ -289,8 +289,8 @@ Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   return {};
 }
 
-// Keeps the more probable one of two duplicates. The arcs of an uncertain ellipse may belong to
-// another one.
+// Keeps the more probable one of two duplicates. Only a certain ellipse uses its arcs up: those of
+// an uncertain one may belong to another ellipse.
 void ArcDetector::add(const MeasuredEllipse& measured) {
   if (is_certain(measured.probability)) use_arcs_on(measured.ellipse, measured.polarity);
   Found found{measured, scale_};

@@ -443,7 +443,7 @@ TEST(FollowingTracker, DropsTargetsThatAreNoLongerEllipses) {
   EXPECT_LE(reports, 3);
 }
 
-// Detects it in each frame, since a pad has edges of one polarity.
+// The ball is detected in each frame: the pad tracker locks on outlines of one polarity only.
 TEST(FollowingTracker, FollowsABallBrighterThanTheGroundAboveAndDarkerBelow) {
   Tracker tracker;
   for (int frame = 0; frame < 60; ++frame) {

@@ -65,8 +65,8 @@ TEST(ArcDetector, FindsABallBrighterThanTheGroundAboveAndDarkerBelow) {
   EXPECT_GT(*odds, 0.0);
 }
 
-// Shading inside the ball may continue the edge of one half; that uncertain ellipse does not
-// prevent the right one.
+// An ellipse along the edge of one half and the shading inside the other is accepted, but
+// uncertain. It must not exclude the right one.
 TEST(ArcDetector, FindsABallBesideAnUncertainFitToItsHalf) {
   Thresholds thresholds = detecting();
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
