@@ -37,12 +37,12 @@ constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {173, 0}, {174, 0}},
     {"airlab-gascola", {455, 0}, {455, 0}},
-    {"pupil-infrared", {1067, 11}, {1017, 1}},
+    {"pupil-infrared", {1067, 11}, {1018, 1}},
     {"pupil-blinks", {259, 0}, {256, 0}},
     {"pupil-blinks", {207, 0}, {206, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {141, 0}, {140, 1}},
+    {"octagon-negative", {141, 0}, {139, 2}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 

@@ -277,7 +277,7 @@ TEST(Clutter, CausesFewFalseTargetsOfArcs) {
 TEST(Clutter, PolygonsCauseFewFalseTargetsOfArcs) {
   const int wrong = false_on(GroundKind::kPolygons);
   RecordProperty("false", wrong);
-  EXPECT_LE(wrong, 22);
+  EXPECT_LE(wrong, 19);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMaxMeasured = 20;  // pairs per scale
+constexpr std::size_t kMaxPaired = 50;    // best arcs in pairs; pairs fitted per scale
+constexpr std::size_t kMaxMeasured = 20;  // of these
 constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
 constexpr int kMinSidePx = 30;            // smaller side of a reduced picture that is searched
@@ -209,7 +210,7 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
 // Pairs on one convex curve, in ascending sum of ranks, so that the best arcs come first.
 void ArcDetector::fit_pairs() {
   pairs_.clear();
-  const std::size_t n = std::min(arcs_.size(), ArcSplitter::kMaxTried);
+  const std::size_t n = std::min(arcs_.size(), kMaxPaired);
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
@@ -219,7 +220,7 @@ void ArcDetector::fit_pairs() {
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
       const auto ellipse = fit_ellipse(moments_of({&a, &b}));
       if (ellipse) pairs_.push_back({i, k, direction_error({&a, &b}, *ellipse)});
-      if (pairs_.size() == ArcSplitter::kMaxTried) return;
+      if (pairs_.size() == kMaxPaired) return;
     }
   }
 }
@@ -327,16 +328,16 @@ bool ArcDetector::has_certain_target() {
   return target && is_certain(target->probability);
 }
 
-// Averages the log odds at the ellipse's scale with those at the finer scales: reduction hides the
-// corners of a polygon, which show again at the finer scales. Skips a scale whose noise may hide
-// the outline, since blur reduces the gradient by up to the ratio of the scales. The threshold of a
-// finer scale is at least that of the coarser one: compression removes fine noise, but not the
-// errors that it causes.
+// Averages the log odds at the ellipse's scale with those at the finer scales, each weighted with
+// the square root of its resolution: reduction hides the corners of a polygon, which show again at
+// the finer scales. Skips a scale whose noise may hide the outline, since blur reduces the gradient
+// by up to the ratio of the scales. The threshold of a finer scale is at least that of the coarser
+// one: compression removes fine noise, but not the errors that it causes.
 double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thresholds) {
   const MeasuredEllipse& measured = found.measured;
   double high = map_at(found.scale).thresholds().high;
   double sum = log_odds(measured.probability);
-  int scales = 1;
+  double weights = 1.0;
   for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
     const GradientMap& map = map_at(scale);
     high = std::max(high, map.thresholds().high);
@@ -346,10 +347,11 @@ double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thr
     const Verdict verdict = verifier_.verify(
         map, guess, measured.polarity, thresholds.at_scale(scale), evidence_, finer);
     const bool holds = verdict.is_accepted() && is_same_inside(finer.ellipse, guess, map);
-    sum += holds ? log_odds(finer.probability) : -kCertainLogOdds;
-    ++scales;
+    const double weight = std::sqrt(static_cast<double>(found.scale) / scale);
+    sum += weight * (holds ? log_odds(finer.probability) : -kCertainLogOdds);
+    weights += weight;
   }
-  return sum / scales;
+  return sum / weights;
 }
 
 void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {

@@ -76,6 +76,33 @@ TEST(ArcDetector, FindsABallBesideAnUncertainFitToItsHalf) {
   }
 }
 
+// 108 half discs, each with an arc that is longer than the outline of the disc below one of them.
+TEST(ArcDetector, FindsASmallDiscAmongManyLongerArcs) {
+  constexpr int kCell = 106;
+  constexpr double kHalfDisc = 48.0;
+  constexpr double kContrast = 70.0;
+  for (int n = 0; n < 5; ++n) {
+    const Ellipse truth{53.4 + kCell * 2 * n, 81.2 + kCell * n, 12.0, 12.0, 0.0};
+    Picture picture(12 * kCell, 9 * kCell);
+    Random noise(1);
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        const int above = kCell / 2 - y % kCell;
+        const double from_centre = std::hypot(x % kCell - kCell / 2, above);
+        const double half = above < 0 ? 0.0 : std::clamp(kHalfDisc - from_centre, 0.0, 1.0);
+        const double from_truth = std::hypot(x - truth.cx, y - truth.cy);
+        const double disc = std::clamp(truth.semi_major - from_truth + 0.5, 0.0, 1.0);
+        const double level = 80.0 + kContrast * std::max(half, disc) + 4.0 * noise.unit();
+        picture.at(x, y) = static_cast<std::uint8_t>(level);
+      }
+    }
+    ArcDetector detector;
+    const auto target = select_target(detector.detect(picture.view(), detecting()));
+    ASSERT_TRUE(target) << n;
+    EXPECT_GT(iou_inside(target->ellipse, truth, picture.width, picture.height), 0.9) << n;
+  }
+}
+
 // The slope of the ground is not noise, although its gradient exceeds that of the noise.
 TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
