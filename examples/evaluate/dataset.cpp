@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 #include "examples/evaluate/picture_reader.hpp"
 #include "examples/evaluate/rows.hpp"
@@ -265,7 +266,8 @@ Dataset read_dataset(const fs::path& folder, double frames_per_second) {
 
 std::vector<fs::path> dataset_folders(const fs::path& folder) {
   std::vector<fs::path> folders;
-  if (fs::is_directory(folder) && !fs::exists(folder / "gt.csv")) {
+  std::error_code error;  // a list of seeds may be longer than a file name
+  if (fs::is_directory(folder, error) && !fs::exists(folder / "gt.csv")) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       if (fs::exists(entry.path() / "gt.csv")) folders.push_back(entry.path());
     }

@@ -168,6 +168,8 @@ TEST_F(Footage, FoldersOfDataSetsAreExpanded) {
   EXPECT_EQ(dataset_folders(folder_.path()), (std::vector<fs::path>{file("a"), file("b")}));
   EXPECT_EQ(dataset_folders(file("a")), std::vector<fs::path>{file("a")});
   EXPECT_EQ(dataset_folders("scenes:7"), std::vector<fs::path>{"scenes:7"});
+  const std::string many_seeds = "scenes:" + std::string(300, '7');
+  EXPECT_EQ(dataset_folders(many_seeds), std::vector<fs::path>{many_seeds});
 }
 
 TEST_F(Footage, PicturesWithoutTimesGetTheGivenRate) {
