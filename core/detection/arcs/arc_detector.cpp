@@ -14,8 +14,8 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMaxPaired = 50;    // best arcs in pairs; pairs fitted per scale
-constexpr std::size_t kMaxMeasured = 20;  // of these
+constexpr std::size_t kMaxPaired = 50;    // best arcs that form pairs; pairs fitted per scale
+constexpr std::size_t kMaxMeasured = 20;  // pairs measured per scale
 constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
 constexpr int kMinSidePx = 30;            // smaller side of a reduced picture that is searched

@@ -38,7 +38,7 @@ class ArcSplitter {
                                      bool wants_all = false);
 
   static constexpr double kMinTurn = 0.3;        ///< Of an arc [rad].
-  static constexpr std::size_t kMaxTried = 200;  ///< Best arcs, each a candidate.
+  static constexpr std::size_t kMaxTried = 200;  ///< Best arcs of a target search.
   static constexpr std::size_t kMaxArcs = 2048;  ///< Bounds the time spent on one image.
 
  private:
