@@ -30,7 +30,8 @@ struct TracedPiece;
 /// duplicates across sizes. Refines ellipses from reduced pictures on each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
-/// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs.
+/// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A target search
+/// tries no further single arc at a size that has shown 50 ellipses.
 class ArcDetector final : public Detector {
  public:
   explicit ArcDetector(Simd simd = best_simd())

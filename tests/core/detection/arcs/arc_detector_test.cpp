@@ -244,6 +244,16 @@ TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
   for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
 }
 
+// At most 50 at each of the three sizes.
+TEST(ArcDetector, StopsAfterEnoughTargets) {
+  const Picture picture = board_of_discs(25, 16, 10.0);
+  ArcDetector detector;
+  const auto found = detector.detect(picture.view(), detecting());
+  EXPECT_GE(found.size(), 50U);
+  EXPECT_LE(found.size(), 150U);
+  for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
+}
+
 TEST(ArcDetector, FindsSmallDiscsWithASmallerMinContourSize) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
   const Picture picture = rendered(disc(), truth, 120, 100);
