@@ -14,7 +14,7 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kEnough = 50;       // arcs in pairs; pairs fitted, targets found per scale
+constexpr std::size_t kMaxPerScale = 50;  // arcs in pairs; pairs fitted; ellipses of single arcs
 constexpr std::size_t kMaxMeasured = 20;  // pairs measured per scale
 constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
@@ -185,11 +185,11 @@ void ArcDetector::search(int scale, const Thresholds& full) {
   try_pairs(thresholds);
 }
 
-// Stops a target search in a picture full of ellipses, where each is measured and refined.
+// Bounds the cost in a picture full of ellipses, each of which is measured and refined.
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
   const std::size_t of_coarser_scales = found_.size();
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
-    if (!thresholds.wants_all && found_.size() >= of_coarser_scales + kEnough) return;
+    if (!thresholds.wants_all && found_.size() >= of_coarser_scales + kMaxPerScale) return;
     if (is_used_[i] == 0) try_arcs({&arcs_[i]}, thresholds);
   }
 }
@@ -213,7 +213,7 @@ void ArcDetector::try_pairs(const Thresholds& thresholds) {
 // Pairs on one convex curve, in ascending sum of ranks, so that the best arcs come first.
 void ArcDetector::fit_pairs() {
   pairs_.clear();
-  const std::size_t n = std::min(arcs_.size(), kEnough);
+  const std::size_t n = std::min(arcs_.size(), kMaxPerScale);
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
@@ -223,7 +223,7 @@ void ArcDetector::fit_pairs() {
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
       const auto ellipse = fit_ellipse(moments_of({&a, &b}));
       if (ellipse) pairs_.push_back({i, k, direction_error({&a, &b}, *ellipse)});
-      if (pairs_.size() == kEnough) return;
+      if (pairs_.size() == kMaxPerScale) return;
     }
   }
 }

@@ -31,7 +31,7 @@ struct TracedPiece;
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
 /// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A target search
-/// tries no further single arc at a size that has shown 50 ellipses.
+/// accepts at most 50 ellipses of single arcs at each size.
 class ArcDetector final : public Detector {
  public:
   explicit ArcDetector(Simd simd = best_simd())

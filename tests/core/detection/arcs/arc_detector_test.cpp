@@ -244,7 +244,7 @@ TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
   for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
 }
 
-// At most 50 at each of the three sizes.
+// Each disc has a single arc; at most 50 such ellipses are accepted at each of the three sizes.
 TEST(ArcDetector, StopsAfterEnoughTargets) {
   const Picture picture = board_of_discs(25, 16, 10.0);
   ArcDetector detector;
