@@ -248,16 +248,15 @@ Calibration EvidenceFitter::left_out_calibration(const SourceGroups& groups) con
       const double p = table.probability(candidate->features);
       auto& bin = calibration.bins[std::min<std::size_t>(9, static_cast<std::size_t>(10.0 * p))];
       ++bin.candidates;
-      bin.weight += weight;
-      bin.probability += weight * p;
-      if (candidate->is_right) bin.right += weight;
+      bin.probability += p;
+      if (candidate->is_right) ++bin.right;
       calibration.log_loss -= weight * std::log(std::max(1e-9, candidate->is_right ? p : 1.0 - p));
     }
   }
   for (CalibrationBin& bin : calibration.bins) {
-    if (!(bin.weight > 0.0)) continue;
-    bin.probability /= bin.weight;
-    bin.right /= bin.weight;
+    if (bin.candidates == 0) continue;
+    bin.probability /= bin.candidates;
+    bin.right /= bin.candidates;
   }
   calibration.log_loss /= std::max(1.0, sources);
   return calibration;
@@ -275,8 +274,9 @@ Table calibration_table(const Calibration& calibration) {
                           bin.candidates > 0 ? number(bin.probability, 3) : "-",
                           bin.candidates > 0 ? number(bin.right, 3) : "-"});
   }
-  table.note = "All sources have equal weight. Log loss: " + number(calibration.log_loss, 4) +
-               ". Candidates that are neither right nor wrong are excluded.";
+  table.note = "Log loss: " + number(calibration.log_loss, 4) +
+               ", with equal weights of all sources. Candidates that are neither right nor wrong "
+               "are excluded.";
   return table;
 }
 

@@ -26,15 +26,15 @@ struct LabelledCandidate {
 /// Candidates with similar predicted probability.
 struct CalibrationBin {
   int candidates = 0;
-  double weight = 0.0;       ///< All candidates of a source together weigh 1.
-  double probability = 0.0;  ///< Weighted mean of the predicted probability.
-  double right = 0.0;        ///< Weighted fraction of right candidates.
+  double probability = 0.0;  ///< Mean of the predicted probability.
+  double right = 0.0;        ///< Fraction of right candidates.
 };
 
 /// Agreement of predicted probabilities with observed frequencies.
 struct Calibration {
   std::array<CalibrationBin, 10> bins;  ///< Tenths of the probability.
-  double log_loss = 0.0;  ///< Weighted mean of -ln of the probability predicted for the true label.
+  /// Mean of -ln of the probability predicted for the true label. All sources have equal weight.
+  double log_loss = 0.0;
 };
 
 /// Fits the evidence table of the detector `arcs` by logistic regression on labelled frames.

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -136,6 +137,10 @@ TEST(EvidenceFit, MeasuresTheCalibrationOnLeftOutSources) {
   EXPECT_GT(high.right, low.right + 0.4);
   EXPECT_LT(low.probability, 0.1);
   EXPECT_GT(high.probability, 0.9);
+  for (const CalibrationBin& bin : calibration.bins) {
+    const double right = bin.right * bin.candidates;  // a count: each candidate weighs 1
+    EXPECT_NEAR(right, std::round(right), 1e-6);
+  }
   EXPECT_GT(calibration.log_loss, 0.0);
   EXPECT_LT(calibration.log_loss, 0.3);
   EXPECT_EQ(calibration_table(calibration).rows.size(), 10U);
