@@ -130,6 +130,9 @@ class Program {
 
   [[nodiscard]] Dataset dataset_by_name(const std::string& name) const {
     if (const auto seeds = scene_seeds(name)) return {make_scenes(*seeds, options_.pace), {}, 0};
+    if (auto sequences = one_scene_by_name(name, options_.pace)) {
+      return {std::move(*sequences), {}, 0};
+    }
     if (const auto seeds = scene_seeds(name, "clutter")) {
       return {make_clutter(*seeds, options_.pace), {}, 0};
     }

@@ -58,6 +58,17 @@ class SharedFrames {
   std::vector<std::shared_ptr<const DistortedFrame>> frames_;
 };
 
+void add_scene(const std::string& dataset,
+               const ellipse::NamedScene& scene,
+               const std::vector<std::uint64_t>& seeds,
+               const FrameTimes& times,
+               std::vector<Sequence>& sequences) {
+  for (const std::uint64_t seed : seeds) {
+    const std::string name = format("%s-%llu", scene.name, static_cast<unsigned long long>(seed));
+    sequences.push_back(make_rendered(dataset, name, scene.make(seed), times));
+  }
+}
+
 }  // namespace
 
 std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
@@ -78,15 +89,24 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
 }
 
 std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds, const ScenePace& pace) {
-  const FrameTimes times = times_of(pace);
   std::vector<Sequence> sequences;
   for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
-    for (const std::uint64_t seed : seeds) {
-      const std::string name = format("%s-%llu", scene.name, static_cast<unsigned long long>(seed));
-      sequences.push_back(make_rendered("scenes", name, scene.make(seed), times));
-    }
+    add_scene("scenes", scene, seeds, times_of(pace), sequences);
   }
   return sequences;
+}
+
+std::optional<std::vector<Sequence>> one_scene_by_name(const std::string& text,
+                                                       const ScenePace& pace) {
+  for (const ellipse::NamedScene& scene : ellipse::scene_catalog()) {
+    const std::string dataset = format("scenes-%s", scene.name);
+    const auto seeds = scene_seeds(text, dataset);
+    if (!seeds) continue;
+    std::vector<Sequence> sequences;
+    add_scene(dataset, scene, *seeds, times_of(pace), sequences);
+    return sequences;
+  }
+  return std::nullopt;
 }
 
 std::vector<Sequence> make_clutter(const std::vector<std::uint64_t>& seeds, const ScenePace& pace) {

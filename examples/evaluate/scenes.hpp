@@ -27,6 +27,12 @@ struct ScenePace {
 [[nodiscard]] std::vector<Sequence> make_scenes(const std::vector<std::uint64_t>& seeds,
                                                 const ScenePace& pace);
 
+/// One scene of the catalog: "scenes-negative:41-46" gives sequences "negative-41" and so on of the
+/// data set "scenes-negative". nullopt if the text does not start with the name of such a data set.
+/// Throws as scene_seeds() and make_scenes().
+[[nodiscard]] std::optional<std::vector<Sequence>> one_scene_by_name(const std::string& text,
+                                                                     const ScenePace& pace);
+
 /// The scene without a pad on each ground that contains pad-like objects, as sequences
 /// "flowers-901" and so on of the data set "clutter". Throws as make_scenes().
 [[nodiscard]] std::vector<Sequence> make_clutter(const std::vector<std::uint64_t>& seeds,

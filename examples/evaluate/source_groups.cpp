@@ -10,8 +10,9 @@
 namespace evaluate {
 
 SourceGroups::SourceGroups()
-    : groups_{{"airlab", {"airlab-*"}},
-              {"rendered", {"twin", "thin", "scenes", "distorted", "wild", "clutter"}}} {}
+    : groups_{
+          {"airlab", {"airlab-*"}},
+          {"rendered", {"twin", "thin", "scenes", "scenes-*", "distorted", "wild", "clutter"}}} {}
 
 SourceGroups::SourceGroups(const std::filesystem::path& file) {
   std::ifstream in(file);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -252,6 +253,25 @@ TEST(Scenes, MakesOneSequencePerCatalogSceneAndSeed) {
   // The first frame again, after the last one, when the renderer has been released.
   EXPECT_EQ(cv::norm(first, scenes[0].pictures->picture(scenes[0].frames[0]), cv::NORM_INF), 0.0);
   EXPECT_THROW((void)make_scenes({5}, {0.01, 15.0}), std::invalid_argument);
+}
+
+TEST(Scenes, GivesOneSceneOfTheCatalogByName) {
+  const ScenePace pace{1.0, 10.0};
+  const auto sequences = one_scene_by_name("scenes-negative:5-6", pace);
+  ASSERT_TRUE(sequences);
+  ASSERT_EQ(sequences->size(), 2U);
+  const std::vector<Sequence> all = make_scenes({6}, pace);
+  const auto same = std::ranges::find(all, "negative-6", &Sequence::name);
+  ASSERT_NE(same, all.end());
+  const Sequence& second = sequences->back();
+  EXPECT_EQ(second.name, same->name);
+  EXPECT_EQ(second.dataset, "scenes-negative");
+  ASSERT_EQ(second.frames.size(), same->frames.size());
+  const cv::Mat picture = second.pictures->picture(second.frames[9]);
+  EXPECT_EQ(cv::norm(picture, same->pictures->picture(same->frames[9]), cv::NORM_INF), 0.0);
+  EXPECT_FALSE(one_scene_by_name("scenes:5", pace));
+  EXPECT_FALSE(one_scene_by_name("scenes-nothing:5", pace));
+  EXPECT_THROW((void)one_scene_by_name("scenes-negative:x", pace), std::invalid_argument);
 }
 
 TEST(Scenes, PadsLargerThanThePictureKeepTheirTruth) {

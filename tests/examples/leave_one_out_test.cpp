@@ -129,6 +129,7 @@ TEST(SourceGroups, AreReadFromAFile) {
   EXPECT_EQ(groups.group_of("/data/road:road"), "roads");
   EXPECT_EQ(SourceGroups().group_of("airlab-gascola"), "airlab");
   EXPECT_EQ(SourceGroups().group_of("twin"), SourceGroups().group_of("scenes"));
+  EXPECT_EQ(SourceGroups().group_of("scenes-negative"), SourceGroups().group_of("scenes"));
 }
 
 TEST(SourceGroups, ErrorNamesInvalidLines) {
