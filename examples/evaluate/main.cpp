@@ -63,11 +63,11 @@ void add_options(CLI::App& app, Options& options) {
       "DATASET",
       options.datasets,
       "Folders with gt.csv or ground_truth.txt, or folders of such folders; or rendered: "
-      "scenes:SEEDS = all scenes of the catalog, scenes-NAME:SEEDS = one of them, distorted:SEEDS "
-      "= "
-      "all through distorting lenses, wild:SEEDS = random scenes, wild-frames:SEEDS = one frame of "
-      "each, clutter:SEEDS = objects that resemble a pad. SEEDS is SEED, FROM-TO or a "
-      "comma-separated list. Default: the rendered imitation of the paper's data set (\"twin\")");
+      "scenes:SEEDS = all scenes of the catalog, scenes-NAME:SEEDS = one of them, "
+      "distorted:SEEDS = all through distorting lenses, wild:SEEDS = random scenes, "
+      "wild-frames:SEEDS = one frame of each, clutter:SEEDS = objects that resemble a pad. "
+      "SEEDS is SEED, FROM-TO or a comma-separated list. Default: the rendered imitation of the "
+      "paper's data set (\"twin\")");
   app.add_option("--seconds",
                  options.pace.seconds,
                  "Duration of each sequence of scenes, distorted and clutter [s]")
