@@ -21,7 +21,7 @@ constexpr std::array<FeatureInfo, kFeatures> kInfos = {{
     {"deviation", "distance of the edges from the ellipse"},
     {"changes", "changes of polarity per edge"},
     {"contrast", "gradient over noise"},
-    {"straight", "share of edges that are straight"},
+    {"corners", "turn gathered in evenly spaced corners"},
 }};
 constexpr const char* kBias = "bias";
 

@@ -33,7 +33,7 @@ enum class Feature : std::size_t {
   kDeviation,       ///< ln of the RMS distance of the edges from the outline [radii].
   kChanges,         ///< Number of changes of polarity around the outline, per edge.
   kContrast,        ///< ln of the mean gradient over GradientMap::texture().
-  kStraight,        ///< Share of edges whose gradient does not turn with the outline, 0 to 1.
+  kCorners,         ///< Share of the outline's turn that is in evenly spaced corners, about 0 to 1.
 };
 inline constexpr std::size_t kFeatures = 8;
 

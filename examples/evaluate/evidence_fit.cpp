@@ -24,7 +24,7 @@ using ellipse::kFeatures;
 constexpr double kRightIou = 0.85;
 constexpr double kWrongIou = 0.6;
 constexpr int kRounds = 2;                // fits after the first one
-constexpr int kWrongPerFrame = 5;         // number of wrong candidates per frame
+constexpr int kWrongPerFrame = 4;         // number of wrong candidates per frame
 constexpr double kMinCandidates = 100.0;  // a source with fewer is weighted less
 constexpr ellipse::Tolerance kSameEllipse{1.0, 0.05};
 constexpr double kRidge = 1e-5;

@@ -35,20 +35,20 @@ struct Source {
 
 constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
-    {"airlab-deformed", {173, 0}, {174, 0}},
-    {"airlab-gascola", {455, 0}, {455, 0}},
-    {"pupil-infrared", {1067, 11}, {1018, 1}},
-    {"pupil-blinks", {259, 0}, {256, 0}},
-    {"pupil-blinks", {207, 0}, {206, 0}, "jpeg"},
+    {"airlab-deformed", {173, 1}, {174, 0}},
+    {"airlab-gascola", {455, 0}, {454, 1}},
+    {"pupil-infrared", {1098, 1}, {1043, 0}},
+    {"pupil-blinks", {257, 0}, {256, 0}},
+    {"pupil-blinks", {213, 0}, {201, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
-    {"octagon-negative", {141, 0}, {139, 2}},
+    {"octagon-negative", {141, 0}, {138, 3}},
     {"road-negative", {221, 0}, {221, 0}},
 };
 
 /// All ellipses of calibration-discs, on single frames.
-constexpr int kMinRightDiscs = 2442;
-constexpr int kMaxMistakenDiscs = 5;
+constexpr int kMinRightDiscs = 2444;
+constexpr int kMaxMistakenDiscs = 4;
 
 void PrintTo(const Source& source, std::ostream* out) {
   *out << source.name << source.variant;

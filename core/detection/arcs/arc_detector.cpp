@@ -78,6 +78,13 @@ bool is_certain(double probability) {
   return log_odds(probability) >= kCertainLogOdds;
 }
 
+// The finer scales decide about an ellipse of a reduced picture, unless it is ruled out. A minimum
+// of 1 accepts none.
+double required_when_reduced(const Thresholds& thresholds) {
+  const double required = thresholds.min_probability;
+  return required < 1.0 ? std::min(required, probability_of(-kCertainLogOdds)) : required;
+}
+
 }  // namespace
 
 std::span<const Detection> ArcDetector::detect(const Picture& picture,
@@ -86,8 +93,10 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
   found_.clear();
   reduce(picture);
   search_scales(thresholds);
+  drop_unlikely(thresholds.min_probability);
+  merge_duplicates();
   refine_at_finer_scales(thresholds);
-  report();
+  report(thresholds.min_probability);
   ring_corrector_.correct(picture, min_gradient_, polarities_, detections_);
   if (trace_ != nullptr) trace_->report(detections_);
   return detections_;
@@ -162,7 +171,7 @@ int ArcDetector::coarsest_scale() const {
 void ArcDetector::search_scales(const Thresholds& thresholds) {
   for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
     search(scale, thresholds);
-    if (!thresholds.wants_all && has_certain_target()) return;
+    if (!thresholds.wants_all && has_certain_target(thresholds)) return;
   }
   confirm_at_finer_scales(thresholds);
 }
@@ -172,7 +181,8 @@ void ArcDetector::search(int scale, const Thresholds& full) {
   scale_ = scale;
   rejected_.clear();
   if (picture.luma.empty()) return;
-  const Thresholds thresholds = full.at_scale(scale);
+  Thresholds thresholds = full.at_scale(scale);
+  if (scale > 1) thresholds.min_probability = required_when_reduced(full);
   map_ = &map_at(scale);
   map_->compute(picture, {thresholds.edge_low, thresholds.edge_high});
   min_gradient_ = kGradientGain * map_->thresholds().low / scale;
@@ -293,24 +303,48 @@ Verdict ArcDetector::check_duplicate(const Guess& guess) const {
   return {};
 }
 
-// Keeps the more probable one of two duplicates. Only a certain ellipse uses its arcs up: those of
-// an uncertain one may belong to another ellipse.
+// Only a certain ellipse uses its arcs up: those of an uncertain one may belong to another ellipse.
+// merge_duplicates() compares uncertain duplicates of two sizes, after the finer sizes confirmed
+// them.
 void ArcDetector::add(const MeasuredEllipse& measured) {
-  if (is_certain(measured.probability)) use_arcs_on(measured.ellipse, measured.polarity);
+  const bool is_new_certain = is_certain(measured.probability);
+  if (is_new_certain) use_arcs_on(measured.ellipse, measured.polarity);
   Found found{measured, scale_};
   found.measured.ellipse = to_frame(measured.ellipse, {}, scale_);
   for (Found& known : found_) {
-    const int coarser = std::max(known.scale, scale_);
-    if (!may_agree(known.measured.polarity, measured.polarity) ||
-        !are_same(known.measured.ellipse, found.measured.ellipse, coarser)) {
-      continue;
-    }
-    const bool is_better = measured.probability > known.measured.probability;
-    reject(is_better ? known.measured.candidate : measured.candidate, {Reason::kKnown});
-    if (is_better) known = found;
+    const bool is_comparable =
+        known.scale == scale_ || is_new_certain || is_certain(known.measured.probability);
+    if (!is_comparable || !are_duplicates(known, found)) continue;
+    merge(found, known);
     return;
   }
   found_.push_back(found);
+}
+
+bool ArcDetector::are_duplicates(const Found& a, const Found& b) {
+  return may_agree(a.measured.polarity, b.measured.polarity) &&
+         are_same(a.measured.ellipse, b.measured.ellipse, std::max(a.scale, b.scale));
+}
+
+// Keeps the more probable one of two duplicates.
+void ArcDetector::merge(const Found& found, Found& known) {
+  const bool is_better = found.measured.probability > known.measured.probability;
+  reject(is_better ? known.measured.candidate : found.measured.candidate, {Reason::kKnown});
+  if (is_better) known = found;
+}
+
+void ArcDetector::merge_duplicates() {
+  auto end = found_.begin();
+  for (const Found& found : found_) {
+    const auto known = std::find_if(
+        found_.begin(), end, [&](Found& other) { return are_duplicates(other, found); });
+    if (known == end) {
+      *end++ = found;
+    } else {
+      merge(found, *known);
+    }
+  }
+  found_.erase(end, found_.end());
 }
 
 void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
@@ -325,8 +359,8 @@ void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
 }
 
 // Whether the best target is certain enough to skip the remaining scales.
-bool ArcDetector::has_certain_target() {
-  report();
+bool ArcDetector::has_certain_target(const Thresholds& thresholds) {
+  report(thresholds.min_probability);
   const auto target = select_target(detections_);
   return target && is_certain(target->probability);
 }
@@ -362,10 +396,15 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   thresholds.min_contour_size = 0;
   thresholds.min_probability = probability_of(-kCertainLogOdds);
-  std::erase_if(found_, [&](Found& found) {
+  for (Found& found : found_) {
     found.measured.probability = probability_of(confirmed_log_odds(found, thresholds));
+  }
+}
+
+void ArcDetector::drop_unlikely(double min_probability) {
+  std::erase_if(found_, [&](const Found& found) {
     const Verdict verdict =
-        at_least(Reason::kUnlikely, found.measured.probability, full.min_probability);
+        at_least(Reason::kUnlikely, found.measured.probability, min_probability);
     if (!verdict.is_accepted()) reject(found.measured.candidate, verdict);
     return !verdict.is_accepted();
   });
@@ -391,11 +430,12 @@ void ArcDetector::refine(int scale, MeasuredEllipse& measured) const {
   if (refined) measured.ellipse = to_frame(refined->ellipse, {}, scale);
 }
 
-void ArcDetector::report() {
+void ArcDetector::report(double min_probability) {
   detections_.clear();
   polarities_.clear();
   for (const Found& found : found_) {
     const MeasuredEllipse& one = found.measured;
+    if (one.probability < min_probability) continue;
     detections_.push_back({one.ellipse,
                            one.on_ellipse,
                            one.support,

@@ -26,8 +26,9 @@ struct TracedPiece;
 /// of an ellipse decides.
 ///
 /// Searches at a quarter of the size, then at half, then at full size, and stops early if the best
-/// target is certain. Otherwise confirms ellipses from reduced pictures at the finer sizes. Merges
-/// duplicates across sizes. Refines ellipses from reduced pictures on each finer one.
+/// target is certain. Otherwise the finer sizes decide about the ellipses of a reduced picture that
+/// are not ruled out. Merges duplicates across sizes. Refines ellipses from reduced pictures on
+/// each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
 /// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A target search
@@ -85,17 +86,21 @@ class ArcDetector final : public Detector {
                                 MeasuredEllipse& measured);
   [[nodiscard]] Verdict check_duplicate(const Guess& guess) const;
   void add(const MeasuredEllipse& measured);
+  [[nodiscard]] static bool are_duplicates(const Found& a, const Found& b);
+  void merge(const Found& found, Found& known);
+  void merge_duplicates();
   void use_arcs_on(const Ellipse& e, Polarity polarity);
-  [[nodiscard]] bool has_certain_target();
+  [[nodiscard]] bool has_certain_target(const Thresholds& thresholds);
   void find_edges(int scale, const Thresholds& thresholds);
   [[nodiscard]] std::optional<MeasuredEllipse> judged_at(int scale,
                                                          const Ellipse& e,
                                                          const Thresholds& thresholds);
   [[nodiscard]] double confirmed_log_odds(const Found& found, const Thresholds& thresholds);
   void confirm_at_finer_scales(const Thresholds& full);
+  void drop_unlikely(double min_probability);
   void refine_at_finer_scales(const Thresholds& thresholds);
   void refine(int scale, MeasuredEllipse& measured) const;
-  void report();
+  void report(double min_probability);
   void reject(int candidate, const Verdict& verdict);
   void trace_edges(const ImageView& luma);
   void trace_arcs();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "core/geometry/ellipse_fit.hpp"
@@ -11,13 +12,13 @@
 namespace ellipse {
 namespace {
 
-constexpr double kBasePx = 1.5;          // deviation of a rigid outline's edges,
-constexpr double kDeformation = 0.025;   // plus this share of the radius for deformed outlines
-constexpr double kOnOutlinePx = 2.0;     // largest distance of an edge on the outline
-constexpr double kOnEllipsePx = 1.0;     // largest distance that counts in the paper's Eq. (1),
-constexpr double kOnEllipseRad = 0.3;    // and largest direction error
-constexpr double kTurnWindow = 0.2;      // half-width of the window of the outline's turn [rad]
-constexpr double kStraightSlope = -0.5;  // halfway between an ellipse's 0 and a line's -1
+constexpr double kBasePx = 1.5;         // deviation of a rigid outline's edges,
+constexpr double kDeformation = 0.025;  // plus this share of the radius for deformed outlines
+constexpr double kOnOutlinePx = 2.0;    // largest distance of an edge on the outline
+constexpr double kOnEllipsePx = 1.0;    // largest distance that counts in the paper's Eq. (1),
+constexpr double kOnEllipseRad = 0.3;   // and largest direction error
+constexpr int kMinCorners = 5;          // of the polygons that an outline is compared with
+constexpr int kMaxCorners = 8;          // polygons with more are too similar to an ellipse
 
 constexpr std::size_t kSamples = 64;  // of the last step and the final measurement
 
@@ -90,6 +91,30 @@ struct Sums {
   [[nodiscard]] double rms_px() const { return length > 0.0 ? std::sqrt(squares / length) : 1e9; }
 };
 
+// Along an affine image of a regular polygon with n corners, the direction error per eccentric
+// anomaly, in units of the axes, is a sawtooth of amplitude pi / n and period 2 pi / n. Its first
+// harmonic has the amplitude 2 / n, and blur hardly reduces it. Returns the measured amplitude over
+// 2 / n, for the n with the largest one: 0 along an ellipse, 1 along a polygon.
+double turn_in_corners(std::span<const EdgeMeasurement> edges, std::size_t samples) {
+  std::array<std::complex<double>, kMaxCorners - kMinCorners + 1> sums{};
+  for (const EdgeMeasurement& edge : edges) {
+    const double px_per_rad = edge.length_px * static_cast<double>(samples) / kTwoPi;
+    const double error = edge.direction_error_rad * px_per_rad / edge.offset.px_per_unit;
+    const std::complex<double> anomaly(edge.offset.anomaly.x(), edge.offset.anomaly.y());
+    std::complex<double> power = error;
+    for (int corners = 1; corners <= kMaxCorners; ++corners) {
+      power *= anomaly;
+      if (corners >= kMinCorners) sums[std::size_t(corners - kMinCorners)] += power;
+    }
+  }
+  double largest = 0.0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double corners = kMinCorners + static_cast<double>(i);
+    largest = std::max(largest, corners * std::abs(sums[i]));
+  }
+  return largest / static_cast<double>(samples);
+}
+
 }  // namespace
 
 double EllipseVerifier::deformation_px(const Ellipse& e) {
@@ -116,7 +141,7 @@ Verdict EllipseVerifier::approach(const GradientMap& map,
   const double widest_px = std::max(3.0, deformation_px(measured.ellipse));
   for (const Step& step : kSteps) {
     const double reach_px = std::max(kOnOutlinePx, step.part_of_reach * widest_px);
-    measure(map, step.samples, reach_px, measured);
+    (void)measure(map, step.samples, reach_px, measured);
     const Verdict prospect = judge_prospect(step.max_growth, thresholds, table, measured);
     if (!prospect.is_accepted()) return prospect;
     const auto better = nearer_to_edges(measured.ellipse, reach_px);
@@ -156,50 +181,13 @@ std::optional<Ellipse> EllipseVerifier::nearer_to_edges(const Ellipse& e, double
   return fit.solve();
 }
 
-// Along a polygon's side the gradient keeps its direction while the outline's normal turns: the
-// direction error falls by a radian per radian of turn. Along an ellipse it is constant. The slope
-// of a line fitted to the errors in a window of the turn separates the two.
-double EllipseVerifier::straight_share() {
-  const std::span<const EdgeMeasurement> edges = measurer_.edges();
-  const std::size_t n = edges.size();
-  angles_.resize(2 * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double angle = std::atan2(edges[i].normal.y(), edges[i].normal.x());
-    angles_[i] = i == 0 ? angle : angles_[i - 1] + std::remainder(angle - angles_[i - 1], kTwoPi);
-  }
-  for (std::size_t i = 0; i < n; ++i) angles_[n + i] = angles_[i] + kTwoPi;
-  double straight = 0.0;
-  double judged = 0.0;
-  std::size_t first = 0;
-  std::size_t last = 0;
-  double sum = 0.0, x1 = 0.0, x2 = 0.0, y1 = 0.0, xy = 0.0;
-  const auto add = [&](std::size_t i, double sign) {
-    const double x = angles_[i] - angles_[n / 2];
-    const double y = edges[i % n].direction_error_rad;
-    sum += sign;
-    x1 += sign * x;
-    x2 += sign * x * x;
-    y1 += sign * y;
-    xy += sign * x * y;
-  };
-  for (std::size_t i = n / 2; i < n / 2 + n; ++i) {
-    while (last < 2 * n && angles_[last] <= angles_[i] + kTurnWindow) add(last++, 1.0);
-    while (angles_[first] < angles_[i] - kTurnWindow) add(first++, -1.0);
-    const double determinant = sum * x2 - x1 * x1;
-    if (sum < 4.0 || determinant < 1e-6) continue;
-    const double weight = edges[i % n].length_px;
-    judged += weight;
-    if (sum * xy - x1 * y1 < kStraightSlope * determinant) straight += weight;
-  }
-  return judged > 0.0 ? straight / judged : 1.0;
-}
-
 // @param samples   Minimum; doubled while too few are inside the picture.
 // @param reach_px  Largest distance of an edge on the outline.
-void EllipseVerifier::measure(const GradientMap& map,
-                              std::size_t samples,
-                              double reach_px,
-                              MeasuredEllipse& measured) {
+// @return          Number of samples.
+std::size_t EllipseVerifier::measure(const GradientMap& map,
+                                     std::size_t samples,
+                                     double reach_px,
+                                     MeasuredEllipse& measured) {
   const Ellipse& e = measured.ellipse;
   const int tolerance_px = static_cast<int>(std::lround(std::max(reach_px, deformation_px(e))));
   OutlineSupport found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
@@ -233,7 +221,8 @@ void EllipseVerifier::measure(const GradientMap& map,
   set(Feature::kDeviation, std::log(0.002 + std::min(1.0, sums.rms_px() / radius)));
   set(Feature::kChanges, share_of_changes(edges));
   set(Feature::kContrast, std::log(std::clamp(signal_to_noise, 1.0, 100.0)));
-  set(Feature::kStraight, 0.0);
+  set(Feature::kCorners, 0.0);
+  return samples;
 }
 
 Polarity EllipseVerifier::better_polarity(const GradientMap& map, const Ellipse& e) {
@@ -255,9 +244,10 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   measured.polarity = polarity;
   Verdict verdict = approach(map, thresholds, table, measured);
   if (!verdict.is_accepted()) return verdict;
-  measure(map, kSamples, kOnOutlinePx, measured);
+  const std::size_t samples = measure(map, kSamples, kOnOutlinePx, measured);
   if (verdict = judge_edges(); !verdict.is_accepted()) return verdict;
-  measured.features[static_cast<std::size_t>(Feature::kStraight)] = straight_share();
+  measured.features[static_cast<std::size_t>(Feature::kCorners)] =
+      turn_in_corners(measurer_.edges(), samples);
   measured.probability = table.probability(measured.features);
   verdict = at_least(Reason::kUnlikely, measured.probability, thresholds.min_probability);
   if (!verdict.is_accepted()) return verdict;

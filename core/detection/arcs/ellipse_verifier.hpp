@@ -62,15 +62,13 @@ class EllipseVerifier {
                                        const MeasuredEllipse& measured) const;
   [[nodiscard]] Verdict judge_edges() const;
   [[nodiscard]] std::optional<Ellipse> nearer_to_edges(const Ellipse& e, double reach_px) const;
-  void measure(const GradientMap& map,
-               std::size_t samples,
-               double reach_px,
-               MeasuredEllipse& measured);
-  [[nodiscard]] double straight_share();
+  std::size_t measure(const GradientMap& map,
+                      std::size_t samples,
+                      double reach_px,
+                      MeasuredEllipse& measured);
 
   EdgeMeasurer measurer_;
   std::vector<double> direction_errors_;
-  std::vector<double> angles_;
 };
 
 }  // namespace ellipse

@@ -6,9 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
+#include <vector>
 
+#include "core/detection/detection_trace.hpp"
+#include "core/detection/evidence.hpp"
 #include "core/detection/target_selection.hpp"
 #include "core/scene/catalog.hpp"
+#include "core/scene/polygon.hpp"
 #include "core/scene/random.hpp"
 #include "tests/support/picture.hpp"
 
@@ -298,6 +303,62 @@ TEST(ArcDetector, FindsNearlyAllSmallTargetsUnderNoise) {
       found += best_iou(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8 ? 1 : 0;
     }
     EXPECT_GE(found, 42) << static_cast<int>(pattern);
+  }
+}
+
+// The affine image of a regular polygon with the area of an ellipse, blurred.
+Picture polygon(const Ellipse& e, int corners, double blur_px) {
+  constexpr int kGround = 60;
+  Picture picture(320, 240);
+  cv::Mat tile(picture.height, picture.width, CV_32F, cv::Scalar(kGround));
+  std::vector<cv::Point> points;
+  const double turn = kTwoPi / corners;
+  for (int i = 0; i < corners; ++i) {
+    const Eigen::Vector2d from_centre = e.point_at(turn * i) - e.center();
+    const Eigen::Vector2d at = e.center() + std::sqrt(turn / std::sin(turn)) * from_centre;
+    points.emplace_back(cvRound(kPolygonUnitsPerPx * at.x()), cvRound(kPolygonUnitsPerPx * at.y()));
+  }
+  fill_polygon(tile, points, 180.0F);
+  if (blur_px > 0.0) cv::GaussianBlur(tile, tile, {}, blur_px);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      picture.at(x, y) = cv::saturate_cast<std::uint8_t>(tile.at<float>(y, x));
+    }
+  }
+  return picture;
+}
+
+// Of the candidate nearest to an ellipse.
+double corners_of(const Picture& picture, const Ellipse& e) {
+  Thresholds thresholds = detecting();
+  thresholds.min_probability = 1.0;  // no candidate is accepted, so that all are measured
+  thresholds.wants_all = true;
+  ArcDetector detector;
+  DetectionTrace trace;
+  detector.set_trace(&trace);
+  (void)detector.detect(picture.view(), thresholds);
+  double best = 0.0;
+  double corners = -1.0;
+  for (const TracedCandidate& candidate : trace.candidates()) {
+    if (candidate.probability == 0.0) continue;
+    const double iou = iou_inside(*candidate.ellipse, e, picture.width, picture.height);
+    if (iou <= best) continue;
+    best = iou;
+    corners = candidate.features[static_cast<std::size_t>(Feature::kCorners)];
+  }
+  return corners;
+}
+
+TEST(ArcDetector, MeasuresTheTurnInCorners) {
+  const Ellipse e{160.2, 119.7, 80.0, 60.0, 0.4};
+  constexpr int kEllipse = 256;  // corners
+  for (const double blur_px : {0.0, 1.0, 3.0}) {
+    EXPECT_LT(corners_of(polygon(e, kEllipse, blur_px), e), 0.05) << blur_px;
+    for (int corners = 6; corners <= 8; ++corners) {
+      const double measured = corners_of(polygon(e, corners, blur_px), e);
+      EXPECT_GT(measured, 0.75) << corners << " corners, " << blur_px;
+      EXPECT_LT(measured, 1.2) << corners << " corners, " << blur_px;
+    }
   }
 }
 
