@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/detection/arcs/arc_detector.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +13,6 @@
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMaxPerScale = 50;  // arcs in pairs; pairs fitted; ellipses of single arcs
 constexpr std::size_t kMaxMeasured = 20;  // pairs measured per scale
 constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
@@ -36,37 +34,6 @@ bool are_same(const Ellipse& a, const Ellipse& b, double px) {
 // The part of a cut ellipse outside the picture differs between scales.
 bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) {
   return iou_inside(a, b, map.width(), map.height()) >= kSameInside;
-}
-
-// Whether b lies on the inner side of a's tangents, as arcs of one convex curve do.
-bool is_inside_of(const Arc& b, const Arc& a) {
-  for (std::size_t i = 0; i < a.points.size(); ++i) {
-    for (const Eigen::Vector2d& point : b.points) {
-      if (!((point - a.points[i]).dot(a.inwards[i]) >= 0.0)) return false;  // also NaN
-    }
-  }
-  return true;
-}
-
-Moments moments_of(std::initializer_list<const Arc*> arcs) {
-  Moments sum = (*arcs.begin())->moments;
-  for (const Arc* other : std::span(arcs).subspan(1)) sum.add(other->moments);
-  return sum;
-}
-
-// Sum of 1 - cos of the angles between the normals of arcs and those of an ellipse.
-double direction_error(std::initializer_list<const Arc*> arcs, const Ellipse& e) {
-  const Eigen::Rotation2Dd rotation(-e.angle_rad);
-  const Eigen::Vector2d axes(e.semi_major, e.semi_minor);
-  double sum = 0.0;
-  for (const Arc* arc : arcs) {
-    for (std::size_t i = 0; i < arc->points.size(); ++i) {
-      const Eigen::Vector2d point = rotation * (arc->points[i] - e.center());
-      const Eigen::Vector2d outwards = point.cwiseQuotient(axes.cwiseAbs2()).normalized();
-      sum += 1.0 + outwards.dot(rotation * arc->inwards[i]);
-    }
-  }
-  return sum;
 }
 
 // Whether an outline of polarity a may have a part of polarity b, or the reverse.
@@ -207,34 +174,11 @@ void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
 // Measures the pairs whose directions agree best with their ellipse. Arcs of one ellipse may differ
 // in polarity.
 void ArcDetector::try_pairs(const Thresholds& thresholds) {
-  fit_pairs();
-  const auto agrees_better = [](const Pair& a, const Pair& b) {
-    return a.direction_error < b.direction_error;
-  };
-  std::sort(pairs_.begin(), pairs_.end(), agrees_better);
   std::size_t measured = 0;
-  for (const Pair& pair : pairs_) {
+  for (const ArcPair& pair : pairs_.find(arcs_, is_used_)) {
     if (is_used_[pair.first] != 0 || is_used_[pair.second] != 0) continue;
     if (++measured > kMaxMeasured) return;
     try_arcs({&arcs_[pair.first], &arcs_[pair.second]}, thresholds);
-  }
-}
-
-// Pairs on one convex curve, in ascending sum of ranks, so that the best arcs come first.
-void ArcDetector::fit_pairs() {
-  pairs_.clear();
-  const std::size_t n = std::min(arcs_.size(), kMaxPerScale);
-  for (std::size_t sum = 1; sum < 2 * n; ++sum) {
-    for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
-      const std::size_t k = sum - i;
-      const Arc& a = arcs_[i];
-      const Arc& b = arcs_[k];
-      if (is_used_[i] != 0 || is_used_[k] != 0) continue;
-      if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
-      const auto ellipse = fit_ellipse(moments_of({&a, &b}));
-      if (ellipse) pairs_.push_back({i, k, direction_error({&a, &b}, *ellipse)});
-      if (pairs_.size() == kMaxPerScale) return;
-    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/detection/arcs/arc_pairs.hpp"
 #include "core/detection/arcs/arcs.hpp"
 #include "core/detection/arcs/ellipse_verifier.hpp"
 #include "core/detection/arcs/ring_corrector.hpp"
@@ -54,12 +55,6 @@ class ArcDetector final : public Detector {
     double rms_px;  // RMS distance of the points of its arcs
   };
 
-  struct Pair {
-    std::size_t first;  // index of an arc
-    std::size_t second;
-    double direction_error;
-  };
-
   struct Found {
     MeasuredEllipse measured;  // [px of the picture]
     int scale;                 // of its pass
@@ -76,7 +71,6 @@ class ArcDetector final : public Detector {
   void search(int scale, const Thresholds& full);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
-  void fit_pairs();
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,
                  std::span<const TracedPiece> pieces,
@@ -112,11 +106,11 @@ class ArcDetector final : public Detector {
   GradientMap* map_ = nullptr;     // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
+  ArcPairs pairs_;
   EllipseVerifier verifier_;
   RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // per arc: whether it lies on a found ellipse
-  std::vector<Pair> pairs_;
   std::vector<Found> found_;
   std::vector<Guess> rejected_;
   std::vector<Detection> detections_;
