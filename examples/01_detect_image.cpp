@@ -10,9 +10,13 @@
 #include "core/detection/target_selection.hpp"
 
 int main(int argc, char** argv) {
-  const cv::Mat picture = argc == 2 ? cv::imread(argv[1], cv::IMREAD_GRAYSCALE) : cv::Mat();
-  if (picture.empty()) {
+  if (argc != 2) {
     std::fprintf(stderr, "usage: %s PICTURE\n", argv[0]);
+    return 1;
+  }
+  const cv::Mat picture = cv::imread(argv[1], cv::IMREAD_GRAYSCALE);
+  if (picture.empty()) {
+    std::fprintf(stderr, "%s: cannot be read as a picture\n", argv[1]);
     return 1;
   }
   const auto detector = ellipse::make_detector(ellipse::DetectorKind::kArcs);

@@ -106,6 +106,11 @@ std::optional<std::vector<Sequence>> one_scene_by_name(const std::string& text,
     add_scene(dataset, scene, *seeds, times_of(pace), sequences);
     return sequences;
   }
+  constexpr std::string_view kPrefix = "scenes-";
+  const auto colon = text.find(':');
+  if (!text.starts_with(kPrefix) || colon == std::string::npos) return std::nullopt;
+  const std::string name = text.substr(kPrefix.size(), colon - kPrefix.size());
+  (void)ellipse::scene_by_name(name.c_str(), 0);  // throws, with the list of names
   return std::nullopt;
 }
 

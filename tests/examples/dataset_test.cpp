@@ -270,7 +270,13 @@ TEST(Scenes, GivesOneSceneOfTheCatalogByName) {
   const cv::Mat picture = second.pictures->picture(second.frames[9]);
   EXPECT_EQ(cv::norm(picture, same->pictures->picture(same->frames[9]), cv::NORM_INF), 0.0);
   EXPECT_FALSE(one_scene_by_name("scenes:5", pace));
-  EXPECT_FALSE(one_scene_by_name("scenes-nothing:5", pace));
+  EXPECT_FALSE(one_scene_by_name("scenes-of-mine", pace));  // a folder
+  try {
+    (void)one_scene_by_name("scenes-moon:5", pace);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("\"moon\""), std::string::npos) << error.what();
+  }
   EXPECT_THROW((void)one_scene_by_name("scenes-negative:x", pace), std::invalid_argument);
 }
 

@@ -379,6 +379,9 @@ TEST_F(Programs, DetectImagePrintsTheTarget) {
   const Outcome example = run("01_detect_image", (folder_ / "contact_sheet.png").string());
   EXPECT_EQ(example.status, 0) << example.text;
   EXPECT_EQ(run("01_detect_image", "").status, 1);
+  const Outcome missing = run("01_detect_image", (folder_ / "missing.png").string());
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_NE(missing.text.find("missing.png: cannot be read"), std::string::npos) << missing.text;
 }
 
 }  // namespace
