@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "core/detection/detection_trace.hpp"
@@ -21,12 +22,17 @@ constexpr double kMinShareOfBestScore = 0.25;
 // Minimum advantage of a new target: ratio of the scores.
 constexpr double kMuchBetter = 1.5;
 
+// A factor below 1 reduces a score, one above increases it, although log odds may be negative.
+double scaled(double score, double factor) {
+  return score + (factor - 1.0) * std::abs(score);
+}
+
 // Evidence of all detections that are concentric with one ellipse.
 struct ConcentricSet {
   double probability = 0.0;  // the largest; all are 1 without probabilities
   bool has_two_edges = false;
   double score = 0.0;
-  double best_score = 0.0;
+  double best_score = -std::numeric_limits<double>::infinity();
 
   bool operator<(const ConcentricSet& other) const {
     return std::tie(probability, has_two_edges, score) <
@@ -123,7 +129,7 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
       reject(member, judge_set(set_around(member.ellipse, detections), best), trace);
       continue;
     }
-    const double min_score = kMinShareOfBestScore * best.best_score;
+    const double min_score = scaled(best.best_score, kMinShareOfBestScore);
     Verdict verdict = at_least(Reason::kWeakInSet, member.score, min_score);
     if (verdict.is_accepted() && target != nullptr) verdict = judge_beside(member, *target);
     if (verdict.is_accepted()) {
@@ -149,7 +155,7 @@ bool is_better_target(const Ellipse& chosen,
   const ConcentricSet other = set_around(chosen, detections);
   const ConcentricSet own = set_around(followed, detections);
   if (!(own < other)) return false;
-  return other.has_two_edges > own.has_two_edges || other.score > kMuchBetter * own.score;
+  return other.has_two_edges > own.has_two_edges || other.score > scaled(own.score, kMuchBetter);
 }
 
 }  // namespace ellipse

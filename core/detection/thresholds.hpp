@@ -49,6 +49,7 @@ struct Thresholds {
   [[nodiscard]] bool accepts_axes(const Ellipse& e) const { return judge_axes_of(e).is_accepted(); }
 
   /// The thresholds for a picture reduced by `scale`: lengths are divided by it.
+  /// min_contour_size is not reduced below ChainTracer::kMinLength.
   [[nodiscard]] Thresholds at_scale(int scale) const;
 
   bool operator==(const Thresholds&) const = default;

@@ -36,10 +36,6 @@ static_assert(std::size(kInfos) == static_cast<std::size_t>(Reason::kSameEdge) +
 
 }  // namespace
 
-std::span<const ReasonInfo> reason_infos() {
-  return kInfos;
-}
-
 const ReasonInfo& reason_info(Reason reason) {
   return kInfos[static_cast<std::size_t>(reason)];
 }

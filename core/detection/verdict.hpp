@@ -66,9 +66,6 @@ struct ReasonInfo {
 /// Static lifetime; thread-safe.
 [[nodiscard]] const ReasonInfo& reason_info(Reason reason);
 
-/// In the order of Reason.
-[[nodiscard]] std::span<const ReasonInfo> reason_infos();
-
 /// A verdict in words: "too flat: axis ratio 6.1, at most 5".
 [[nodiscard]] std::string to_text(const Verdict& verdict);
 

@@ -106,7 +106,7 @@ int first_byte_of(std::uint64_t word) {
   return (is_little ? std::countr_zero(word) : std::countl_zero(word)) / 8;
 }
 
-// Calls visit(index) for each unvisited seed, which it marks as visited, until it returns false.
+// Calls visit(index) for each seed until it returns false. visit() must clear the seed's bit.
 // Skips words of eight pixels without seeds, which are most of them.
 template <class Visit>
 void for_each_seed(const GradientMap& map, const Visit& visit) {

@@ -246,6 +246,7 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
   const ImageView& luma = picture.luma;
   lens_ = picture.lens;
   resize(luma);
+  block_count_ = 0;
   if (luma.empty()) return;
   measure_noise(luma);
   const auto used = [](double level, double by_default) {
@@ -258,7 +259,6 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
   thresholds_.low =
       used(thresholds.low, thresholds.high > 0.0 ? thresholds.high / kHighOverLow : by_noise);
   thresholds_.high = used(thresholds.high, kHighOverLow * thresholds_.low);
-  block_count_ = 0;
   for (int y = 1; y < height_ - 1; ++y) {
     compute_row(luma, y);
     mark_row(y - 1);

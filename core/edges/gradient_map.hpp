@@ -74,8 +74,8 @@ struct EdgeThresholds {
 ///
 /// Exact integer arithmetic: separable 5 x 5 kernels, smoothing [1 4 6 4 1] one way and difference
 /// [-1 -2 0 2 1] the other [FaridSimoncelli2004]. A gradient maximum is a pixel above the low
-/// threshold whose magnitude is not below its two neighbours' along the axis closest to the
-/// gradient [Canny1986].
+/// threshold whose magnitude is at least that of the neighbour before it and above that of the one
+/// after it, along the axis closest to the gradient [Canny1986].
 class GradientMap {
  public:
   explicit GradientMap(Simd simd = best_simd()) : simd_(simd) {}

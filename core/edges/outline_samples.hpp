@@ -11,7 +11,7 @@
 
 namespace ellipse {
 
-/// Most of an outline, of its samples, of frames, or of an expected contrast: at least this share.
+/// Min share that counts as most of an outline, of its samples, or of an expected contrast.
 inline constexpr double kMajority = 0.5;
 
 /// Unit vectors at evenly spaced angles.

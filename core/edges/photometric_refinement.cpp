@@ -17,6 +17,8 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
+// Largest distance from an edge at which pixels carry information on its position [px].
+constexpr double kPhotometricBandPx = 3.8;
 constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
 constexpr int kLinesOfSector = 6;
 constexpr std::size_t kMaxSectors = 80;    // of a long outline, whose lines are subsampled
@@ -337,7 +339,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
   return Edge{&sectors[i],
               -values[2] / values[1],
               variance / (values[1] * values[1]),
-              shared.values[3] / values[1]};
+              values[3] / values[1]};
 }
 
 // Outlines that are not exactly elliptical scatter more than pixel noise explains.

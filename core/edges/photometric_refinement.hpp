@@ -9,8 +9,6 @@
 
 namespace ellipse {
 
-/// Largest distance from an edge at which pixels carry information on its position [px].
-inline constexpr double kPhotometricBandPx = 3.8;
 /// Refines an ellipse that is known within about half a pixel, from the brightness of every pixel
 /// beside its perimeter: a step between two levels, blurred by the lens.
 ///

@@ -6,8 +6,8 @@
 
 namespace ellipse {
 
-/// Which side of an outline is dark: one side all along, or each in a part of the outline, as of a
-/// shaded ball.
+/// Which side of an outline is dark: the same side everywhere, or different sides on parts of the
+/// outline, as on a shaded ball.
 enum class Polarity { kDarkInside = 1, kBrightInside = -1, kMixed = 0 };
 
 [[nodiscard]] constexpr Polarity opposite(Polarity polarity) {

@@ -145,10 +145,10 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
   return {at(1.0 + 0.5 * low, maxima.outer), at(1.0 - 0.5 * low, maxima.inner)};
 }
 
-bool are_partners(const Ellipse& a, const Ellipse& b, double largest_ratio) {
+bool are_partners(const Ellipse& a, const Ellipse& b) {
   const double larger = std::max(a.semi_major, b.semi_major);
   const double ratio = std::min(a.semi_major, b.semi_major) / larger;
-  if (ratio < 0.25 || ratio > largest_ratio) return false;
+  if (ratio < 0.25 || ratio > kMaxRingRatio) return false;
   return are_concentric(a, b);
 }
 

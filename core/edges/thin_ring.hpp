@@ -32,9 +32,7 @@ struct RingEdges {
 inline constexpr double kMaxRingRatio = 0.97;
 
 /// Whether two ellipses may be the edges of one ring: concentric, with a ratio of semi-major axes
-/// from 1/4 to `largest_ratio`.
-[[nodiscard]] bool are_partners(const Ellipse& a,
-                                const Ellipse& b,
-                                double largest_ratio = kMaxRingRatio);
+/// from 1/4 to kMaxRingRatio.
+[[nodiscard]] bool are_partners(const Ellipse& a, const Ellipse& b);
 
 }  // namespace ellipse

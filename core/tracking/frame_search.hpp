@@ -45,7 +45,7 @@ class FrameSearch {
 
   /// Detects and selects the target, see select_target(). Its id and time stamp are not set.
   ///
-  /// @param region       In frame pixels; clipped to the frame.
+  /// @param region       In frame pixels; inside the frame.
   /// @param last_target  Target of the previous frame [frame px]; nullopt = not tracking.
   [[nodiscard]] std::optional<Target> find_target(const ScopedFrame& frame,
                                                   const Rect& region,

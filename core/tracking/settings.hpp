@@ -65,7 +65,7 @@ struct SettingEffect {
 /// Description of one numeric setting for user interfaces.
 struct SettingInfo {
   const char* name;         ///< In kebab-case; also the name of the element's property.
-  const char* description;  ///< A sentence with the unit.
+  const char* description;  ///< A phrase with the unit, without a full stop.
   SettingEffect effect;
   Range range;
   bool is_integer;

@@ -132,8 +132,9 @@ double Tracker::required_log_odds() const {
   return std::min(required, TargetOdds::kMax);
 }
 
-// Detects unless a visible target has sufficient odds; then only periodically, since a better
-// target may have come into view, and while an uncertain outline looks wrong in this frame.
+// Detects in each frame unless a visible target has sufficient odds. Then detects periodically,
+// since a better target may have come into view, and while an uncertain outline looks wrong in this
+// frame.
 bool Tracker::needs_detection(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const double required = required_log_odds();
@@ -202,14 +203,14 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
   if (!chosen) return followed;
   if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
   if (is_rival(chosen)) return acquire(frame, *chosen);
-  if (is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
+  if (followed && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
     judge_->confirm(log_odds(chosen->probability), true);
   }
   return followed;
 }
 
-// The scale of the first search of the whole frame. While a target is certain, or absent for long,
-// the full resolution is searched periodically only.
+// The scale of the first search of the whole frame: the coarsest while a visible target is certain,
+// half the size while a target is absent for long, except once per kCheckPeriod_s.
 int Tracker::first_scale(bool is_visible) const {
   if (settings_.wants_candidates) return 1;
   if (is_visible && judge_->is_sure()) return kCoarsestScale;
@@ -250,13 +251,16 @@ std::optional<Target> Tracker::resume_nearby(const ScopedFrame& frame) {
 
 // Continues with the known pad where the detector found one of its circles.
 std::optional<Target> Tracker::resume(const ScopedFrame& frame, const Target& detection) {
-  if (pad_tracker_->is_locked() && !is_near(last_ellipse_, detection.ellipse)) return std::nullopt;
+  const bool is_elsewhere = !hypothesis_ || !is_near(*hypothesis_, detection.ellipse);
+  if (pad_tracker_->is_locked() && is_elsewhere) return std::nullopt;
   const LumaWindow window = window_on(frame, frame.searchable);
   const auto track = pad_tracker_->resume(window, detection.ellipse);
   if (!track) return std::nullopt;
-  add_detection(track->ellipse, log_odds(detection.probability));
   std::optional<Target> target = target_of(*track, frame, detection.search_region);
-  if (target && id_ != last_id_) target->state = TargetState::kDetected;
+  if (!target) return std::nullopt;
+  add_detection(track->ellipse, log_odds(detection.probability));
+  target->id = id_;
+  if (id_ != last_id_) target->state = TargetState::kDetected;
   return target;
 }
 

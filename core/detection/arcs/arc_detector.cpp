@@ -45,6 +45,12 @@ bool is_certain(double probability) {
   return log_odds(probability) >= kCertainLogOdds;
 }
 
+// Whether edges of both polarities may make a measured outline more probable.
+bool may_have_both_polarities(const MeasuredEllipse& measured) {
+  const bool is_doubtful = measured.probability > 0.0 && log_odds(measured.probability) < 0.0;
+  return is_doubtful && measured.polarity != Polarity::kMixed;
+}
+
 // The finer scales decide about an ellipse of a reduced picture, unless it is ruled out. A minimum
 // of 1 accepts none.
 double required_when_reduced(const Thresholds& thresholds) {
@@ -69,7 +75,8 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
   return detections_;
 }
 
-// At the scales of detect(), in the same order; may be -infinity.
+// From the coarsest scale at which the outline is large enough, until it is certain at one; may be
+// -infinity.
 std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
@@ -213,6 +220,12 @@ void ArcDetector::try_guess(const Guess& guess,
     }
   }
   if (verdict.is_accepted()) add(measured);
+  // Edges of both polarities count only if they make the outline likely.
+  if (thresholds.min_probability < 1.0 && may_have_both_polarities(measured)) {
+    Thresholds likely = thresholds;
+    likely.min_probability = std::max(probability_of(0.0), thresholds.min_probability);
+    try_guess({measured.ellipse, Polarity::kMixed, guess.rms_px}, pieces, likely);
+  }
 }
 
 Verdict ArcDetector::examine(const Guess& guess,

@@ -22,9 +22,10 @@ namespace ellipse {
 struct TracedPiece;
 
 /// Finds ellipses from the arcs of their edges: gradient, gradient maxima, chains, arcs. Candidates
-/// are arcs with enough turn, pairs of arcs on one convex curve, and chains that nearly close. Each
-/// is fitted from its moments and measured on the edges around its whole perimeter; the probability
-/// of an ellipse decides.
+/// are arcs with enough turn, pairs of arcs on one convex curve, and chains that turn by more than
+/// half a turn. Each is fitted from its moments and measured on the edges around its whole
+/// perimeter; the probability of an ellipse decides. An outline that is unlikely with edges of one
+/// polarity is also measured with edges of both.
 ///
 /// Searches at a quarter of the size, then at half, then at full size, and stops early if the best
 /// target is certain. Otherwise the finer sizes decide about the ellipses of a reduced picture that

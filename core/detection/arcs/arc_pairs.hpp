@@ -11,7 +11,8 @@
 
 namespace ellipse {
 
-/// Per scale: best arcs in pairs, pairs fitted, and ellipses of single arcs in a target search.
+/// Max number per scale of arcs considered for pairs, of pairs fitted, and of ellipses of single
+/// arcs in a target search.
 inline constexpr std::size_t kMaxPerScale = 50;
 
 /// Two arcs on one convex curve.

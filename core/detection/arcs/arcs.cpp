@@ -36,7 +36,7 @@ void to_angles(float* __restrict x,
   }
 }
 
-Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
+Eigen::Vector2d position_of(std::int32_t pixel, int stride) {
   const int x = pixel % stride;
   const int y = pixel / stride;
   return Eigen::Vector2i(x, y).cast<double>();
@@ -46,7 +46,7 @@ Eigen::Vector2d place_of(std::int32_t pixel, int stride) {
 Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
   const Gradient* here = map.gradients() + pixel;
   const bool is_flat = std::abs(here->x) > std::abs(here->y);
-  Eigen::Vector2d point = place_of(pixel, map.stride());
+  Eigen::Vector2d point = position_of(pixel, map.stride());
   point[is_flat ? 0 : 1] += subpixel_maximum(here, is_flat ? 1 : map.stride()).offset_px;
   return map.lens().approximate_ideal(point);
 }

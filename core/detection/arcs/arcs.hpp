@@ -13,7 +13,8 @@
 
 namespace ellipse {
 
-/// A piece of a chain that turns to one side only, or a whole chain that nearly closes.
+/// A piece of a chain that turns to one side only, or a whole chain that turns by more than half a
+/// turn.
 struct Arc {
   std::size_t begin = 0;  ///< Index into ChainTracer::pixels().
   std::size_t end = 0;
@@ -23,8 +24,6 @@ struct Arc {
   std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, middle and end [px].
   std::array<Eigen::Vector2d, 3> inwards;  ///< Unit normals at `points`, inwards.
   Moments moments{Eigen::Vector2d::Zero()};
-
-  [[nodiscard]] double length_px() const { return static_cast<double>(end - begin); }
 };
 
 /// Cuts chains into arcs: at corners, and where the curvature changes its sign.

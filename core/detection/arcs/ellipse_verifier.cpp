@@ -167,7 +167,7 @@ Verdict EllipseVerifier::judge_prospect(double max_growth,
   if (!enough.is_accepted()) return enough;
   const double required = thresholds.min_probability;
   const double reachable = table.log_odds(measured.features) + max_growth;
-  if (required == 1.0 || reachable >= std::log(required / (1.0 - required))) return {};
+  if (required == 1.0 || reachable >= log_odds(required)) return {};
   return at_least(Reason::kUnlikely, table.probability(measured.features), required);
 }
 
@@ -256,7 +256,8 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   verdict = at_least(Reason::kContourOverlap, measured.on_ellipse, thresholds.contour_overlap);
   if (!verdict.is_accepted()) return verdict;
   const Ellipse& e = measured.ellipse;
-  const double visible_px = perimeter_px(e) * visible_fraction(e, map.width(), map.height());
+  const double visible_px =
+      perimeter_px(e) * visible_fraction(map.lens(), e, map.width(), map.height());
   // Contour pixels per pixel of length: mean of max(|cos|, |sin|) over all directions.
   const double contour_px =
       2.0 * std::numbers::sqrt2 / std::numbers::pi * visible_px * measured.support;

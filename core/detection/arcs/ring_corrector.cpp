@@ -19,7 +19,7 @@ RingEdges ordered(const Ellipse& a, const Ellipse& b) {
 
 }  // namespace
 
-// Keeps the table of blur out of the first frame.
+// Computes the table of blur now, so that the first frame does not.
 RingCorrector::RingCorrector() : min_gap_px_(min_maxima_distance()) {}
 
 void RingCorrector::correct(const Picture& picture,

@@ -331,7 +331,11 @@ void ContourDetector::undistort_detections() {
   if (!lens_.is_distorted()) return;
   std::erase_if(detections_, [&](Detection& detection) {
     const auto ideal = undistorted(lens_, detection.ellipse);
-    if (ideal) detection.ellipse = *ideal;
+    if (ideal) {
+      detection.ellipse = *ideal;
+    } else if (trace_ != nullptr) {
+      trace_->revise(detection.candidate, {Reason::kNoEllipse});
+    }
     return !ideal;
   });
 }

@@ -34,7 +34,7 @@ struct EdgeSample {
   }
 };
 
-/// What limits the contrast of an edge in an image.
+/// Contrast gain and pixel noise of an image.
 struct ImageLevels {
   double gain = 1.0;   ///< Ratio of image contrast to model contrast.
   double noise = 0.0;  ///< Standard deviation of a pixel [grey levels], see pixel_noise().

@@ -17,8 +17,9 @@ inline constexpr Tolerance kOuterEdgeTolerance{1.0, 0.03};
 /// Refines the outer edge of a pad whose view is accurate to about a pixel.
 ///
 /// @param gain  Ratio of image contrast to model contrast.
-/// @return The edge in the image's ideal plane; nullopt if too little of it is visible, or if it is
-///         too far from the predicted edge. Allocates nothing.
+/// @return The edge in the image's ideal plane; nullopt with Refinement::kNone, if too little of it
+/// is
+///         visible, or if it is too far from the predicted edge. Allocates nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                                               const PadView& view,
                                                               const PadModel& model,

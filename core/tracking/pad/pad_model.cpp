@@ -39,8 +39,9 @@ class RadialProfile {
     for (std::size_t i = 0; i < medians_.size(); ++i) medians_[i] = median(static_cast<int>(i));
   }
 
-  // Median brightness outside minus inside; 0 if it is unknown.
+  // Magnitude of the step.
   [[nodiscard]] double strength(int i) const { return std::abs(step(i)); }
+  // Median brightness outside minus inside; 0 if it is unknown.
   [[nodiscard]] double step(int i) const {
     double sum = 0.0;
     for (int j = 1; j <= kApart; ++j) {

@@ -24,8 +24,8 @@ constexpr double kAdaptation_s = 0.116;    // time constant of motion noise, con
 constexpr double kEdgeSigmaPx = 0.6;       // of one edge candidate
 constexpr double kDeformation = 0.012;     // distance of deformed edges from the model [radii]
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
-constexpr double kMaxReach = 0.14;         // beyond it [radii]
-constexpr int kMaxSteps = 3;               // searches of a frame, and before a lock
+constexpr double kMaxReach = 0.14;         // max search range beyond kReachPx [radii]
+constexpr int kMaxSteps = 3;               // max searches of a frame, and before a lock
 constexpr double kEnoughVisible = 0.3;     // share of the outer circle, to refine it
 constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
@@ -150,7 +150,7 @@ bool PadTracker::has_circle(const Eigen::Matrix3d& view, double radius, const El
   return found && is_same(*found, detected, kOuterEdgeTolerance);
 }
 
-// Starts the filter as after a frame of unknown motion.
+// Starts the filter with the uncertainty of the velocity after a frame of unknown motion.
 void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& velocity) {
   view_ = matched_view_ = attempt.view;
   is_locked_ = true;
@@ -396,7 +396,6 @@ std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
   track.outline = attempt->support.outline;
-  track.visible = attempt->visible;
   track.is_visible = centre_sigma(covariance()) <= kMaxCentreSigma;
   return track;
 }
@@ -406,7 +405,7 @@ RingUncertainty PadTracker::uncertainty() const {
   return {view_, covariance().topLeftCorner<5, 5>().inverse()};
 }
 
-// The perspective, of which rings alone tell little.
+// Rings alone hardly determine the perspective.
 std::optional<PatternView> PadTracker::pattern() const {
   if (model_.lines.empty()) return std::nullopt;
   return PatternView{view_, covariance().bottomRightCorner<2, 2>()};
@@ -417,7 +416,9 @@ Rect PadTracker::region_after(double elapsed_s, int width, int height) const {
   const auto ideal = project_circle(moved(view_, elapsed_s * motion_.velocity), 1.0);
   const auto ellipse = ideal ? distorted(lens_, *ideal) : std::nullopt;
   if (!ellipse) return frame;
-  return calculate_roi(*ellipse, kRoiExpansion, 1, width, height);
+  const double r = ellipse->semi_major;
+  const double reach_px = kReachPx + kMaxReach * r + GradientMap::kBorder;
+  return calculate_roi(*ellipse, std::max(kRoiExpansion, 1.0 + reach_px / r), 1, width, height);
 }
 
 }  // namespace ellipse

@@ -34,7 +34,6 @@ struct EdgeTrack {
   Ellipse ellipse;          ///< The outer circle [px of the frame's ideal plane].
   double coverage = 0.0;    ///< Matched share of the pad's visible edges.
   double outline = 0.0;     ///< The same of its outer edge alone.
-  double visible = 0.0;     ///< Share of the outer circle inside the frame.
   bool is_visible = false;  ///< The matches determine the centre; else it is predicted.
 };
 

@@ -40,10 +40,11 @@ struct PadView {
       if (!shown) return outside;
       point = shown->picture_px;
     }
-    const bool is_inside = point.x() >= 0.0 && point.y() >= 0.0 && point.x() < luma.width - 1 &&
-                           point.y() < luma.height - 1;
-    return is_inside ? luma.at(static_cast<float>(point.x()), static_cast<float>(point.y()))
-                     : outside;
+    const Eigen::Vector2f rounded = point.cast<float>();
+    const bool is_inside = rounded.x() >= 0.0F && rounded.y() >= 0.0F &&
+                           rounded.x() < static_cast<float>(luma.width - 1) &&
+                           rounded.y() < static_cast<float>(luma.height - 1);
+    return is_inside ? luma.at(rounded.x(), rounded.y()) : outside;
   }
 
   /// Approximate radius of the pad in the image [px].

@@ -81,6 +81,32 @@ TEST(ArcDetector, FindsABallBesideAnUncertainFitToItsHalf) {
   }
 }
 
+// Brighter than the ground above its centre; darker below, where short pieces of the outline are
+// visible. Only the upper half is an arc.
+TEST(ArcDetector, MeasuresADoubtfulOutlineWithEdgesOfBothPolarities) {
+  constexpr double kDash = 18.0;
+  constexpr double kGap = 10.0;
+  const Ellipse truth{160.3, 120.6, 60.0, 60.0, 0.0};
+  Picture picture(320, 240);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double from_centre = std::hypot(x - truth.cx, y - truth.cy);
+      const double along = std::atan2(y - truth.cy, x - truth.cx) * truth.semi_major;
+      const bool is_dash = std::fmod(along, kDash + kGap) < kDash;
+      const double ground = along < 0.0 ? 80.0 : (is_dash ? 160.0 : 120.0);
+      const double covered = std::clamp(truth.semi_major - from_centre + 0.5, 0.0, 1.0);
+      picture.at(x, y) = static_cast<std::uint8_t>(ground + covered * (120.0 - ground));
+    }
+  }
+  Thresholds thresholds = detecting();
+  thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
+  ArcDetector detector;
+  const auto found = detector.detect({picture.view()}, thresholds);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_GT(iou_inside(found[0].ellipse, truth, picture.width, picture.height), 0.99);
+  EXPECT_GT(found[0].probability, 0.95);
+}
+
 // 108 half discs, each with an arc that is longer than the outline of the disc below one of them.
 TEST(ArcDetector, FindsASmallDiscAmongManyLongerArcs) {
   constexpr int kCell = 106;

@@ -149,6 +149,15 @@ TEST(GradientMap, HasNoMaximaNearTheBorderOrInTinyPictures) {
   }
 }
 
+TEST(GradientMap, HasNoBlocksOfAnEarlierPicture) {
+  const Picture picture = random_picture(40, 40, 5);
+  GradientMap map;
+  map.compute(picture.view());
+  EXPECT_FALSE(map.blocks().empty());
+  map.compute(ImageView{});
+  EXPECT_TRUE(map.blocks().empty());
+}
+
 struct Traced {
   explicit Traced(const Picture& picture) {
     map.compute(picture.view());

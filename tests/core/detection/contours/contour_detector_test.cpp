@@ -259,6 +259,27 @@ TEST(TargetSelection, SkipsWeakOutermostEllipses) {
   EXPECT_EQ(select_target(found)->ellipse.semi_major, 40.0);
 }
 
+// Log odds are negative below a probability of one half.
+TEST(TargetSelection, ComparesNegativeScores) {
+  const Ellipse outer{100.0, 100.0, 60.0, 55.0, 0.1};
+  const Ellipse inner{100.0, 100.0, 40.0, 35.0, 0.1};
+  const std::vector<Detection> alike = {{inner, 1.0, 1.0, -1.0, 0.27},
+                                        {outer, 1.0, 1.0, -1.5, 0.18}};
+  EXPECT_EQ(select_target(alike)->ellipse, outer);
+  const std::vector<Detection> weak = {{inner, 1.0, 1.0, -1.0, 0.27},
+                                       {outer, 1.0, 1.0, -2.0, 0.12}};
+  EXPECT_EQ(select_target(weak)->ellipse, inner);
+  const Ellipse elsewhere{300.0, 100.0, 60.0, 55.0, 0.1};
+  const auto is_better = [&](double score) {
+    return is_better_target(
+        elsewhere,
+        outer,
+        std::vector<Detection>{{outer, 1.0, 1.0, -1.0, 0.27}, {elsewhere, 1.0, 1.0, score, 0.28}});
+  };
+  EXPECT_FALSE(is_better(-0.9));
+  EXPECT_TRUE(is_better(-0.4));
+}
+
 TEST(TargetSelection, AcceptsOnlySimilarEllipsesWhileTracking) {
   const std::vector<Detection> found = {{{100.0, 100.0, 40.0, 35.0, 0.1}, 1.0, 1.0, 100.0}};
   EXPECT_TRUE(select_target(found, Ellipse{120.0, 100.0, 38.0, 30.0, 0.0}));

@@ -60,6 +60,21 @@ Ellipse resized(Ellipse e, double factor) {
   return e;
 }
 
+// -- PadView
+
+// The next pixel of a point that rounds to the last column or row would be outside the picture.
+TEST(PadView, HasNoLevelOnTheLastColumnAndRow) {
+  const Picture picture(20, 10, 100);
+  const PadView view(Matrix3d::Identity());
+  const auto level_at = [&](double x, double y) {
+    return view.level_at(picture.view(), {x, y, 1.0});
+  };
+  EXPECT_EQ(level_at(18.5, 8.5), 100.0F);
+  EXPECT_TRUE(std::isnan(level_at(19.0 - 1e-9, 5.0)));
+  EXPECT_TRUE(std::isnan(level_at(5.0, 9.0 - 1e-9)));
+  EXPECT_TRUE(std::isnan(level_at(-0.1, 5.0)));
+}
+
 // -- learn_circles
 
 struct Circles {
