@@ -18,8 +18,7 @@ inline constexpr Tolerance kOuterEdgeTolerance{1.0, 0.03};
 ///
 /// @param gain  Ratio of image contrast to model contrast.
 /// @return The edge in the image's ideal plane; nullopt with Refinement::kNone, if too little of it
-/// is
-///         visible, or if it is too far from the predicted edge. Allocates nothing.
+///         is visible, or if it is too far from the predicted edge. Allocates nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                                               const PadView& view,
                                                               const PadModel& model,
