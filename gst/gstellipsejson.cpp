@@ -21,6 +21,7 @@
 #include <string>
 
 #include "gst/ellipse/gstellipsemeta.h"
+#include "gst/track/video_view.hpp"
 
 struct _GstEllipseJson {
   GstBaseTransform parent;
@@ -36,7 +37,7 @@ G_DEFINE_TYPE(GstEllipseJson, gst_ellipse_json, GST_TYPE_BASE_TRANSFORM)
 
 GST_ELEMENT_REGISTER_DEFINE(ellipsejson, "ellipsejson", GST_RANK_NONE, GST_TYPE_ELLIPSE_JSON)
 
-#define SINK_CAPS "video/x-raw(ANY)"
+#define SINK_CAPS "video/x-raw(ANY); video/x-bayer(ANY)"
 #define SRC_CAPS "application/x-ndjson"
 
 static GstStaticPadTemplate sink_template =
@@ -57,7 +58,8 @@ static GstCaps* gst_ellipse_json_transform_caps(GstBaseTransform*,
 }
 
 static gboolean gst_ellipse_json_set_caps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
-  return gst_video_info_from_caps(&GST_ELLIPSE_JSON(base)->info, in);
+  GstVideoInfo* info = &GST_ELLIPSE_JSON(base)->info;
+  return is_mosaic(in) ? set_mosaic_info(info, in) : gst_video_info_from_caps(info, in);
 }
 
 // Removes a member whose value is a number or null.

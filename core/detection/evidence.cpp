@@ -32,8 +32,13 @@ std::invalid_argument error_at(const std::filesystem::path& file,
 }
 
 double number_in(std::istream& words, const std::filesystem::path& file, int line) {
+  std::string text = "the end of the line";
+  words >> text;
+  std::istringstream in(text);
   double value = 0.0;
-  if (!(words >> value) || !std::isfinite(value)) throw error_at(file, line, "expected a number");
+  if (!(in >> value) || !in.eof() || !std::isfinite(value)) {
+    throw error_at(file, line, "expected a number, not " + text);
+  }
   return value;
 }
 

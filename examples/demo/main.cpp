@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -317,7 +318,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames",
                  options.frames,
                  "Stop after this number of frames; 0 = process the whole input")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()));
   CLI11_PARSE(app, argc, argv);
   try {
     Demo demo(options);

@@ -17,7 +17,7 @@
 
 #include "examples/evaluate/program.hpp"
 #include "examples/evaluate/variants.hpp"
-#include "examples/finite_number.hpp"
+#include "examples/option_checks.hpp"
 
 namespace evaluate {
 namespace {
@@ -72,17 +72,17 @@ void add_options(CLI::App& app, Options& options) {
                  options.pace.seconds,
                  "Duration of each sequence of scenes, distorted and clutter [s]")
       ->capture_default_str()
-      ->check(finite_number() & CLI::PositiveNumber)
+      ->check(positive_number())
       ->needs(datasets);
   app.add_option("--wild-seconds", options.wild_seconds, "Duration of each sequence of wild [s]")
       ->capture_default_str()
-      ->check(finite_number() & CLI::PositiveNumber)
+      ->check(positive_number())
       ->needs(datasets);
   app.add_option("--fps",
                  options.pace.frames_per_second,
                  "Frame rate of scenes, distorted and clutter, and of pictures without time stamps")
       ->capture_default_str()
-      ->check(finite_number() & CLI::PositiveNumber)
+      ->check(positive_number())
       ->needs(datasets);
   CLI::Option* variants = app.add_option("--variants",
                                          options.variants,
@@ -150,7 +150,7 @@ void add_options(CLI::App& app, Options& options) {
                        options.limits.max_false,
                        "Exit with status 1 if a method has more frames than this with a false "
                        "answer (FP or WD)")
-            ->check(CLI::NonNegativeNumber)}) {
+            ->check(non_negative_integer())}) {
     option->excludes(sweep)->excludes(make)->excludes(leave);
   }
 }

@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
-#include "examples/finite_number.hpp"
 #include "examples/landing/method.hpp"
 #include "examples/landing/report.hpp"
 #include "examples/landing/video.hpp"
+#include "examples/option_checks.hpp"
 
 namespace {
 
@@ -153,6 +153,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option(
          "--seed", options.seed, "Random seed of the first landing; each landing has its own")
+      ->check(non_negative_integer())
       ->capture_default_str();
   app.add_option("--gust", options.gust, "Root mean square of the wind speed [m/s]")
       ->check(finite_number() & CLI::Range(0.0, 10.0))
@@ -166,7 +167,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--jobs", options.jobs, "Number of parallel landings; 0 = number of processors")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_integer());
   app.add_option("--video", options.video, "Write the first landing to this Matroska file");
   app.add_option("--report", options.report, "Folder for tables and plots");
   CLI11_PARSE(app, argc, argv);

@@ -159,6 +159,25 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
   return std::nullopt;
 }
 
+// Warns once until a frame has pixels to search. Metadata may well name no region.
+static void warn_of_empty_region(GstEllipseTrack* self, const TrackProperties& properties) {
+  if (self->stream->is_region_empty || properties.roi_source != ROI_SOURCE_PROPERTY) return;
+  self->stream->is_region_empty = true;
+  const ellipse::Rect& roi = properties.roi;
+  const GstVideoInfo& info = GST_VIDEO_FILTER(self)->in_info;
+  GST_ELEMENT_WARNING(self,
+                      STREAM,
+                      FAILED,
+                      ("roi <%d,%d,%d,%d> has no pixel in the frame of %d x %d or in its crop.",
+                       roi.x,
+                       roi.y,
+                       roi.width,
+                       roi.height,
+                       GST_VIDEO_INFO_WIDTH(&info),
+                       GST_VIDEO_INFO_HEIGHT(&info)),
+                      ("nothing is searched; the stream continues"));
+}
+
 static void skip(GstEllipseTrack* self, Skip reason) {
   GST_LOG_OBJECT(self, "passes without analysis: %s", nick_of(reason));
   GST_OBJECT_LOCK(self);
@@ -230,9 +249,13 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
   const TrackProperties properties = take_properties(self);
   const ellipse::Rect bounds = search_bounds(buffer, GST_VIDEO_FILTER(base)->in_info, properties);
   if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
-    if (*reason == Skip::kRegion) reset_target(self, properties, times);
+    if (*reason == Skip::kRegion) {
+      warn_of_empty_region(self, properties);
+      reset_target(self, properties, times);
+    }
     skip(self, *reason);
   } else {
+    self->stream->is_region_empty = false;
     analyse(self, buffer, times, properties, bounds);
   }
 }
@@ -253,5 +276,6 @@ void reset_stream(GstEllipseTrack* self) {
     reset_target(self, properties);
   });
   self->stream->load = LoadWatch();
+  self->stream->is_region_empty = false;
   self->stream->frame = 0;
 }

@@ -26,7 +26,8 @@ struct TrackStream {
   Overlay overlay;
   LoadWatch load;
   guint64 frame = 0;
-  bool is_mosaic = false;  ///< Of a Bayer sensor; the frames' info is that of GRAY8.
+  bool is_region_empty = false;  ///< Of the property roi, in the last frame; was reported.
+  bool is_mosaic = false;        ///< Of a Bayer sensor; the frames' info is that of GRAY8.
   std::optional<ellipse::Target> last_target;
   Sighting sighting;
 };

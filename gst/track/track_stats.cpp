@@ -14,17 +14,21 @@ void TrackStats::add_skipped(Skip reason) {
   ++skipped_[static_cast<std::size_t>(reason)];
 }
 
+// Counts the target of the frame before as lost unless it has this id.
+void TrackStats::follow(std::optional<guint64> id) {
+  if (followed_ && followed_ != id) ++lost_;
+  followed_ = id;
+}
+
 void TrackStats::reset_target() {
-  if (had_target_) ++lost_;
-  had_target_ = false;
+  follow(std::nullopt);
 }
 
 void TrackStats::add_analysed(const std::optional<ellipse::Target>& target,
                               GstClockTime processing_time) {
   times_[analysed_ % kWindow] = processing_time;
   ++analysed_;
-  if (had_target_ && !target) ++lost_;
-  had_target_ = target.has_value();
+  follow(target ? std::optional<guint64>(target->id) : std::nullopt);
   if (!target) return;
   switch (target->state) {
     case ellipse::TargetState::kDetected:

@@ -41,6 +41,7 @@ class TrackStats {
  private:
   static constexpr std::size_t kWindow = 1024;
 
+  void follow(std::optional<guint64> id);
   [[nodiscard]] GstClockTime quantile(double q, std::size_t left_out = 0) const;
 
   guint64 analysed_ = 0;
@@ -49,6 +50,6 @@ class TrackStats {
   guint64 tracked_ = 0;
   guint64 predicted_ = 0;
   guint64 lost_ = 0;
-  bool had_target_ = false;
+  std::optional<guint64> followed_;  // id of the target in the frame before
   std::array<GstClockTime, kWindow> times_{};
 };

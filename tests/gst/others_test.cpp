@@ -69,6 +69,15 @@ TEST(EllipseJson, TakesAnyRawVideo) {
   }
 }
 
+TEST(EllipseJson, TakesMosaics) {
+  const auto harness = harness_of("ellipsejson",
+                                  "video/x-bayer,format=bggr,width=64,height=48,framerate=30/1",
+                                  "application/x-ndjson");
+  auto buffer = buffer_of(Picture(64, 48, 50), info_of("GRAY8", 64, 48));
+  const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
+  EXPECT_NE(support::bytes_of(out.get()).find("\"width\":64,\"height\":48"), std::string::npos);
+}
+
 Owned<GstBuffer> first_frame(const std::string& settings, const std::string& caps) {
   Owned<GstHarness> harness(gst_harness_new_parse(("ellipsetestsrc " + settings).c_str()));
   gst_harness_set_sink_caps_str(harness.get(), caps.c_str());

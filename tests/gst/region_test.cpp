@@ -96,10 +96,15 @@ TEST(EllipseTrackRegion, IsClampedToTheFrame) {
 TEST(EllipseTrackRegion, EmptyAndOutsideRegionsSkipTheAnalysis) {
   for (const char* roi : {"<0,0,0,0>", "<320,0,10,10>", "<-20,-20,20,20>"}) {
     const auto harness = tracker("roi-source=property roi=\"" + std::string(roi) + "\"");
-    const auto out = push(harness, gray_buffer_of(ring_picture()));
-    EXPECT_EQ(target_on(out), nullptr) << roi;
+    BusTap bus(element_of(harness));
+    for (int i = 0; i < 2; ++i) {
+      const auto out = push(harness, gray_buffer_of(ring_picture()));
+      EXPECT_EQ(target_on(out), nullptr) << roi;
+    }
     EXPECT_EQ(stat(element_of(harness), "analysed"), 0U) << roi;
-    EXPECT_EQ(stat(element_of(harness), "skipped-region"), 1U) << roi;
+    EXPECT_EQ(stat(element_of(harness), "skipped-region"), 2U) << roi;
+    EXPECT_TRUE(bus.pop(GST_MESSAGE_WARNING)) << roi;
+    EXPECT_FALSE(bus.pop(GST_MESSAGE_WARNING)) << roi;
   }
 }
 
@@ -136,6 +141,7 @@ TEST(EllipseTrackRegion, FollowsTheMetadataOfEachBuffer) {
   auto right = two_rings();
   add_region(right, "pad", {160, 0, 4000000000U, 4000000000U});
   expect_at(push(harness, std::move(right)), kRight);
+  EXPECT_EQ(stat(element_of(harness), "lost"), 1U);
 }
 
 TEST(EllipseTrackRegion, TargetIsReportedLostWithoutMetadata) {

@@ -69,8 +69,9 @@ TEST_F(EvidenceFile, ErrorNamesTheLine) {
   const std::string path = file_.string();
   EXPECT_EQ(message_of("size 1 2\n"),
             path + ":1: is not an evidence table: unknown feature \"size\"");
-  EXPECT_EQ(message_of("\nlength nan 1\n"), path + ":2: expected a number");
-  EXPECT_EQ(message_of("length 1\n"), path + ":1: expected a number");
+  EXPECT_EQ(message_of("\nlength nan 1\n"), path + ":2: expected a number, not nan");
+  EXPECT_EQ(message_of("length 1\n"), path + ":1: expected a number, not the end of the line");
+  EXPECT_EQ(message_of("length 1 2x\n"), path + ":1: expected a number, not 2x");
   EXPECT_EQ(message_of("bias 1 2\n"), path + ":1: unexpected 2");
   EXPECT_EQ(message_of(good + "bias 1\n"),
             path + ":" + std::to_string(kFeatures + 2) + ": duplicate entry bias");
