@@ -8,18 +8,26 @@
 
 namespace ellipse {
 
-/// The luma of a picture and the lens that distorts it. A value; borrows the pixels and the lens.
+/// The luma of a picture, the lens that distorts it, and its scale. A value; borrows the pixels and
+/// the lens.
 struct Picture {
   ImageView luma;
   LensView lens;  ///< None by default.
+  int scale = 1;  ///< By which the frame was reduced.
 
   Picture() = default;
   Picture(const ImageView& image,  // NOLINT(google-explicit-constructor): a picture without a lens
-          const LensView& its_lens = {})
-      : luma(image), lens(its_lens) {}
+          const LensView& its_lens = {},
+          int its_scale = 1)
+      : luma(image), lens(its_lens), scale(its_scale) {}
   /// Without a lens; as the members of ImageView.
   Picture(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride)
       : luma{data, width, height, stride} {}
+
+  /// The part inside a rectangle that begins in the picture; its end is clipped.
+  [[nodiscard]] Picture part(const Rect& rect) const {
+    return {luma.region(rect), lens.part({double(rect.x), double(rect.y)}), scale};
+  }
 };
 
 }  // namespace ellipse

@@ -67,7 +67,7 @@ struct TracedCandidate {
 class DetectionTrace {
  public:
   /// In order of the search. `contours` makes one pass; `arcs` one per scale, a quarter of the size
-  /// first.
+  /// first. Before some of them it makes one around the ellipses so far only.
   [[nodiscard]] std::span<const TracedPass> passes() const { return passes_; }
   [[nodiscard]] std::span<const TracedCandidate> candidates() const { return candidates_; }
 

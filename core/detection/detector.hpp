@@ -13,7 +13,7 @@ namespace ellipse {
 
 class DetectionTrace;
 
-/// Coarsest scale of `arcs`; also that of the first search while a target is certain.
+/// Coarsest scale of the frame that is searched.
 inline constexpr int kCoarsestScale = 4;
 
 /// An ellipse that passed every test of a detector.

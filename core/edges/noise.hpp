@@ -29,6 +29,12 @@ inline constexpr double kNoiseQuantile = 0.3;
   return quantile / std::sqrt(-2.0 * std::log(1.0 - kNoiseQuantile));
 }
 
+/// Multiple of sigma that is unlikely to be noise: 2 % of normal errors are above it.
+inline constexpr double kUnlikelySigmas = 2.0;
+
+/// Multiple of sigma that contains normal errors: .1 % are above it.
+inline constexpr double kAllSigmas = 3.0;
+
 /// Approximate number of rows that estimates of noise sample.
 inline constexpr int kNoiseRows = 16;
 

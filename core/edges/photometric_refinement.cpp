@@ -10,6 +10,7 @@
 
 #include "core/camera/camera.hpp"
 #include "core/edges/edge_measurement.hpp"
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/image/simd.hpp"
 
@@ -48,11 +49,16 @@ struct Crossing {
   float slope = 0.0F;                   // derivative of the distance from the perimeter
   float quadratic = 0.0F;               // half its second derivative
 
-  void read(std::uint8_t (&levels)[kLanes]) const {
+  // Converts in a loop of its own, which uses vectors of more than two floats.
+  ELLIPSE_INLINE void read(float (&intensities)[kLanes]) const {
+    alignas(16) std::uint8_t levels[kLanes];
     const std::uint8_t* next = pixel - kLanes / 2 * along;
     for (std::uint8_t& level : levels) {
       level = *next;
       next += along;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      intensities[lane] = static_cast<float>(levels[lane]) - 128.0F;
     }
   }
 };
@@ -69,13 +75,8 @@ ELLIPSE_INLINE void add_line(const Crossing& crossing,
                              float inverse_step,
                              LaneSums& sums) {
   const auto outside_px = static_cast<float>(kPhotometricBandPx);
-  alignas(16) std::uint8_t levels[kLanes];
-  crossing.read(levels);
-  // A separate loop: with the conversion from bytes, the next one would use vectors of two floats.
   alignas(32) float intensities[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    intensities[lane] = static_cast<float>(levels[lane]) - 128.0F;
-  }
+  crossing.read(intensities);
   for (int lane = 0; lane < kLanes; ++lane) {
     const float t = static_cast<float>(lane - kLanes / 2) - crossing.offset;
     const float distance = t * (crossing.slope + crossing.quadratic * t);
@@ -333,7 +334,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
   const double rest = squares(own, alone.values);
   // At least the variance of rounding to grey levels.
   const double noise = 1.0 / 12.0 + rest / std::max(1.0, own[k1] - 3.0);
-  const bool is_alike = std::sqrt((squares(own, shared.values) - rest) / noise) < 3.0;  // sigma
+  const bool is_alike = std::sqrt((squares(own, shared.values) - rest) / noise) < kAllSigmas;
   const Eigen::Vector4d& values = is_alike ? shared.values : alone.values;
   const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.offset_variance);
   return Edge{&sectors[i],

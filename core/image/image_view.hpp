@@ -22,6 +22,9 @@ struct Rect {
 /// The intersection of two rectangles, 0 x 0 if empty.
 [[nodiscard]] Rect intersect(const Rect& a, const Rect& b);
 
+/// The smallest rectangle around two rectangles, of which empty ones do not count.
+[[nodiscard]] Rect united(const Rect& a, const Rect& b);
+
 /// A borrowed 8-bit luma image. Copying it copies no pixels.
 struct ImageView {
   const std::uint8_t* data = nullptr;  ///< The top-left pixel. Borrowed.

@@ -54,7 +54,7 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
                                                const std::optional<Ellipse>& last_target) {
   const LensView lens = frame.lens.part(Eigen::Vector2d(region.x, region.y)).reduced(scale);
   const auto detections =
-      detector_->detect({scaler_.reduce(read(region), scale), lens}, thresholds);
+      detector_->detect({scaler_.reduce(read(region), scale), lens, scale}, thresholds);
   candidates_.assign(detections.begin(), detections.end());
   for (Detection& candidate : candidates_) {
     candidate.ellipse = to_frame(candidate.ellipse, region, scale);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
-#include "core/tracking/roi.hpp"
+#include "core/image/roi.hpp"
 
 namespace ellipse {
 namespace {

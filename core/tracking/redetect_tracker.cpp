@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/camera/lens_view.hpp"
-#include "core/tracking/roi.hpp"
+#include "core/image/roi.hpp"
 
 namespace ellipse {
 namespace {

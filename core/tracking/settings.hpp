@@ -9,8 +9,8 @@
 #include "core/detection/detectors.hpp"
 #include "core/detection/evidence.hpp"
 #include "core/detection/thresholds.hpp"
+#include "core/image/roi.hpp"
 #include "core/tracking/pad/refinement.hpp"
-#include "core/tracking/roi.hpp"
 
 namespace ellipse {
 

@@ -25,17 +25,6 @@ ellipse::Rect clipped(std::int64_t x,
   return ellipse::intersect({left, top, right - left, bottom - top}, frame);
 }
 
-ellipse::Rect united(const ellipse::Rect& a, const ellipse::Rect& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  const int left = std::min(a.x, b.x);
-  const int top = std::min(a.y, b.y);
-  return {left,
-          top,
-          std::max(a.x + a.width, b.x + b.width) - left,
-          std::max(a.y + a.height, b.y + b.height) - top};
-}
-
 // The bounding box of all regions of interest and detected objects, so that a target which passes
 // from one to the next stays the same target. A type without a quark has no region; none is
 // created, because quarks are never freed.
@@ -50,11 +39,11 @@ ellipse::Rect box_around_regions(GstBuffer* buffer,
              buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
     if (type_quark != 0 && roi->roi_type != type_quark) continue;
-    box = united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
+    box = ellipse::united(box, clipped(roi->x, roi->y, roi->w, roi->h, frame));
   }
   state = nullptr;
   while (const auto object = next_object(buffer, &state, type_quark)) {
-    box = united(box, clipped(object->x, object->y, object->width, object->height, frame));
+    box = ellipse::united(box, clipped(object->x, object->y, object->width, object->height, frame));
   }
   return box;
 }

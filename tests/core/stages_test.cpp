@@ -13,8 +13,8 @@
 
 #include "core/detection/contours/overlap.hpp"
 #include "core/detection/detectors.hpp"
+#include "core/image/roi.hpp"
 #include "core/image/scale.hpp"
-#include "core/tracking/roi.hpp"
 #include "core/tracking/settings.hpp"
 #include "tests/support/picture.hpp"
 
@@ -191,6 +191,13 @@ TEST(Scale, RegionAndFrameAreInverse) {
   const Ellipse there = to_region(e, {32, 16, 100, 100}, 4);
   EXPECT_NEAR(there.cx, (100.3 - 32 + 0.5) / 4 - 0.5, 1e-12);
   EXPECT_NEAR(to_frame(there, {32, 16, 100, 100}, 4).cy, e.cy, 1e-12);
+}
+
+TEST(Rect, UnitedIgnoresEmptyRectangles) {
+  const Rect a{10, 20, 30, 40};
+  EXPECT_EQ(united(a, {50, 10, 5, 5}), (Rect{10, 10, 45, 50}));
+  EXPECT_EQ(united(a, {}), a);
+  EXPECT_EQ(united({500, 500, 0, 10}, a), a);
 }
 
 TEST(Roi, SurroundsTheTargetOnTheGridOfTheScale) {

@@ -36,9 +36,9 @@ struct Source {
 constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {173, 1}, {174, 0}},
-    {"airlab-gascola", {455, 0}, {454, 1}},
+    {"airlab-gascola", {455, 0}, {455, 0}},
     {"pupil-infrared", {1099, 5}, {1057, 1}},
-    {"pupil-blinks", {258, 0}, {257, 0}},
+    {"pupil-blinks", {259, 0}, {258, 0}},
     {"pupil-blinks", {215, 0}, {204, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},

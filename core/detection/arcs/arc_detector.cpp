@@ -9,14 +9,14 @@
 #include "core/detection/target_selection.hpp"
 #include "core/edges/edge_refinement.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/image/roi.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr std::size_t kMaxMeasured = 20;  // pairs measured per scale
+constexpr std::size_t kMaxMeasured = 20;  // pairs measured per pass
 constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
-constexpr int kMinSidePx = 30;            // smaller side of a reduced picture that is searched
 constexpr double kSameInside = 0.8;  // IoU inside the picture of an ellipse before and after a fit
 
 constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
@@ -125,34 +125,53 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
 
 void ArcDetector::reduce(const Picture& picture) {
   pictures_[0] = picture;
-  for (std::size_t level = 1; level < pictures_.size(); ++level) {
+  for (std::size_t level = 1; level <= level_of(coarsest_scale()); ++level) {
     const Picture& finer = pictures_[level - 1];
     pictures_[level] = {scalers_[level - 1].reduce(finer.luma, 2),
-                        picture.lens.reduced(1 << level)};
+                        picture.lens.reduced(1 << level),
+                        picture.scale << level};
   }
 }
 
+// The coarsest scale is that of the frame, not of a picture that is reduced already.
 int ArcDetector::coarsest_scale() const {
-  const auto is_too_small = [&](int scale) {
-    const ImageView& luma = picture_at(scale).luma;
-    return std::min(luma.width, luma.height) < kMinSidePx;
-  };
-  int scale = kCoarsestScale;
-  while (scale > 1 && is_too_small(scale)) scale /= 2;
-  return scale;
+  return std::max(1, kCoarsestScale / picture_at(1).scale);
 }
 
 void ArcDetector::search_scales(const Thresholds& thresholds) {
+  const auto finds_certain_target = [&](int scale, const Rect& region) {
+    search(scale, region, thresholds);
+    return !thresholds.wants_all && has_certain_target(thresholds);
+  };
   for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
-    search(scale, thresholds);
-    if (!thresholds.wants_all && has_certain_target(thresholds)) return;
+    const Rect region = thresholds.wants_all ? Rect{} : region_of_found(scale);
+    if (!region.empty() && finds_certain_target(scale, region)) return;
+    if (finds_certain_target(scale, pictures_[0].luma.bounds())) return;
   }
   confirm_at_finer_scales(thresholds);
 }
 
-void ArcDetector::search(int scale, const Thresholds& full) {
-  const Picture& picture = picture_at(scale);
+// The box around all ellipses of the coarser scales and their surroundings. Empty without any, or
+// if it is more than a quarter of the picture.
+Rect ArcDetector::region_of_found(int scale) const {
+  const Picture& picture = pictures_[0];
+  const auto& [data, width, height, stride] = picture.luma;
+  Rect box;
+  for (const Found& found : found_) {
+    const auto outline = distorted(picture.lens, found.measured.ellipse);
+    if (!outline) return {};
+    box = united(box, calculate_roi(*outline, kRoiExpansion, scale, width, height));
+  }
+  return 4.0 * box.width * box.height <= 1.0 * width * height ? box : Rect{};
+}
+
+// @param region  Begins at multiples of the scale [px of the picture].
+void ArcDetector::search(int scale, const Rect& region, const Thresholds& full) {
+  const auto reduced = [scale](int px) { return (px + scale - 1) / scale; };
+  const Picture picture = picture_at(scale).part(
+      {region.x / scale, region.y / scale, reduced(region.width), reduced(region.height)});
   scale_ = scale;
+  region_ = region;
   rejected_.clear();
   if (picture.luma.empty()) return;
   Thresholds thresholds = full.at_scale(scale);
@@ -160,7 +179,7 @@ void ArcDetector::search(int scale, const Thresholds& full) {
   map_ = &map_at(scale);
   map_->compute(picture, {thresholds.edge_low, thresholds.edge_high});
   min_gradient_ = kGradientGain * map_->thresholds().low / scale;
-  if (trace_ != nullptr) trace_edges(picture.luma);
+  if (trace_ != nullptr) trace_edges();
   chains_.trace(*map_);
   arcs_ = splitter_.split(*map_, chains_, thresholds.wants_all);
   if (trace_ != nullptr) trace_arcs();
@@ -213,19 +232,34 @@ void ArcDetector::try_guess(const Guess& guess,
   MeasuredEllipse measured;
   const Verdict verdict = examine(guess, thresholds, measured);
   if (trace_ != nullptr) {
-    measured.candidate = trace_->add(pieces, guess.ellipse, verdict);
+    const Eigen::Vector2i origin = origin_in_pass();
+    measured.candidate =
+        trace_->add(pieces, translated(guess.ellipse, origin.x(), origin.y()), verdict);
     if (measured.probability > 0.0) {
-      trace_->measure(
-          measured.candidate, to_frame(measured.ellipse, {}, scale_), measured.features, evidence_);
+      trace_->measure(measured.candidate,
+                      to_frame(measured.ellipse, region_, scale_),
+                      measured.features,
+                      evidence_);
     }
   }
-  if (verdict.is_accepted()) add(measured);
+  if (verdict.is_accepted() && !is_cut(measured.ellipse)) add(measured);
   // Edges of both polarities count only if they make the outline likely.
   if (thresholds.min_probability < 1.0 && may_have_both_polarities(measured)) {
     Thresholds likely = thresholds;
     likely.min_probability = std::max(probability_of(0.0), thresholds.min_probability);
     try_guess({measured.ellipse, Polarity::kMixed, guess.rms_px}, pieces, likely);
   }
+}
+
+// Whether the searched region cuts an ellipse that reaches farther into the picture: the whole
+// picture decides about it.
+bool ArcDetector::is_cut(const Ellipse& in_pass) const {
+  const Picture& picture = pictures_[0];
+  const auto outline = distorted(picture.lens, to_frame(in_pass, region_, scale_));
+  if (!outline) return false;
+  const auto& [data, width, height, stride] = picture.luma;
+  const Rect box = calculate_roi(*outline, 1.0, 1, width, height);
+  return intersect(box, region_) != box;
 }
 
 Verdict ArcDetector::examine(const Guess& guess,
@@ -244,7 +278,7 @@ Verdict ArcDetector::examine(const Guess& guess,
 
 // Only a certain ellipse excludes similar guesses: an uncertain one may be a wrong fit.
 Verdict ArcDetector::check_duplicate(const Guess& guess) const {
-  const Ellipse in_frame = to_frame(guess.ellipse, {}, scale_);
+  const Ellipse in_frame = to_frame(guess.ellipse, region_, scale_);
   for (const Found& known : found_) {
     const auto& [one, scale] = known;
     if (scale == scale_ && is_certain(one.probability) && may_agree(one.polarity, guess.polarity) &&
@@ -267,7 +301,7 @@ void ArcDetector::add(const MeasuredEllipse& measured) {
   const bool is_new_certain = is_certain(measured.probability);
   if (is_new_certain) use_arcs_on(measured.ellipse, measured.polarity);
   Found found{measured, scale_};
-  found.measured.ellipse = to_frame(measured.ellipse, {}, scale_);
+  found.measured.ellipse = to_frame(measured.ellipse, region_, scale_);
   for (Found& known : found_) {
     const bool is_comparable =
         known.scale == scale_ || is_new_certain || is_certain(known.measured.probability);
@@ -408,20 +442,28 @@ void ArcDetector::reject(int candidate, const Verdict& verdict) {
   if (trace_ != nullptr) trace_->revise(candidate, verdict);
 }
 
-void ArcDetector::trace_edges(const ImageView& luma) {
+// Has the size of the whole picture, but edges in the searched region only.
+void ArcDetector::trace_edges() {
+  const ImageView& luma = picture_at(scale_).luma;
   TracedPass& pass = trace_->begin_pass(luma, scale_);
   pass.edge_low = map_->thresholds().low;
   pass.edge_high = map_->thresholds().high;
+  pass.edges.resize(pass.luma.size());
+  const Eigen::Vector2i origin = origin_in_pass();
   for (int y = 0; y < map_->height(); ++y) {
     const std::uint8_t* row = map_->maxima() + std::ptrdiff_t(y) * map_->stride();
-    for (int x = 0; x < map_->width(); ++x) pass.edges.push_back(row[x] != 0 ? 255 : 0);
+    std::uint8_t* edges =
+        pass.edges.data() + std::ptrdiff_t(origin.y() + y) * pass.width + origin.x();
+    for (int x = 0; x < map_->width(); ++x) edges[x] = row[x] != 0 ? 255 : 0;
   }
 }
 
 void ArcDetector::trace_arcs() {
   TracedPass& pass = trace_->pass();
+  const Eigen::Vector2i origin = origin_in_pass();
   for (const std::int32_t pixel : chains_.pixels()) {
-    pass.points.push_back({pixel % map_->stride(), pixel / map_->stride()});
+    pass.points.push_back(
+        {origin.x() + pixel % map_->stride(), origin.y() + pixel / map_->stride()});
   }
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     const std::size_t begin = pass.chains.empty() ? 0 : pass.chains.back().end;

@@ -27,14 +27,15 @@ struct TracedPiece;
 /// perimeter; the probability of an ellipse decides. An outline that is unlikely with edges of one
 /// polarity is also measured with edges of both.
 ///
-/// Searches at a quarter of the size, then at half, then at full size, and stops early if the best
-/// target is certain. Otherwise the finer sizes decide about the ellipses of a reduced picture that
+/// Searches at a quarter of the frame's size, then at half, then at full size, and stops early if
+/// the best target is certain. Before a finer size it searches around the ellipses of the coarser
+/// ones only. Otherwise the finer sizes decide about the ellipses of a reduced picture that
 /// are not ruled out. Merges duplicates across sizes. Refines ellipses from reduced pictures on
 /// each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
-/// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A target search
-/// accepts at most 50 ellipses of single arcs at each size.
+/// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A search
+/// for a target accepts at most 50 ellipses of single arcs in each pass.
 class ArcDetector final : public Detector {
  public:
   explicit ArcDetector(Simd simd = best_simd())
@@ -69,13 +70,15 @@ class ArcDetector final : public Detector {
   [[nodiscard]] int coarsest_scale() const;
   void reduce(const Picture& picture);
   void search_scales(const Thresholds& thresholds);
-  void search(int scale, const Thresholds& full);
+  [[nodiscard]] Rect region_of_found(int scale) const;
+  void search(int scale, const Rect& region, const Thresholds& full);
   void try_single_arcs(const Thresholds& thresholds);
   void try_pairs(const Thresholds& thresholds);
   void try_arcs(std::initializer_list<const Arc*> arcs, const Thresholds& thresholds);
   void try_guess(const Guess& guess,
                  std::span<const TracedPiece> pieces,
                  const Thresholds& thresholds);
+  [[nodiscard]] bool is_cut(const Ellipse& in_pass) const;
   [[nodiscard]] Verdict examine(const Guess& guess,
                                 const Thresholds& thresholds,
                                 MeasuredEllipse& measured);
@@ -97,7 +100,11 @@ class ArcDetector final : public Detector {
   void refine(int scale, MeasuredEllipse& measured) const;
   void report(double min_probability);
   void reject(int candidate, const Verdict& verdict);
-  void trace_edges(const ImageView& luma);
+  // Of the searched region [px of the whole reduced picture].
+  [[nodiscard]] Eigen::Vector2i origin_in_pass() const {
+    return {region_.x / scale_, region_.y / scale_};
+  }
+  void trace_edges();
   void trace_arcs();
 
   // At full size, half and a quarter.
@@ -116,6 +123,7 @@ class ArcDetector final : public Detector {
   std::vector<Guess> rejected_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections
+  Rect region_;                       // of this pass
   int scale_ = 1;                     // of this pass
   double min_gradient_ = 0.0;         // smallest of an edge on the full picture
 };

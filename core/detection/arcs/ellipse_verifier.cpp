@@ -138,7 +138,7 @@ Verdict EllipseVerifier::approach(const GradientMap& map,
                                   const Thresholds& thresholds,
                                   const EvidenceTable& table,
                                   MeasuredEllipse& measured) {
-  const double widest_px = std::max(3.0, deformation_px(measured.ellipse));
+  const double widest_px = std::max(2.0 * kBasePx, deformation_px(measured.ellipse));
   for (const Step& step : kSteps) {
     const double reach_px = std::max(kOnOutlinePx, step.part_of_reach * widest_px);
     (void)measure(map, step.samples, reach_px, measured);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/tracking/pad/visible_part.hpp"
 
@@ -199,7 +200,7 @@ void EdgeSearch::search(const ImageView& luma,
     if (covariance != nullptr) {
       const double variance = variance_along(sample.view.row, *covariance);
       // Rounding may make the variance negative.
-      reach = std::clamp(3.0 * std::sqrt(std::max(0.0, variance)), reach_px, max_px);
+      reach = std::clamp(kAllSigmas * std::sqrt(std::max(0.0, variance)), reach_px, max_px);
     }
     search_along(luma, levels, reach, sample);
   }
@@ -228,51 +229,60 @@ std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma)
   return Crossing{axis, static_cast<int>(line), crossing, slope};
 }
 
-}  // namespace
-
-// Differences of box averages across the edge, positive from dark to bright. Reads pixels along the
-// row or column closest to the normal, which avoids interpolation.
-void EdgeSearch::search_along(const ImageView& luma,
-                              const ImageLevels& levels,
-                              double reach_px,
-                              EdgeSample& sample) const {
-  sample.count = 0;
-  sample.is_visible = false;
-  const auto found = crossing_of(sample.view, luma);
-  if (!found) return;
-  const auto& [axis, line, crossing, slope] = *found;
-  const int middle = static_cast<int>(std::floor(crossing + 0.5));
+// Box averages across an edge: reads pixels along the row or column, which avoids interpolation.
+// nullopt if the picture ends within a box of the edge.
+// @param gap_px  Distance of the nearest other edge, which limits the box.
+std::optional<Profile> profile_at(const Crossing& crossing,
+                                  const ImageView& luma,
+                                  double reach_px,
+                                  double gap_px) {
+  const auto& [axis, line, position, slope] = crossing;
+  const int middle = static_cast<int>(std::floor(position + 0.5));
   const int end = axis == 0 ? luma.width : luma.height;
-
   const double reach = reach_px / std::abs(slope);
   const int step = std::max(1, static_cast<int>(std::ceil(reach / kMaxSteps)));
   const int steps = static_cast<int>(std::ceil(reach / step));
   const double step_px = step * std::abs(slope);
-  const double gap_px = narrowest_ * sample.view.px_per_unit;
   const int box = static_cast<int>(std::clamp(0.5 * gap_px / step_px, 1.0, double(kMaxBox)));
   const bool is_forth = slope > 0.0;
   const int before = (is_forth ? middle : end - 1 - middle) / step;
   const int behind = (is_forth ? end - 1 - middle : middle) / step;
   const int first = -std::min(steps + box, before);
   const int last = std::min(steps + box, behind);
-  sample.is_visible = first <= -box && last >= box;
-  if (!sample.is_visible) return;
+  if (first > -box || last < box) return std::nullopt;
 
   const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
   const std::ptrdiff_t stride = (is_forth ? step : -step) * along;
   const std::uint8_t* pixel =
       luma.data + middle * along + line * (axis == 0 ? luma.stride : 1) + first * stride;
-  Profile profile;
-  profile.count = static_cast<std::size_t>(last - first) + 1;
-  profile.box = static_cast<std::size_t>(box);
-  profile.first = static_cast<float>(first);
-  profile.step_px = static_cast<float>(step_px);
-  profile.middle_px = static_cast<float>(slope * (middle - crossing));
-  profile.read(pixel, stride);
-  const double noise = levels.noise * std::sqrt(2.0 / box);  // of a difference of boxes
+  std::optional<Profile> profile(std::in_place);
+  profile->count = static_cast<std::size_t>(last - first) + 1;
+  profile->box = static_cast<std::size_t>(box);
+  profile->first = static_cast<float>(first);
+  profile->step_px = static_cast<float>(step_px);
+  profile->middle_px = static_cast<float>(slope * (middle - position));
+  profile->read(pixel, stride);
+  return profile;
+}
+
+}  // namespace
+
+// The differences of neighbouring boxes are positive from dark to bright.
+void EdgeSearch::search_along(const ImageView& luma,
+                              const ImageLevels& levels,
+                              double reach_px,
+                              EdgeSample& sample) const {
+  const double gap_px = narrowest_ * sample.view.px_per_unit;
+  const auto crossing = crossing_of(sample.view, luma);
+  const auto profile = crossing ? profile_at(*crossing, luma, reach_px, gap_px) : std::nullopt;
+  sample.count = 0;
+  sample.is_visible = profile.has_value();
+  if (!profile) return;
+  // Of a difference of boxes.
+  const double noise = levels.noise * std::sqrt(2.0 / static_cast<double>(profile->box));
   const double min_contrast =
-      std::max(kMinOverNoise * noise, kMajority * levels.gain * sample.contrast);
-  keep_edges(profile, static_cast<float>(min_contrast), reach_px, sample);
+      std::max(kUnlikelySigmas * noise, kMajority * levels.gain * sample.contrast);
+  keep_edges(*profile, static_cast<float>(min_contrast), reach_px, sample);
 }
 
 }  // namespace ellipse

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/edges/noise.hpp"
 #include "core/geometry/least_squares.hpp"
 
 namespace ellipse {
@@ -52,7 +53,7 @@ std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> s
 
 bool is_refuted(int matched, int visible) {
   const double sigma = 0.5 * std::sqrt(visible);  // of the matches, if half are expected
-  return matched + 2.0 * sigma < kMajority * visible;
+  return matched + kUnlikelySigmas * sigma < kMajority * visible;
 }
 
 bool is_matched(const EdgeSample& sample, const HomographyChange& change, double max_px) {

@@ -111,7 +111,7 @@ std::optional<int> outer_circle(const RadialProfile& profile, double noise) {
   for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
     strongest = std::max(strongest, profile.strength(i));
   }
-  if (strongest < kMinOverNoise * noise) return std::nullopt;
+  if (strongest < kUnlikelySigmas * noise) return std::nullopt;
   const auto is_outer = [&](int i) {
     return profile.strength(i) >= kMajority * strongest && is_peak(profile, i);
   };

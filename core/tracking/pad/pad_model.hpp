@@ -14,9 +14,6 @@ namespace ellipse {
 /// Min contrast to learn a line or to refine a circle, as a share of the expected contrast.
 inline constexpr double kMinContrastShare = 0.25;
 
-/// Min contrast of an edge, in sigma of its noise; noise alone exceeds it at 2 % of the positions.
-inline constexpr double kMinOverNoise = 2.0;
-
 /// Min share of a pad's edges, or of the angles of a circle, that match.
 inline constexpr double kMinCoverage = 0.65;
 

@@ -11,9 +11,9 @@
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/image/roi.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/pad/model_errors.hpp"
-#include "core/tracking/roi.hpp"
 
 namespace ellipse {
 namespace {
@@ -47,9 +47,9 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
-// Distance of a matched edge: 2 sigma, and the pad's deformation.
+// Distance of a matched edge: its error, and the pad's deformation.
 double tolerance_px(double radius_px) {
-  return 2.0 * kEdgeSigmaPx + kDeformation * radius_px;
+  return kUnlikelySigmas * kEdgeSigmaPx + kDeformation * radius_px;
 }
 
 }  // namespace

@@ -368,6 +368,38 @@ TEST(DetectionTrace, OfArcsHasThreeScalesIfUncertain) {
   EXPECT_EQ(look.trace.passes()[2].scale, 1);
 }
 
+// A square in the other half of the picture has edges, too.
+TEST(DetectionTrace, OfArcsLooksAroundUncertainEllipsesFirst) {
+  const Ellipse ring{100.3, 90.7, 28.0, 21.0, 0.4};
+  Picture picture = rendered(plain_ring(), ring);
+  for (int y = 150; y < 210; ++y) {
+    for (int x = 230; x < 290; ++x) picture.pixels[std::size_t(y * picture.width + x)] = 60;
+  }
+  const auto edges_at_right = [](const TracedPass& pass) {
+    int count = 0;
+    for (std::size_t i = 0; i < pass.edges.size(); ++i) {
+      const bool is_right = static_cast<int>(i) % pass.width > pass.width / 2;
+      if (is_right && pass.edges[i] != 0) ++count;
+    }
+    return count;
+  };
+  const Look look = look_at(DetectorKind::kArcs, picture);
+  const auto passes = look.trace.passes();
+  ASSERT_EQ(passes.size(), 2U);
+  EXPECT_EQ(passes[0].scale, 4);
+  EXPECT_EQ(passes[1].scale, 2);
+  EXPECT_GT(edges_at_right(passes[0]), 0);
+  EXPECT_EQ(edges_at_right(passes[1]), 0);
+  ASSERT_TRUE(look.target);
+  EXPECT_NEAR(look.target->ellipse.cx, ring.cx, 0.1);
+  EXPECT_NEAR(look.target->ellipse.cy, ring.cy, 0.1);
+  ASSERT_FALSE(passes[1].points.empty());
+  for (const TracedPoint& point : passes[1].points) {
+    const Eigen::Vector2d at(passes[1].scale * point.x, passes[1].scale * point.y);
+    EXPECT_LT((at - ring.center()).norm(), ring.semi_major + 5.0);
+  }
+}
+
 TEST(DetectionTrace, OfATrackerIsInFramePixels) {
   const Picture picture = rendered(plain_ring(), kRing);
   TrackerSettings settings;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/tracking/roi.hpp"
+#include "core/image/roi.hpp"
 
 #include <algorithm>
 #include <cmath>
