@@ -80,16 +80,6 @@ void filter_mosaic_row(
   }
 }
 
-Rect bounding(const Rect& a, const Rect& b) {
-  if (a.empty()) return b;
-  const int left = std::min(a.x, b.x);
-  const int top = std::min(a.y, b.y);
-  return {left,
-          top,
-          std::max(a.x + a.width, b.x + b.width) - left,
-          std::max(a.y + a.height, b.y + b.height) - top};
-}
-
 }  // namespace
 
 void LumaReader::begin(const PixelView& picture) {
@@ -110,7 +100,7 @@ ImageView LumaReader::read(const Rect& region) {
 
   const auto pixels = static_cast<std::size_t>(picture_.width) * picture_.height;
   if (buffer_.size() < pixels) buffer_.resize(pixels);
-  const Rect required = bounding(converted_, inside);
+  const Rect required = united(converted_, inside);
   const Rect done =
       converted_.empty() ? Rect{required.x, required.y, required.width, 0} : converted_;
   const int bottom = done.y + done.height;

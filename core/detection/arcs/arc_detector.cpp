@@ -10,6 +10,7 @@
 #include "core/edges/edge_refinement.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/image/roi.hpp"
+#include "core/image/scale.hpp"
 
 namespace ellipse {
 namespace {
@@ -64,7 +65,7 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
                                                const Thresholds& thresholds) {
   if (trace_ != nullptr) trace_->clear();
   found_.clear();
-  reduce(picture);
+  pyramid_.reduce(picture);
   search_scales(thresholds);
   drop_unlikely(thresholds.min_probability);
   merge_duplicates();
@@ -85,9 +86,9 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   limits.edge_high = thresholds.edge_high;
   limits.contour_overlap = thresholds.contour_overlap;
   limits.ellipse_overlap = thresholds.ellipse_overlap;
-  reduce(picture);
+  pyramid_.reduce(picture);
   std::optional<Found> best;
-  for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
+  for (int scale = pyramid_.coarsest_scale(); scale >= 1; scale /= 2) {
     if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
     find_edges(scale, limits);
     const auto measured = judged_at(scale, e, limits);
@@ -99,8 +100,8 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
 }
 
 void ArcDetector::find_edges(int scale, const Thresholds& thresholds) {
-  GradientMap& map = map_at(scale);
-  map.compute(picture_at(scale), {thresholds.edge_low, thresholds.edge_high});
+  GradientMap& map = pyramid_.map_at(scale);
+  map.compute(pyramid_.picture_at(scale), {thresholds.edge_low, thresholds.edge_high});
   chains_.trace(map);
 }
 
@@ -109,7 +110,7 @@ void ArcDetector::find_edges(int scale, const Thresholds& thresholds) {
 std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
                                                       const Ellipse& e,
                                                       const Thresholds& thresholds) {
-  const GradientMap& map = map_at(scale);
+  const GradientMap& map = pyramid_.map_at(scale);
   const Ellipse guess = to_region(e, {}, scale);
   std::optional<MeasuredEllipse> best;
   for (const Polarity polarity : {verifier_.better_polarity(map, guess), Polarity::kMixed}) {
@@ -123,30 +124,15 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
   return best;
 }
 
-void ArcDetector::reduce(const Picture& picture) {
-  pictures_[0] = picture;
-  for (std::size_t level = 1; level <= level_of(coarsest_scale()); ++level) {
-    const Picture& finer = pictures_[level - 1];
-    pictures_[level] = {scalers_[level - 1].reduce(finer.luma, 2),
-                        picture.lens.reduced(1 << level),
-                        picture.scale << level};
-  }
-}
-
-// The coarsest scale is that of the frame, not of a picture that is reduced already.
-int ArcDetector::coarsest_scale() const {
-  return std::max(1, kCoarsestScale / picture_at(1).scale);
-}
-
 void ArcDetector::search_scales(const Thresholds& thresholds) {
   const auto finds_certain_target = [&](int scale, const Rect& region) {
     search(scale, region, thresholds);
     return !thresholds.wants_all && has_certain_target(thresholds);
   };
-  for (int scale = coarsest_scale(); scale >= 1; scale /= 2) {
+  for (int scale = pyramid_.coarsest_scale(); scale >= 1; scale /= 2) {
     const Rect region = thresholds.wants_all ? Rect{} : region_of_found(scale);
     if (!region.empty() && finds_certain_target(scale, region)) return;
-    if (finds_certain_target(scale, pictures_[0].luma.bounds())) return;
+    if (finds_certain_target(scale, pyramid_.picture_at(1).luma.bounds())) return;
   }
   confirm_at_finer_scales(thresholds);
 }
@@ -154,7 +140,7 @@ void ArcDetector::search_scales(const Thresholds& thresholds) {
 // The box around all ellipses of the coarser scales and their surroundings. Empty without any, or
 // if it is more than a quarter of the picture.
 Rect ArcDetector::region_of_found(int scale) const {
-  const Picture& picture = pictures_[0];
+  const Picture& picture = pyramid_.picture_at(1);
   const auto& [data, width, height, stride] = picture.luma;
   Rect box;
   for (const Found& found : found_) {
@@ -168,7 +154,7 @@ Rect ArcDetector::region_of_found(int scale) const {
 // @param region  Begins at multiples of the scale [px of the picture].
 void ArcDetector::search(int scale, const Rect& region, const Thresholds& full) {
   const auto reduced = [scale](int px) { return (px + scale - 1) / scale; };
-  const Picture picture = picture_at(scale).part(
+  const Picture picture = pyramid_.picture_at(scale).part(
       {region.x / scale, region.y / scale, reduced(region.width), reduced(region.height)});
   scale_ = scale;
   region_ = region;
@@ -176,7 +162,7 @@ void ArcDetector::search(int scale, const Rect& region, const Thresholds& full) 
   if (picture.luma.empty()) return;
   Thresholds thresholds = full.at_scale(scale);
   if (scale > 1) thresholds.min_probability = required_when_reduced(full);
-  map_ = &map_at(scale);
+  map_ = &pyramid_.map_at(scale);
   map_->compute(picture, {thresholds.edge_low, thresholds.edge_high});
   min_gradient_ = kGradientGain * map_->thresholds().low / scale;
   if (trace_ != nullptr) trace_edges();
@@ -254,7 +240,7 @@ void ArcDetector::try_guess(const Guess& guess,
 // Whether the searched region cuts an ellipse that reaches farther into the picture: the whole
 // picture decides about it.
 bool ArcDetector::is_cut(const Ellipse& in_pass) const {
-  const Picture& picture = pictures_[0];
+  const Picture& picture = pyramid_.picture_at(1);
   const auto outline = distorted(picture.lens, to_frame(in_pass, region_, scale_));
   if (!outline) return false;
   const auto& [data, width, height, stride] = picture.luma;
@@ -363,11 +349,11 @@ bool ArcDetector::has_certain_target(const Thresholds& thresholds) {
 // one: compression removes fine noise, but not the errors that it causes.
 double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thresholds) {
   const MeasuredEllipse& measured = found.measured;
-  double high = map_at(found.scale).thresholds().high;
+  double high = pyramid_.map_at(found.scale).thresholds().high;
   double sum = log_odds(measured.probability);
   double weights = 1.0;
   for (int scale = found.scale / 2; scale >= 1; scale /= 2) {
-    const GradientMap& map = map_at(scale);
+    const GradientMap& map = pyramid_.map_at(scale);
     high = std::max(high, map.thresholds().high);
     if (measured.gradient * scale / found.scale < kGradientGain * high) continue;
     const Ellipse guess = to_region(measured.ellipse, {}, scale);
@@ -414,7 +400,7 @@ void ArcDetector::refine_at_finer_scales(const Thresholds& thresholds) {
 }
 
 void ArcDetector::refine(int scale, MeasuredEllipse& measured) const {
-  const auto refined = refined_on_picture(picture_at(scale),
+  const auto refined = refined_on_picture(pyramid_.picture_at(scale),
                                           to_region(measured.ellipse, {}, scale),
                                           measured.polarity,
                                           {scale * min_gradient_});
@@ -444,7 +430,7 @@ void ArcDetector::reject(int candidate, const Verdict& verdict) {
 
 // Has the size of the whole picture, but edges in the searched region only.
 void ArcDetector::trace_edges() {
-  const ImageView& luma = picture_at(scale_).luma;
+  const ImageView& luma = pyramid_.picture_at(scale_).luma;
   TracedPass& pass = trace_->begin_pass(luma, scale_);
   pass.edge_low = map_->thresholds().low;
   pass.edge_high = map_->thresholds().high;

@@ -1,7 +1,5 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -11,11 +9,11 @@
 #include "core/detection/arcs/arc_pairs.hpp"
 #include "core/detection/arcs/arcs.hpp"
 #include "core/detection/arcs/ellipse_verifier.hpp"
+#include "core/detection/arcs/pyramid.hpp"
 #include "core/detection/arcs/ring_corrector.hpp"
 #include "core/detection/detector.hpp"
 #include "core/edges/chains.hpp"
 #include "core/edges/gradient_map.hpp"
-#include "core/image/scale.hpp"
 
 namespace ellipse {
 
@@ -38,8 +36,7 @@ struct TracedPiece;
 /// for a target accepts at most 50 ellipses of single arcs in each pass.
 class ArcDetector final : public Detector {
  public:
-  explicit ArcDetector(Simd simd = best_simd())
-      : maps_{GradientMap(simd), GradientMap(simd), GradientMap(simd)} {}
+  explicit ArcDetector(Simd simd = best_simd()) : pyramid_(simd) {}
 
   [[nodiscard]] std::span<const Detection> detect(const Picture& picture,
                                                   const Thresholds& thresholds) override;
@@ -62,13 +59,6 @@ class ArcDetector final : public Detector {
     int scale;                 // of its pass
   };
 
-  [[nodiscard]] static std::size_t level_of(int scale) {
-    return static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(scale)));
-  }
-  [[nodiscard]] const Picture& picture_at(int scale) const { return pictures_[level_of(scale)]; }
-  [[nodiscard]] GradientMap& map_at(int scale) { return maps_[level_of(scale)]; }
-  [[nodiscard]] int coarsest_scale() const;
-  void reduce(const Picture& picture);
   void search_scales(const Thresholds& thresholds);
   [[nodiscard]] Rect region_of_found(int scale) const;
   void search(int scale, const Rect& region, const Thresholds& full);
@@ -107,11 +97,8 @@ class ArcDetector final : public Detector {
   void trace_edges();
   void trace_arcs();
 
-  // At full size, half and a quarter.
-  std::array<Picture, 3> pictures_;
-  std::array<GradientMap, 3> maps_;
-  std::array<Scaler, 2> scalers_;  // each to the next smaller picture
-  GradientMap* map_ = nullptr;     // of this pass
+  Pyramid pyramid_;
+  GradientMap* map_ = nullptr;  // of this pass
   ChainTracer chains_;
   ArcSplitter splitter_;
   ArcPairs pairs_;

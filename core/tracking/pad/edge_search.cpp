@@ -229,7 +229,8 @@ std::optional<Crossing> crossing_of(const EdgeView& view, const ImageView& luma)
   return Crossing{axis, static_cast<int>(line), crossing, slope};
 }
 
-// Box averages across an edge: reads pixels along the row or column, which avoids interpolation.
+// Sums of the levels across an edge: reads pixels along the row or column, which avoids
+// interpolation.
 // nullopt if the picture ends within a box of the edge.
 // @param gap_px  Distance of the nearest other edge, which limits the box.
 std::optional<Profile> profile_at(const Crossing& crossing,
