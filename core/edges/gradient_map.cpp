@@ -223,18 +223,22 @@ void GradientMap::compute_row(const ImageView& luma, int y) {
 // found.
 void GradientMap::measure_noise(const ImageView& luma) {
   std::fill(histogram_.begin(), histogram_.end(), 0);
-  int samples = 0;
+  int unsaturated = 0;
+  int all = 0;
   const int step = std::max(1, height_ / kNoiseRows);
   for (int y = kBorder; y < height_ - kBorder; y += step) {
     compute_row(luma, y);
     const Int* m = row_of(magnitude_, y);
     const std::uint8_t* levels = luma.row(y);
     for (int x = 2; x < width_ - 2; x += 2) {
+      ++all;
       if (is_saturated(levels[x])) continue;
       ++histogram_[static_cast<std::size_t>(m[x] >> kHistogramShift)];
-      ++samples;
+      ++unsaturated;
     }
   }
+  const int samples = noise_samples(unsaturated, all);
+  histogram_[0] += samples - unsaturated;
   const double rounding = kGradientOfNoise / std::sqrt(12.0);  // of pixels to grey levels
   const double quantile =
       (static_cast<double>(noise_bin(histogram_, samples)) + 0.5) * (1 << kHistogramShift);

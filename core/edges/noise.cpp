@@ -40,6 +40,7 @@ RowSums add_row(const std::uint8_t* above,
 double pixel_noise(const ImageView& luma) {
   std::int64_t sum = 0;
   int samples = 0;
+  int all = 0;
   const int step = std::max(1, luma.height / kNoiseRows);
   const int border = GradientMap::kBorder;
   const int first = border - 2;  // column left of the first sample
@@ -49,9 +50,10 @@ double pixel_noise(const ImageView& luma) {
         add_row(luma.row(y - 1) + first, luma.row(y) + first, luma.row(y + 1) + first, count);
     sum += row.differences;
     samples += row.samples;
+    all += count;
   }
   // The mean of |N(0, s)| is s sqrt(2 / pi); the mask has the norm 6 [Immerkaer1996].
-  const double mean = static_cast<double>(sum) / std::max(1, samples);
+  const double mean = static_cast<double>(sum) / std::max(1, noise_samples(samples, all));
   return std::max(std::sqrt(0.5 * std::numbers::pi) / 6.0 * mean, 1.0 / std::sqrt(12.0));
 }
 

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +42,12 @@ inline constexpr int kNoiseRows = 16;
 /// Whether clipping hides the noise of a pixel.
 [[nodiscard]] inline bool is_saturated(std::uint8_t level) {
   return level < 2 || level > 253;
+}
+
+/// Number of samples without saturation, raised to the quantile's share of all. In a picture of
+/// black and white most of the others are edges; then saturated samples count as free of noise.
+[[nodiscard]] inline int noise_samples(int unsaturated, int all) {
+  return std::max(unsaturated, static_cast<int>(kNoiseQuantile * all));
 }
 
 /// Standard deviation of the pixels' noise [grey levels], from second differences

@@ -151,6 +151,24 @@ TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   EXPECT_GT(best_iou(picture, truth, detecting()), 0.95);
 }
 
+// Nearly all pixels are saturated, and most of the others are edges.
+TEST(ArcDetector, FindsADrawnDiscInBlackAndWhite) {
+  for (const double radius : {20.0, 40.0, 100.0}) {
+    for (const int inside : {0, 255}) {
+      const Ellipse truth{160.2, 119.7, radius, 0.7 * radius, 0.6};
+      Picture picture(320, 240);
+      for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+          const double covered = std::clamp(0.5 - sampson_distance(truth, {x, y}), 0.0, 1.0);
+          picture.at(x, y) = static_cast<std::uint8_t>(
+              std::lround(covered * inside + (1.0 - covered) * (255 - inside)));
+        }
+      }
+      EXPECT_GT(best_iou(picture, truth, detecting()), 0.97) << radius << ", " << inside;
+    }
+  }
+}
+
 // The ring is 4 px wide on its long sides and 8 px at its ends. The correction for thin rings does
 // not apply.
 TEST(ArcDetector, IsExactOnAFlatRingFoundInAReducedPicture) {
