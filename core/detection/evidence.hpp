@@ -24,6 +24,10 @@ namespace ellipse {
 /// From these log odds on an ellipse is certain, and below their negative it is ruled out.
 inline constexpr double kCertainLogOdds = 3.0;
 
+[[nodiscard]] inline bool is_certain(double probability) {
+  return log_odds(probability) >= kCertainLogOdds;
+}
+
 /// Measurements along a candidate's outline: the inputs of the logistic regression.
 enum class Feature : std::size_t {
   kTurnSupport,     ///< Share of the outline's turn inside the picture matched by edges, 0 to 1.

@@ -10,8 +10,6 @@
 namespace ellipse {
 namespace {
 
-constexpr int kClosingGap = 3;  // between the ends of a closed chain [pixels]
-
 // For each octant of an edge, the codes that may follow, as a bit set: free gradient maxima whose
 // edge direction differs by at most one octant.
 constexpr std::array<std::uint32_t, 8> kOpen = [] {
@@ -95,11 +93,6 @@ class ChainTracer::Walk {
 
 namespace {
 
-bool are_near(std::int32_t a, std::int32_t b, int stride) {
-  return std::abs(a % stride - b % stride) <= kClosingGap &&
-         std::abs(a / stride - b / stride) <= kClosingGap;
-}
-
 // Index of the first byte in memory that is not 0.
 int first_byte_of(std::uint64_t word) {
   const bool is_little = std::endian::native == std::endian::little;
@@ -147,12 +140,10 @@ void ChainTracer::add_chain(std::int32_t seed,
   }
   count_ += length;
   begins_.push_back(count_);
-  is_closed_.push_back(are_near(*begin, *(end - 1), stride_));
 }
 
 void ChainTracer::reserve(std::size_t chains) {
   begins_.reserve(chains + 1);
-  is_closed_.reserve(chains);
 }
 
 void ChainTracer::trace(GradientMap& map) {
@@ -161,8 +152,6 @@ void ChainTracer::trace(GradientMap& map) {
   pixels_.resize(pixels / 4 + 64);
   count_ = 0;
   begins_.assign(1, 0);
-  is_closed_.clear();
-  stride_ = map.stride();
   const Walk against(map, false);
   const Walk along(map, true);
   for_each_seed(map, [&](std::int32_t pixel) {
@@ -171,8 +160,8 @@ void ChainTracer::trace(GradientMap& map) {
   });
 }
 
-Chain ChainTracer::chain(std::size_t i) const {
-  return {pixels().subspan(begins_[i], begins_[i + 1] - begins_[i]), is_closed_[i] != 0};
+std::span<const std::int32_t> ChainTracer::chain(std::size_t i) const {
+  return pixels().subspan(begins_[i], begins_[i + 1] - begins_[i]);
 }
 
 }  // namespace ellipse

@@ -8,13 +8,8 @@
 
 namespace ellipse {
 
-/// Gradient maxima in order along their edge, with the bright side on the left.
-struct Chain {
-  std::span<const std::int32_t> pixels;  ///< Indices into the maps.
-  bool is_closed = false;                ///< Whether its ends are within 3 px.
-};
-
-/// Links gradient maxima into chains. Each gradient maximum is in at most one chain.
+/// Links gradient maxima into chains, in order along their edge, with the bright side on the left.
+/// Each gradient maximum is in at most one chain.
 class ChainTracer {
  public:
   static constexpr std::size_t kMinLength = 14;  ///< Shortest chain kept [pixels].
@@ -28,7 +23,8 @@ class ChainTracer {
   void trace(GradientMap& map);
 
   [[nodiscard]] std::size_t size() const { return begins_.empty() ? 0 : begins_.size() - 1; }
-  [[nodiscard]] Chain chain(std::size_t i) const;
+  /// Indices into the maps.
+  [[nodiscard]] std::span<const std::int32_t> chain(std::size_t i) const;
   /// All pixels of all chains, chain after chain.
   [[nodiscard]] std::span<const std::int32_t> pixels() const { return {pixels_.data(), count_}; }
 
@@ -37,11 +33,9 @@ class ChainTracer {
 
   void add_chain(std::int32_t seed, std::uint8_t* maxima, const Walk& against, const Walk& along);
 
-  int stride_ = 0;
   std::vector<std::int32_t> pixels_;
   std::size_t count_ = 0;
   std::vector<std::size_t> begins_;
-  std::vector<std::uint8_t> is_closed_;
 };
 
 }  // namespace ellipse

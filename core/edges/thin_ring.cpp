@@ -11,8 +11,9 @@
 namespace ellipse {
 namespace {
 
-constexpr double kWidest = 6.0;    // largest corrected gap [px]
-constexpr std::size_t kSteps = 8;  // of averages: over half a turn, and over a pixel
+constexpr double kWidest = 6.0;         // largest corrected gap [px]
+constexpr double kMinRingRatio = 0.25;  // a smaller disc inside is a pattern, not the inner edge
+constexpr std::size_t kSteps = 8;       // of averages: over half a turn, and over a pixel
 
 using PerWidth = std::array<double, 31>;  // for widths from 0 to kWidest
 
@@ -148,8 +149,7 @@ RingEdges without_blur_bias(const RingEdges& maxima) {
 bool are_partners(const Ellipse& a, const Ellipse& b) {
   const double larger = std::max(a.semi_major, b.semi_major);
   const double ratio = std::min(a.semi_major, b.semi_major) / larger;
-  if (ratio < 0.25 || ratio > kMaxRingRatio) return false;
-  return are_concentric(a, b);
+  return ratio >= kMinRingRatio && ratio <= kMaxRingRatio && are_concentric(a, b);
 }
 
 }  // namespace ellipse

@@ -161,6 +161,11 @@ double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
 }
 
 double visible_fraction(const Ellipse& e, int width, int height) {
+  const Eigen::Vector2d half = half_extent(e);
+  if (e.cx - half.x() >= -0.5 && e.cx + half.x() < width - 0.5 &&  //
+      e.cy - half.y() >= -0.5 && e.cy + half.y() < height - 0.5) {
+    return 1.0;
+  }
   double inside = 0.0;
   double total = 0.0;
   walk_perimeter(e, [&](const PerimeterStep& step) {

@@ -220,7 +220,7 @@ int Tracker::first_scale(bool is_visible) const {
 
 // Whether a certain detection competes with an uncertain outline.
 bool Tracker::is_surer(const Target& chosen) const {
-  return !judge_->is_sure() && log_odds(chosen.probability) >= kCertainLogOdds;
+  return !judge_->is_sure() && is_certain(chosen.probability);
 }
 
 // Whether an ellipse may be an inner edge of the pad, which is predicted if it is not visible.
@@ -245,8 +245,7 @@ std::optional<Target> Tracker::resume_nearby(const ScopedFrame& frame) {
   nearby.searchable = intersect(
       pad_tracker_->region_after(0.0, frame.pixels.width, frame.pixels.height), frame.searchable);
   const std::optional<Target> found = detect(nearby);
-  const bool is_certain = found && log_odds(found->probability) >= kCertainLogOdds;
-  return is_certain ? resume(frame, *found) : std::nullopt;
+  return found && is_certain(found->probability) ? resume(frame, *found) : std::nullopt;
 }
 
 // Continues with the known pad where the detector found one of its circles.

@@ -37,9 +37,9 @@ constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {173, 1}, {174, 0}},
     {"airlab-gascola", {455, 0}, {455, 0}},
-    {"pupil-infrared", {1099, 5}, {1057, 1}},
+    {"pupil-infrared", {1099, 5}, {1058, 0}},
     {"pupil-blinks", {259, 0}, {258, 0}},
-    {"pupil-blinks", {215, 0}, {204, 0}, "jpeg"},
+    {"pupil-blinks", {214, 0}, {204, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
     {"octagon-negative", {141, 0}, {138, 3}},
@@ -47,7 +47,7 @@ constexpr Source kSources[] = {
 };
 
 /// All ellipses of calibration-discs, on single frames.
-constexpr int kMinRightDiscs = 2444;
+constexpr int kMinRightDiscs = 2446;
 constexpr int kMaxMistakenDiscs = 4;
 
 void PrintTo(const Source& source, std::ostream* out) {

@@ -16,7 +16,7 @@ namespace ellipse {
 namespace {
 
 constexpr std::size_t kMaxMeasured = 20;  // pairs measured per pass
-constexpr double kSame = 0.05;            // tolerance for duplicates, share of the semi-major axis
+constexpr double kMaxRegionShare = 0.25;  // of the picture, searched around coarser ellipses
 constexpr double kMinReducedPx = 10.0;    // semi-minor axis below which reduction hides corners
 constexpr double kSameInside = 0.8;  // IoU inside the picture of an ellipse before and after a fit
 
@@ -28,28 +28,14 @@ constexpr Thresholds kNoLimits{.contour_overlap = 0.0,
                                .min_contour_size = 0,
                                .min_probability = 0.0};
 
-bool are_same(const Ellipse& a, const Ellipse& b, double px) {
-  return is_same(a, b, {px, kSame});
-}
-
 // The part of a cut ellipse outside the picture differs between scales.
 bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) {
   return iou_inside(a, b, map.width(), map.height()) >= kSameInside;
 }
 
-// Whether an outline of polarity a may have a part of polarity b, or the reverse.
-bool may_agree(Polarity a, Polarity b) {
-  return a == b || a == Polarity::kMixed || b == Polarity::kMixed;
-}
-
-bool is_certain(double probability) {
-  return log_odds(probability) >= kCertainLogOdds;
-}
-
-// Whether edges of both polarities may make a measured outline more probable.
-bool may_have_both_polarities(const MeasuredEllipse& measured) {
-  const bool is_doubtful = measured.probability > 0.0 && log_odds(measured.probability) < 0.0;
-  return is_doubtful && measured.polarity != Polarity::kMixed;
+// Edges of both polarities may make an outline more probable that is unlikely with those of one.
+bool is_likely(const MeasuredEllipse& measured) {
+  return log_odds(measured.probability) >= 0.0;
 }
 
 // The finer scales decide about an ellipse of a reduced picture, unless it is ruled out. A minimum
@@ -64,11 +50,13 @@ double required_when_reduced(const Thresholds& thresholds) {
 std::span<const Detection> ArcDetector::detect(const Picture& picture,
                                                const Thresholds& thresholds) {
   if (trace_ != nullptr) trace_->clear();
-  found_.clear();
+  found_.begin(trace_);
   pyramid_.reduce(picture);
   search_scales(thresholds);
-  drop_unlikely(thresholds.min_probability);
-  merge_duplicates();
+  found_.drop_rejected([&](const FoundEllipse& found) {
+    return at_least(Reason::kUnlikely, found.measured.probability, thresholds.min_probability);
+  });
+  found_.merge_duplicates();
   refine_at_finer_scales(thresholds);
   report(thresholds.min_probability);
   ring_corrector_.correct(picture, min_gradient_, polarities_, detections_);
@@ -87,7 +75,7 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   limits.contour_overlap = thresholds.contour_overlap;
   limits.ellipse_overlap = thresholds.ellipse_overlap;
   pyramid_.reduce(picture);
-  std::optional<Found> best;
+  std::optional<FoundEllipse> best;
   for (int scale = pyramid_.coarsest_scale(); scale >= 1; scale /= 2) {
     if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
     find_edges(scale, limits);
@@ -114,7 +102,7 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
   const Ellipse guess = to_region(e, {}, scale);
   std::optional<MeasuredEllipse> best;
   for (const Polarity polarity : {verifier_.better_polarity(map, guess), Polarity::kMixed}) {
-    if (best && log_odds(best->probability) >= 0.0) break;
+    if (best && is_likely(*best)) break;
     MeasuredEllipse measured;
     const Verdict verdict = verifier_.verify(map, guess, polarity, thresholds, evidence_, measured);
     if (!verdict.is_accepted() || !is_same_inside(measured.ellipse, guess, map)) continue;
@@ -138,17 +126,18 @@ void ArcDetector::search_scales(const Thresholds& thresholds) {
 }
 
 // The box around all ellipses of the coarser scales and their surroundings. Empty without any, or
-// if it is more than a quarter of the picture.
+// if it saves too little.
 Rect ArcDetector::region_of_found(int scale) const {
   const Picture& picture = pyramid_.picture_at(1);
   const auto& [data, width, height, stride] = picture.luma;
   Rect box;
-  for (const Found& found : found_) {
+  for (const FoundEllipse& found : found_.all()) {
     const auto outline = distorted(picture.lens, found.measured.ellipse);
     if (!outline) return {};
     box = united(box, calculate_roi(*outline, kRoiExpansion, scale, width, height));
   }
-  return 4.0 * box.width * box.height <= 1.0 * width * height ? box : Rect{};
+  const double share = 1.0 * box.width * box.height / (1.0 * width * height);
+  return share <= kMaxRegionShare ? box : Rect{};
 }
 
 // @param region  Begins at multiples of the scale [px of the picture].
@@ -230,7 +219,8 @@ void ArcDetector::try_guess(const Guess& guess,
   }
   if (verdict.is_accepted() && !is_cut(measured.ellipse)) add(measured);
   // Edges of both polarities count only if they make the outline likely.
-  if (thresholds.min_probability < 1.0 && may_have_both_polarities(measured)) {
+  const bool is_measured = measured.probability > 0.0 && measured.polarity != Polarity::kMixed;
+  if (thresholds.min_probability < 1.0 && is_measured && !is_likely(measured)) {
     Thresholds likely = thresholds;
     likely.min_probability = std::max(probability_of(0.0), thresholds.min_probability);
     try_guess({measured.ellipse, Polarity::kMixed, guess.rms_px}, pieces, likely);
@@ -262,18 +252,12 @@ Verdict ArcDetector::examine(const Guess& guess,
   return verdict;
 }
 
-// Only a certain ellipse excludes similar guesses: an uncertain one may be a wrong fit.
 Verdict ArcDetector::check_duplicate(const Guess& guess) const {
-  const Ellipse in_frame = to_frame(guess.ellipse, region_, scale_);
-  for (const Found& known : found_) {
-    const auto& [one, scale] = known;
-    if (scale == scale_ && is_certain(one.probability) && may_agree(one.polarity, guess.polarity) &&
-        are_same(one.ellipse, in_frame, scale_)) {
-      return {Reason::kKnown};
-    }
+  if (found_.has_certain(to_frame(guess.ellipse, region_, scale_), guess.polarity, scale_)) {
+    return {Reason::kKnown};
   }
   for (const Guess& known : rejected_) {
-    if (known.polarity == guess.polarity && are_same(known.ellipse, guess.ellipse, 1.0)) {
+    if (known.polarity == guess.polarity && are_one_ellipse(known.ellipse, guess.ellipse, 1.0)) {
       return {Reason::kDuplicateOfRejected};
     }
   }
@@ -281,47 +265,11 @@ Verdict ArcDetector::check_duplicate(const Guess& guess) const {
 }
 
 // Only a certain ellipse uses its arcs up: those of an uncertain one may belong to another ellipse.
-// merge_duplicates() compares uncertain duplicates of two sizes, after the finer sizes confirmed
-// them.
 void ArcDetector::add(const MeasuredEllipse& measured) {
-  const bool is_new_certain = is_certain(measured.probability);
-  if (is_new_certain) use_arcs_on(measured.ellipse, measured.polarity);
-  Found found{measured, scale_};
+  if (is_certain(measured.probability)) use_arcs_on(measured.ellipse, measured.polarity);
+  FoundEllipse found{measured, scale_};
   found.measured.ellipse = to_frame(measured.ellipse, region_, scale_);
-  for (Found& known : found_) {
-    const bool is_comparable =
-        known.scale == scale_ || is_new_certain || is_certain(known.measured.probability);
-    if (!is_comparable || !are_duplicates(known, found)) continue;
-    merge(found, known);
-    return;
-  }
-  found_.push_back(found);
-}
-
-bool ArcDetector::are_duplicates(const Found& a, const Found& b) {
-  return may_agree(a.measured.polarity, b.measured.polarity) &&
-         are_same(a.measured.ellipse, b.measured.ellipse, std::max(a.scale, b.scale));
-}
-
-// Keeps the more probable one of two duplicates.
-void ArcDetector::merge(const Found& found, Found& known) {
-  const bool is_better = found.measured.probability > known.measured.probability;
-  reject(is_better ? known.measured.candidate : found.measured.candidate, {Reason::kKnown});
-  if (is_better) known = found;
-}
-
-void ArcDetector::merge_duplicates() {
-  auto end = found_.begin();
-  for (const Found& found : found_) {
-    const auto known = std::find_if(
-        found_.begin(), end, [&](Found& other) { return are_duplicates(other, found); });
-    if (known == end) {
-      *end++ = found;
-    } else {
-      merge(found, *known);
-    }
-  }
-  found_.erase(end, found_.end());
+  found_.add(found);
 }
 
 void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
@@ -347,7 +295,7 @@ bool ArcDetector::has_certain_target(const Thresholds& thresholds) {
 // the finer scales. Skips a scale whose noise may hide the outline, since blur reduces the gradient
 // by up to the ratio of the scales. The threshold of a finer scale is at least that of the coarser
 // one: compression removes fine noise, but not the errors that it causes.
-double ArcDetector::confirmed_log_odds(const Found& found, const Thresholds& thresholds) {
+double ArcDetector::confirmed_log_odds(const FoundEllipse& found, const Thresholds& thresholds) {
   const MeasuredEllipse& measured = found.measured;
   double high = pyramid_.map_at(found.scale).thresholds().high;
   double sum = log_odds(measured.probability);
@@ -373,29 +321,17 @@ void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   thresholds.min_contour_size = 0;
   thresholds.min_probability = probability_of(-kCertainLogOdds);
-  for (Found& found : found_) {
+  for (FoundEllipse& found : found_.all()) {
     found.measured.probability = probability_of(confirmed_log_odds(found, thresholds));
   }
 }
 
-void ArcDetector::drop_unlikely(double min_probability) {
-  std::erase_if(found_, [&](const Found& found) {
-    const Verdict verdict =
-        at_least(Reason::kUnlikely, found.measured.probability, min_probability);
-    if (!verdict.is_accepted()) reject(found.measured.candidate, verdict);
-    return !verdict.is_accepted();
-  });
-}
-
 // Drops ellipses whose refined axes are beyond the limits.
 void ArcDetector::refine_at_finer_scales(const Thresholds& thresholds) {
-  std::erase_if(found_, [&](Found& found) {
-    if (found.scale == 1) return false;
-    MeasuredEllipse& measured = found.measured;
-    for (int scale = found.scale / 2; scale >= 1; scale /= 2) refine(scale, measured);
-    const Verdict verdict = thresholds.judge_axes_of(measured.ellipse);
-    if (!verdict.is_accepted()) reject(measured.candidate, verdict);
-    return !verdict.is_accepted();
+  found_.drop_rejected([&](FoundEllipse& found) {
+    if (found.scale == 1) return Verdict{};
+    for (int scale = found.scale / 2; scale >= 1; scale /= 2) refine(scale, found.measured);
+    return thresholds.judge_axes_of(found.measured.ellipse);
   });
 }
 
@@ -410,7 +346,7 @@ void ArcDetector::refine(int scale, MeasuredEllipse& measured) const {
 void ArcDetector::report(double min_probability) {
   detections_.clear();
   polarities_.clear();
-  for (const Found& found : found_) {
+  for (const FoundEllipse& found : found_.all()) {
     const MeasuredEllipse& one = found.measured;
     if (one.probability < min_probability) continue;
     detections_.push_back({one.ellipse,
@@ -422,10 +358,6 @@ void ArcDetector::report(double min_probability) {
                            one.as_target});
     polarities_.push_back(one.polarity);
   }
-}
-
-void ArcDetector::reject(int candidate, const Verdict& verdict) {
-  if (trace_ != nullptr) trace_->revise(candidate, verdict);
 }
 
 // Has the size of the whole picture, but edges in the searched region only.
@@ -453,7 +385,7 @@ void ArcDetector::trace_arcs() {
   }
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     const std::size_t begin = pass.chains.empty() ? 0 : pass.chains.back().end;
-    pass.chains.push_back({begin, begin + chains_.chain(i).pixels.size()});
+    pass.chains.push_back({begin, begin + chains_.chain(i).size()});
   }
   for (const Arc& arc : arcs_) pass.arcs.push_back({arc.begin, arc.end});
 }

@@ -9,6 +9,7 @@
 #include "core/detection/arcs/arc_pairs.hpp"
 #include "core/detection/arcs/arcs.hpp"
 #include "core/detection/arcs/ellipse_verifier.hpp"
+#include "core/detection/arcs/found_ellipses.hpp"
 #include "core/detection/arcs/pyramid.hpp"
 #include "core/detection/arcs/ring_corrector.hpp"
 #include "core/detection/detector.hpp"
@@ -54,11 +55,6 @@ class ArcDetector final : public Detector {
     double rms_px;  // RMS distance of the points of its arcs
   };
 
-  struct Found {
-    MeasuredEllipse measured;  // [px of the picture]
-    int scale;                 // of its pass
-  };
-
   void search_scales(const Thresholds& thresholds);
   [[nodiscard]] Rect region_of_found(int scale) const;
   void search(int scale, const Rect& region, const Thresholds& full);
@@ -74,22 +70,17 @@ class ArcDetector final : public Detector {
                                 MeasuredEllipse& measured);
   [[nodiscard]] Verdict check_duplicate(const Guess& guess) const;
   void add(const MeasuredEllipse& measured);
-  [[nodiscard]] static bool are_duplicates(const Found& a, const Found& b);
-  void merge(const Found& found, Found& known);
-  void merge_duplicates();
   void use_arcs_on(const Ellipse& e, Polarity polarity);
   [[nodiscard]] bool has_certain_target(const Thresholds& thresholds);
   void find_edges(int scale, const Thresholds& thresholds);
   [[nodiscard]] std::optional<MeasuredEllipse> judged_at(int scale,
                                                          const Ellipse& e,
                                                          const Thresholds& thresholds);
-  [[nodiscard]] double confirmed_log_odds(const Found& found, const Thresholds& thresholds);
+  [[nodiscard]] double confirmed_log_odds(const FoundEllipse& found, const Thresholds& thresholds);
   void confirm_at_finer_scales(const Thresholds& full);
-  void drop_unlikely(double min_probability);
   void refine_at_finer_scales(const Thresholds& thresholds);
   void refine(int scale, MeasuredEllipse& measured) const;
   void report(double min_probability);
-  void reject(int candidate, const Verdict& verdict);
   // Of the searched region [px of the whole reduced picture].
   [[nodiscard]] Eigen::Vector2i origin_in_pass() const {
     return {region_.x / scale_, region_.y / scale_};
@@ -106,7 +97,7 @@ class ArcDetector final : public Detector {
   RingCorrector ring_corrector_;
   std::span<Arc> arcs_;
   std::vector<std::uint8_t> is_used_;  // per arc: whether it lies on a found ellipse
-  std::vector<Found> found_;
+  FoundEllipses found_;
   std::vector<Guess> rejected_;
   std::vector<Detection> detections_;
   std::vector<Polarity> polarities_;  // of the detections

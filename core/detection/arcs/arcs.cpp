@@ -82,9 +82,8 @@ std::span<Arc> ArcSplitter::split(const GradientMap& map,
   to_angles(angles_.data(), y_.data(), strengths_.data(), pixels_.size());
   std::size_t begin = 0;
   for (std::size_t i = 0; i < chains.size(); ++i) {
-    const Chain chain = chains.chain(i);
-    const std::size_t end = begin + chain.pixels.size();
-    split_chain(map, begin, end, chain.is_closed);
+    const std::size_t end = begin + chains.chain(i).size();
+    split_chain(map, begin, end);
     begin = end;
   }
   keep_best_pieces(wants_all);
@@ -132,10 +131,7 @@ void ArcSplitter::add_whole(std::size_t begin, std::size_t end) {
   if (std::abs(turn) > std::numbers::pi) pieces_.push_back({begin, end, turn});
 }
 
-void ArcSplitter::split_chain(const GradientMap& map,
-                              std::size_t begin,
-                              std::size_t end,
-                              bool is_closed) {
+void ArcSplitter::split_chain(const GradientMap& map, std::size_t begin, std::size_t end) {
   unwrap(begin, end);
   add_whole(begin, end);
   // In a run of sharply turning pixels, the sharpest one is the corner.
@@ -149,16 +145,8 @@ void ArcSplitter::split_chain(const GradientMap& map,
     corner = end;
     sharpest = 0.0F;
   };
-  // A closed chain wraps around; near the ends of an open one no corner is detected.
-  const std::size_t length = end - begin;
-  const std::size_t margin = is_closed ? 0 : kCornerReach;
-  for (std::size_t i = begin + margin; i + margin < end; ++i) {
-    const bool is_first = i < begin + kCornerReach;
-    const bool is_last = i + kCornerReach >= end;
-    const float before = angles_[is_first ? i + length - kCornerReach : i - kCornerReach];
-    const float after = angles_[is_last ? i + kCornerReach - length : i + kCornerReach];
-    float turn = std::abs(after - before);
-    if (is_first || is_last) turn = std::abs(std::remainder(turn, static_cast<float>(kTwoPi)));
+  for (std::size_t i = begin + kCornerReach; i + kCornerReach < end; ++i) {
+    const float turn = std::abs(angles_[i + kCornerReach] - angles_[i - kCornerReach]);
     if (turn > kCornerTurn) {
       if (turn > sharpest) corner = i;
       sharpest = std::max(sharpest, turn);

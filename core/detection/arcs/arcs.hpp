@@ -48,7 +48,7 @@ class ArcSplitter {
     [[nodiscard]] double rank() const;
   };
 
-  void split_chain(const GradientMap& map, std::size_t begin, std::size_t end, bool is_closed);
+  void split_chain(const GradientMap& map, std::size_t begin, std::size_t end);
   [[nodiscard]] double min_reverse_turn(double noise, std::size_t begin, std::size_t end) const;
   void split_smooth_part(double noise, std::size_t begin, std::size_t end);
   void unwrap(std::size_t begin, std::size_t end);

@@ -12,15 +12,25 @@
 namespace ellipse {
 namespace {
 
-constexpr double kBasePx = 1.5;         // deviation of a rigid outline's edges,
-constexpr double kDeformation = 0.025;  // plus this share of the radius for deformed outlines
-constexpr double kOnOutlinePx = 2.0;    // largest distance of an edge on the outline
-constexpr double kOnEllipsePx = 1.0;    // largest distance that counts in the paper's Eq. (1),
-constexpr double kOnEllipseRad = 0.3;   // and largest direction error
-constexpr int kMinCorners = 5;          // of the polygons that an outline is compared with
-constexpr int kMaxCorners = 8;          // polygons with more are too similar to an ellipse
+constexpr double kBasePx = 1.5;          // deviation of a rigid outline's edges,
+constexpr double kDeformation = 0.025;   // plus this share of the radius for deformed outlines
+constexpr double kOnOutlinePx = 2.0;     // largest distance of an edge on the outline
+constexpr double kOnEllipsePx = 1.0;     // largest distance that counts in the paper's Eq. (1),
+constexpr double kOnEllipseRad = 0.3;    // and largest direction error
+constexpr double kTukeyOverReach = 1.5;  // an edge at the reach keeps .3 of its weight
+constexpr int kMinCorners = 5;           // of the polygons that an outline is compared with
+constexpr int kMaxCorners = 8;           // polygons with more are too similar to an ellipse
 
 constexpr std::size_t kSamples = 64;  // of the last step and the final measurement
+
+// Added to features before the logarithm, so that differences below it hardly matter.
+struct Floor {
+  double direction_error_rad;
+  double coverage;
+  double deviation;
+};
+constexpr Floor kFloor{.direction_error_rad = 0.01, .coverage = 0.02, .deviation = 0.002};
+constexpr Range kSignalToNoise{1.0, 100.0};  // limits of the feature
 
 // A Gauss-Newton step. For 99 % of the true ellipses of the sources, the log odds grow by at most
 // max_growth from this step on.
@@ -173,9 +183,10 @@ Verdict EllipseVerifier::judge_prospect(double max_growth,
 
 // Least squares with Tukey's weights.
 std::optional<Ellipse> EllipseVerifier::nearer_to_edges(const Ellipse& e, double reach_px) const {
+  const double tukey_px = kTukeyOverReach * reach_px;
   GeometricFit fit(e);
   for (const EdgeMeasurement& edge : measurer_.edges()) {
-    const double weight = edge.length_px * tukey_weight(edge.offset.distance_px, 1.5 * reach_px);
+    const double weight = edge.length_px * tukey_weight(edge.offset.distance_px, tukey_px);
     if (weight > 0.0) fit.add(edge.offset, weight);
   }
   return fit.solve();
@@ -196,6 +207,18 @@ std::size_t EllipseVerifier::measure(const GradientMap& map,
     samples *= 2;
     found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
   }
+  measured.support = found.support;
+  measured.gradient = measurer_.mean_contrast();
+  set_features(found, samples, reach_px, map.texture(), measured);
+  return samples;
+}
+
+// Of the measured edges.
+void EllipseVerifier::set_features(const OutlineSupport& found,
+                                   std::size_t samples,
+                                   double reach_px,
+                                   double noise,
+                                   MeasuredEllipse& measured) {
   const std::span<const EdgeMeasurement> edges = measurer_.edges();
   Sums sums;
   direction_errors_.clear();
@@ -204,25 +227,25 @@ std::size_t EllipseVerifier::measure(const GradientMap& map,
     if (!is_on_outline(edge, reach_px)) continue;
     direction_errors_.push_back(std::abs(edge.direction_error_rad));
   }
-  measured.support = found.support;
   measured.on_ellipse = sums.length > 0.0 ? sums.length_on_ellipse / sums.length : 0.0;
+  const double turn_support = found.turn_support * sums.share_of_turn();
+  const double largest_error = std::acos(std::sqrt(kMinSquaredCosine));
+  const double error = direction_errors_.empty() ? largest_error : median(direction_errors_);
+  const double coverage = turn_support * (1.0 - longest_gap(edges, samples));
+  const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
+  const double signal_to_noise =
+      std::clamp(measured.gradient / noise, kSignalToNoise.min, kSignalToNoise.max);
   const auto set = [&](Feature feature, double value) {
     measured.features[static_cast<std::size_t>(feature)] = value;
   };
-  const double radius = radius_of(e);
-  const double turn_support = found.turn_support * sums.share_of_turn();
-  const double error = direction_errors_.empty() ? 0.5 : median(direction_errors_);
-  measured.gradient = measurer_.mean_contrast();
-  const double signal_to_noise = measured.gradient / map.texture();
   set(Feature::kTurnSupport, turn_support);
-  set(Feature::kDirectionError, std::log(0.01 + error));
-  set(Feature::kCoverage, std::log(0.02 + turn_support * (1.0 - longest_gap(edges, samples))));
+  set(Feature::kDirectionError, std::log(kFloor.direction_error_rad + error));
+  set(Feature::kCoverage, std::log(kFloor.coverage + coverage));
   set(Feature::kLength, std::log1p(found.inside_px));
-  set(Feature::kDeviation, std::log(0.002 + std::min(1.0, sums.rms_px() / radius)));
+  set(Feature::kDeviation, std::log(kFloor.deviation + deviation));
   set(Feature::kChanges, share_of_changes(edges));
-  set(Feature::kContrast, std::log(std::clamp(signal_to_noise, 1.0, 100.0)));
+  set(Feature::kContrast, std::log(signal_to_noise));
   set(Feature::kCorners, 0.0);
-  return samples;
 }
 
 Polarity EllipseVerifier::better_polarity(const GradientMap& map, const Ellipse& e) {

@@ -66,6 +66,11 @@ class EllipseVerifier {
                       std::size_t samples,
                       double reach_px,
                       MeasuredEllipse& measured);
+  void set_features(const OutlineSupport& found,
+                    std::size_t samples,
+                    double reach_px,
+                    double noise,
+                    MeasuredEllipse& measured);
 
   EdgeMeasurer measurer_;
   std::vector<double> direction_errors_;

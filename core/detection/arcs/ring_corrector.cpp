@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/detection/arcs/ring_corrector.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/edges/edge_refinement.hpp"
@@ -10,8 +11,9 @@
 namespace ellipse {
 namespace {
 
-// Found by experiment, see docs/provenance.md.
-constexpr double kContrastTolerance = 0.4;  // largest log ratio of the edges' gradients
+bool are_similar(double a, double b) {
+  return std::min(a, b) >= kMajority * std::max(a, b);
+}
 
 RingEdges ordered(const Ellipse& a, const Ellipse& b) {
   return a.semi_major > b.semi_major ? RingEdges{a, b} : RingEdges{b, a};
@@ -38,8 +40,7 @@ void RingCorrector::correct(const Picture& picture,
                                          : edge_beside(picture, maximum, other, min_gradient);
     if (!next) continue;
     measurer_.measure(picture, maximum, polarities[i], kRefinementSamples, min_gradient);
-    const double ratio = next->contrast / measurer_.mean_contrast();
-    if (!(std::abs(std::log(ratio)) <= kContrastTolerance)) continue;
+    if (!are_similar(next->contrast, measurer_.mean_contrast())) continue;
     const RingEdges edges = without_blur_bias(ordered(maximum, next->ellipse));
     detections[i].ellipse =
         maximum.semi_major > next->ellipse.semi_major ? edges.outer : edges.inner;

@@ -79,7 +79,7 @@ void LineLearner::learn(PadModel& model, double gain) {
   clear_maxima_at_border();
   chains_.trace(map_);
   lines_.clear();
-  for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i).pixels, model);
+  for (std::size_t i = 0; i < chains_.size(); ++i) split(chains_.chain(i), model);
   model.lines = lines_;
 }
 

@@ -17,7 +17,6 @@ namespace {
 constexpr double kRadiusStep = 0.005;  // of the radial profile [radii]
 constexpr int kAngles = 128;           // per radius
 constexpr int kApart = 5;              // min distance between circles [steps]
-constexpr int kOuterSlack = 15;        // search range to each side of radius 1 [steps]
 
 double radius_at(int i) {
   return i * kRadiusStep;
@@ -107,15 +106,16 @@ bool is_peak(const RadialProfile& profile, int i) {
 // The step nearest to the detected edge: the other edge of a thin ring may be as strong.
 std::optional<int> outer_circle(const RadialProfile& profile, double noise) {
   const int one = index_of(1.0);
+  const int reach = index_of(kSameTarget.relative);
   double strongest = 0.0;
-  for (int i = one - kOuterSlack; i <= one + kOuterSlack; ++i) {
+  for (int i = one - reach; i <= one + reach; ++i) {
     strongest = std::max(strongest, profile.strength(i));
   }
   if (strongest < kUnlikelySigmas * noise) return std::nullopt;
   const auto is_outer = [&](int i) {
     return profile.strength(i) >= kMajority * strongest && is_peak(profile, i);
   };
-  for (int off = 0; off <= kOuterSlack; ++off) {
+  for (int off = 0; off <= reach; ++off) {
     if (is_outer(one + off)) return one + off;
     if (is_outer(one - off)) return one - off;
   }
