@@ -7,8 +7,6 @@
 namespace ellipse {
 namespace {
 
-constexpr double kLongestGap_s = 1.0;
-
 // Sources round time stamps differently.
 double whole_microseconds(double seconds) {
   return std::round(1e6 * seconds);
@@ -24,7 +22,7 @@ double FrameClock::advance_to(std::int64_t pts_ns) {
     const double elapsed_s = 1e-9 * (pts - now_ns_);
     now_ns_ = pts;
     const bool is_later = whole_microseconds(elapsed_s) > 0.0;
-    interval_s_ = is_later ? std::min(elapsed_s, kLongestGap_s) : kFrame_s;
+    interval_s_ = is_later ? std::min(elapsed_s, kLongAbsence_s) : kFrame_s;
   }
   return 1e-6 * whole_microseconds(interval_s_);
 }

@@ -10,6 +10,10 @@ inline constexpr double kFrame_s = 1.0 / 30.0;  ///< Assumed time between frames
 /// Longest time without a match after which a target is still the same.
 inline constexpr double kMemory_s = 0.3;
 
+/// Without frames: the longest interval that counts. Without a target: the time after which full
+/// searches are periodic.
+inline constexpr double kLongAbsence_s = 1.0;
+
 /// Time between frames. Depacketizers and decoders omit some time stamps: a frame without one
 /// repeats the previous interval.
 class FrameClock {

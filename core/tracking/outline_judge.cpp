@@ -33,16 +33,16 @@ LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
 
 }  // namespace
 
-void OutlineJudge::start(double log_odds, bool is_known) {
-  odds_.start(log_odds, is_known);
+void OutlineJudge::start(double log_odds, double prior) {
+  odds_.start(log_odds, prior);
   since_judged_s_ = 0.0;
   max_visible_ = 0.0;
   judged_overlap_ = 1.0;
 }
 
-void OutlineJudge::confirm(double log_odds, bool is_known) {
+void OutlineJudge::confirm(double log_odds, double prior) {
   add(log_odds);
-  odds_.raise(log_odds, is_known);
+  odds_.raise(log_odds, prior);
   max_visible_ = 0.0;
   judged_overlap_ = 1.0;
 }

@@ -19,10 +19,10 @@ inline constexpr double kCheckPeriod_s = 0.18;
 class OutlineJudge {
  public:
   /// Starts a hypothesis from a new detection. See TargetOdds::start().
-  void start(double log_odds, bool is_known);
+  void start(double log_odds, double prior);
   /// Adds a detection of the tracked hypothesis.
-  /// @param is_known  Whether it was reported shortly before. See TargetOdds::raise().
-  void confirm(double log_odds, bool is_known);
+  /// @param prior  Of a new hypothesis at its place. See TargetOdds::raise().
+  void confirm(double log_odds, double prior);
 
   /// Call once per frame.
   void advance(double elapsed_s) { since_judged_s_ += elapsed_s; }

@@ -7,23 +7,20 @@
 namespace ellipse {
 namespace {
 
-// Measured or chosen in docs/provenance.md, "Evidence over time".
-constexpr double kPrior = -0.4;  // log odds of a new target
-
 double bounded(double log_odds) {
   return std::clamp(log_odds, -TargetOdds::kMax, TargetOdds::kMax);
 }
 
 }  // namespace
 
-void TargetOdds::start(double log_odds, bool is_known) {
+void TargetOdds::start(double log_odds, double prior) {
   last_ = bounded(log_odds);
   sum_ = -kMax;
-  raise(log_odds, is_known);
+  raise(log_odds, prior);
 }
 
-void TargetOdds::raise(double log_odds, bool is_known) {
-  sum_ = std::max(sum_, bounded(bounded(log_odds) + (is_known ? 0.0 : kPrior)));
+void TargetOdds::raise(double log_odds, double prior) {
+  sum_ = std::max(sum_, bounded(bounded(log_odds) + prior));
 }
 
 void TargetOdds::add(double log_odds, double elapsed_s) {

@@ -20,12 +20,12 @@ class TargetOdds {
 
   /// Starts a new hypothesis.
   /// @param log_odds  From its first frame; may be infinite.
-  /// @param is_known  Whether it may be a target that was reported shortly before.
-  void start(double log_odds, bool is_known);
+  /// @param prior     Log odds before that frame.
+  void start(double log_odds, double prior);
 
-  /// Raises the value to that of a new hypothesis with these log odds and `is_known`, if it is
+  /// Raises the value to that of a new hypothesis with these log odds and this prior, if it is
   /// lower: a followed target is at least as likely as one that is found for the first time.
-  void raise(double log_odds, bool is_known);
+  void raise(double log_odds, double prior);
 
   /// @param log_odds   From one more frame; may be infinite.
   /// @param elapsed_s  Since the last frame that was added.

@@ -14,8 +14,14 @@
 namespace ellipse {
 namespace {
 
-constexpr double kMinPredicted = 0.4;   // min matched share of a reported prediction
-constexpr double kLongAbsence_s = 1.0;  // of a target, after which full searches are periodic
+constexpr double kMinPredicted = 0.4;  // min matched share of a reported prediction
+
+// Log odds of a hypothesis before its first frame, see docs/provenance.md, "Evidence over time".
+constexpr double kNewPrior = -0.4;  // of a new target
+constexpr double kLostPrior = 2.0;  // of a target that was certain shortly before
+
+// Of a target before and after a short loss.
+constexpr Tolerance kShortLoss{0.0, 0.5};
 
 bool is_near(const Ellipse& e, const Ellipse& target) {
   return (e.center() - target.center()).norm() < target.semi_major;
@@ -98,12 +104,26 @@ std::optional<Target> Tracker::detect(const ScopedFrame& frame) {
   return search_->find_target(frame, frame.searchable, scale, search_->detecting_thresholds(scale));
 }
 
+// Also accepts a less clear ellipse if it resembles a target that was certain shortly before.
+std::optional<Target> Tracker::detect_lost(const ScopedFrame& frame) {
+  if (!was_sure()) return detect(frame);
+  const int scale = frame.finest_scale;
+  Thresholds thresholds = search_->detecting_thresholds(scale);
+  const double required = thresholds.min_probability;
+  thresholds.min_probability = probability_of(log_odds(required) - kLostPrior);
+  const auto target = search_->find_target(frame, frame.searchable, scale, thresholds);
+  const bool is_accepted = target && (target->probability >= required ||
+                                      is_same(target->ellipse, last_ellipse_, kShortLoss));
+  return is_accepted ? target : std::nullopt;
+}
+
 // Advances the state machine by one frame. The odds accumulate all frames of the hypothesis.
 std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s) {
   judge_->advance(elapsed_s);
   since_detection_s_ += elapsed_s;
   since_full_search_s_ += elapsed_s;
   absence_s_ += elapsed_s;
+  since_sure_s_ += elapsed_s;
 
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (needs_detection(target)) target = look(frame, target);
@@ -115,6 +135,7 @@ std::optional<Target> Tracker::follow(const ScopedFrame& frame, double elapsed_s
   if (state_ == TrackerState::kSearching || state_ == TrackerState::kConfirming) return {};
   target->probability = probability_of(judge_->log_odds());
   absence_s_ = 0.0;
+  if (judge_->is_sure()) since_sure_s_ = 0.0;
   return target;
 }
 
@@ -193,18 +214,21 @@ std::optional<Target> Tracker::look(const ScopedFrame& frame,
            (!is_likely ||
             is_better_target(candidate->ellipse, followed->ellipse, search_->candidates()));
   };
+  const auto search = [&](const ScopedFrame& searched) {
+    return is_visible ? detect(searched) : detect_lost(searched);
+  };
   since_detection_s_ = 0.0;
   if (auto resumed = is_visible ? std::nullopt : resume_nearby(frame)) return resumed;
   ScopedFrame reduced = frame;
   reduced.finest_scale = std::max(frame.finest_scale, first_scale(is_visible));
-  if (reduced.finest_scale > frame.finest_scale && !is_rival(detect(reduced))) return followed;
+  if (reduced.finest_scale > frame.finest_scale && !is_rival(search(reduced))) return followed;
   since_full_search_s_ = 0.0;
-  const std::optional<Target> chosen = detect(frame);
+  const std::optional<Target> chosen = search(frame);
   if (!chosen) return followed;
   if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
   if (is_rival(chosen)) return acquire(frame, *chosen);
   if (followed && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
-    judge_->confirm(log_odds(chosen->probability), true);
+    judge_->confirm(log_odds(chosen->probability), 0.0);
   }
   return followed;
 }
@@ -281,10 +305,12 @@ Target Tracker::acquire(const ScopedFrame& frame, Target target) {
 bool Tracker::add_detection(const Ellipse& outline, double detected_log_odds) {
   const bool is_back = absence_s_ < kMemory_s && is_near(last_ellipse_, outline);
   const bool is_confirmed = hypothesis_ && is_same(*hypothesis_, outline, kSameTarget);
+  const bool is_lost_target = was_sure() && is_same(outline, last_ellipse_, kShortLoss);
+  const double prior = is_lost_target ? kLostPrior : is_back ? 0.0 : kNewPrior;
   if (is_confirmed) {
-    judge_->confirm(detected_log_odds, is_back);
+    judge_->confirm(detected_log_odds, prior);
   } else {
-    judge_->start(detected_log_odds, is_back);
+    judge_->start(detected_log_odds, prior);
     id_ = is_back ? last_id_ : last_id_ + 1;
   }
   return is_confirmed;
@@ -357,7 +383,7 @@ void Tracker::reset() {
   had_target_ = false;
   state_ = TrackerState::kSearching;
   hypothesis_.reset();
-  absence_s_ = kMemory_s;
+  absence_s_ = since_sure_s_ = kMemory_s;
   clock_ = {};
   search_->begin({});
   *redetect_tracker_ = {};

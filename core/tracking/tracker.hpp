@@ -86,6 +86,8 @@ class Tracker {
   [[nodiscard]] ScopedFrame prepare_frame(const PixelView& frame, const SearchScope& scope);
   [[nodiscard]] std::optional<Target> track(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] std::optional<Target> detect(const ScopedFrame& frame);
+  [[nodiscard]] std::optional<Target> detect_lost(const ScopedFrame& frame);
+  [[nodiscard]] bool was_sure() const { return since_sure_s_ < kMemory_s; }
   void remember(const std::optional<Target>& target);
   [[nodiscard]] RingUncertainty uncertainty_of(const Target& target) const;
   void locate(Target& target, double elapsed_s);
@@ -129,6 +131,7 @@ class Tracker {
   std::uint64_t last_id_ = 0;          // its id
   std::uint64_t located_id_ = 0;       // target of the pose estimator
   double absence_s_ = kMemory_s;       // since a target was reported, or since the start
+  double since_sure_s_ = kMemory_s;    // since its odds were certain, or since the start
   double since_detection_s_ = 0.0;     // since the detector ran
   double since_full_search_s_ = 0.0;   // since it ran on the whole frame at the full resolution
   bool had_target_ = false;            // in the last frame, reported or not

@@ -99,7 +99,7 @@ GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
 std::vector<Report> story() {
   // With the default min-probability, half a pad would be detected again.
   const auto harness = support::harness_of(
-      "ellipsetrack name=t min-probability=0.99 "
+      "ellipsetrack name=t min-probability=0.999 "
       "messages=every-frame ! ellipsejson",
       support::caps_of("GRAY8", 320, 240),
       "application/x-ndjson");
@@ -140,15 +140,15 @@ std::string summary_of(const std::vector<Report>& story) {
 TEST(TargetStates, AreTheSameInMetadataMessagesAndLines) {
   // Hidden briefly, the target keeps its id; hidden for longer than it is kept, it gets a new one.
   EXPECT_EQ(summary_of(story()),
-            "1 x detected 1, following\n"
-            "19 x tracked 1, following\n"
+            "6 x lost, confirming\n"
+            "14 x tracked 1, following\n"
             "8 x predicted 1, coasting\n"
             "10 x tracked 1, following\n"
             "4 x lost, searching\n"
             "16 x tracked 1, following\n"
             "20 x lost, searching\n"
-            "1 x detected 2, following\n"
-            "9 x tracked 2, following\n");
+            "6 x lost, confirming\n"
+            "4 x tracked 2, following\n");
 }
 
 // A disc that slowly enters the frame: its odds pass through the range of the state "confirming".

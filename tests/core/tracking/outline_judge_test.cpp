@@ -58,15 +58,15 @@ class OutlineJudgeTest : public testing::Test {
 
 TEST_F(OutlineJudgeTest, JudgesEveryFrameUntilItIsCertain) {
   detector_.answer = 0.0;
-  judge_.start(0.0, false);
+  judge_.start(0.0, -0.4);
   EXPECT_EQ(calls_in_a_second(), 30);
   detector_.answer = 5.0;
-  judge_.start(5.0, false);
+  judge_.start(5.0, -0.4);
   EXPECT_LT(calls_in_a_second(), 8);
 }
 
 TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
-  judge_.start(5.0, false);
+  judge_.start(5.0, -0.4);
   judge_.judge(detector_, window_, target_, {});
   judge_.advance(1.0);
   judge_.judge(detector_, window_, target_, {});
@@ -79,24 +79,24 @@ TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
 }
 
 TEST_F(OutlineJudgeTest, IgnoresShortArcsOfSureTargetsSeenWhole) {
-  judge_.start(5.0, true);
+  judge_.start(5.0, 0.0);
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 0);
-  judge_.start(5.0, true);  // a new target, of which no more has been visible
+  judge_.start(5.0, 0.0);  // a new target, of which no more has been visible
   EXPECT_GT(calls_in_a_second(), 0);
 }
 
 TEST_F(OutlineJudgeTest, JudgesShortArcsOfUncertainTargets) {
   detector_.answer = 0.0;
-  judge_.start(0.0, false);
+  judge_.start(0.0, -0.4);
   judge_.judge(detector_, window_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 30);
 }
 
 TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
-  judge_.start(0.0, false);
+  judge_.start(0.0, -0.4);
   judge_.judge(detector_, window_, target_, {});
   // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).
   EXPECT_EQ(detector_.size.width, 84);
@@ -104,7 +104,7 @@ TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
 }
 
 TEST_F(OutlineJudgeTest, OddsFallWithTheEvidence) {
-  judge_.start(5.0, false);
+  judge_.start(5.0, -0.4);
   detector_.answer = -5.0;
   (void)calls_in_a_second();
   EXPECT_LT(judge_.log_odds(), -kCertainLogOdds);

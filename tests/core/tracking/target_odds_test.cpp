@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(TargetOdds, StartHigherNearARecentTarget) {
-  TargetOdds unknown;
-  unknown.start(2.0, false);
-  TargetOdds blinked;
-  blinked.start(2.0, true);
-  EXPECT_LT(unknown.value(), blinked.value());
-  EXPECT_EQ(blinked.value(), 2.0);
+TEST(TargetOdds, StartWithTheirPrior) {
+  for (const double prior : {-0.4, 0.0, 2.0}) {
+    TargetOdds odds;
+    odds.start(1.0, prior);
+    EXPECT_EQ(odds.value(), 1.0 + prior);
+    EXPECT_EQ(odds.last(), 1.0);
+  }
 }
 
 // Reference: the log likelihood ratio of all samples under multivariate normal distributions with
@@ -31,7 +31,7 @@ TEST(TargetOdds, EqualTheLogLikelihoodRatioOfCorrelatedSamples) {
   const std::array<double, 5> samples = {1.2, 0.4, -0.8, 0.9, 1.7};
   const std::array<double, 5> times_s = {0.0, 0.05, 0.08, 0.4, 0.45};
   TargetOdds odds;
-  odds.start(samples[0], true);
+  odds.start(samples[0], 0.0);
   for (std::size_t i = 1; i < samples.size(); ++i) {
     odds.add(samples[i], times_s[i] - times_s[i - 1]);
   }
@@ -50,7 +50,7 @@ TEST(TargetOdds, EqualTheLogLikelihoodRatioOfCorrelatedSamples) {
 TEST(TargetOdds, GrowEquallyAtAnyFrameRate) {
   const auto after_a_second = [](int frames) {
     TargetOdds odds;
-    odds.start(1.0, false);
+    odds.start(1.0, -0.4);
     for (int i = 0; i < frames; ++i) odds.add(1.0, 1.0 / frames);
     return odds.value();
   };
@@ -59,27 +59,27 @@ TEST(TargetOdds, GrowEquallyAtAnyFrameRate) {
 }
 
 TEST(TargetOdds, AreAtLeastThoseOfANewHypothesis) {
-  for (const bool is_known : {false, true}) {
+  for (const double prior : {-0.4, 0.0, 2.0}) {
     TargetOdds fresh;
-    fresh.start(0.5, is_known);
+    fresh.start(0.5, prior);
     TargetOdds odds;
-    odds.start(-2.0, true);
+    odds.start(-2.0, 0.0);
     odds.add(0.5, 1.0 / 30.0);
     ASSERT_LT(odds.value(), fresh.value());
-    odds.raise(0.5, is_known);
+    odds.raise(0.5, prior);
     EXPECT_EQ(odds.value(), fresh.value());
-    odds.raise(0.1, is_known);
+    odds.raise(0.1, prior);
     EXPECT_EQ(odds.value(), fresh.value());
   }
   TargetOdds certain;
-  certain.start(0.0, true);
-  certain.raise(kInfinity, true);
+  certain.start(0.0, 0.0);
+  certain.raise(kInfinity, 0.0);
   EXPECT_EQ(certain.value(), TargetOdds::kMax);
 }
 
 TEST(TargetOdds, FallToZeroAfterOneContraryFrame) {
   TargetOdds odds;
-  odds.start(kInfinity, false);
+  odds.start(kInfinity, -0.4);
   for (int i = 0; i < 300; ++i) odds.add(kInfinity, 1.0 / 30.0);
   EXPECT_EQ(odds.value(), TargetOdds::kMax);
   odds.add(-kInfinity, 1.0 / 30.0);

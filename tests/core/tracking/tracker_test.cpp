@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -409,6 +411,45 @@ TEST(FollowingTracker, ConfirmsOverSeveralFrames) {
   EXPECT_GT(confirming, 0);
   EXPECT_EQ(target->id, 1U);
   EXPECT_GE(target->probability, 0.98);
+}
+
+// Finds one given ellipse, in pictures without edges.
+class OneEllipseDetector final : public Detector {
+ public:
+  explicit OneEllipseDetector(const Detection& ellipse) : ellipse_(ellipse) {}
+
+  std::span<const Detection> detect(const ellipse::Picture&, const Thresholds& limits) override {
+    return {&ellipse_, ellipse_.probability >= limits.min_probability ? 1U : 0U};
+  }
+  [[nodiscard]] bool has_probability() const override { return true; }
+  [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
+  [[nodiscard]] Overlaps tracking_overlaps() const override { return {}; }
+
+ private:
+  const Detection& ellipse_;
+};
+
+// Whether the tracker reports an ellipse of this probability after it has lost a certain target.
+bool is_found_again(double probability, double shift_px, int lost_frames) {
+  Detection found = support::detection_at(160.0, 120.0, 40.0);
+  Tracker tracker({}, std::make_unique<OneEllipseDetector>(found));
+  const Picture picture(320, 240, 90);
+  int frame = 0;
+  const auto process = [&] { return tracker.process(picture.view(), frame++ * kFrameNs); };
+  found.probability = 0.99;
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(process()) << i;
+  found.probability = 0.0;
+  for (int i = 0; i < lost_frames; ++i) EXPECT_FALSE(process()) << i;
+  found.probability = probability;
+  found.ellipse.cx += shift_px;
+  return process().has_value();
+}
+
+TEST(FollowingTracker, FindsALessClearTargetWhereACertainOneWasLost) {
+  EXPECT_TRUE(is_found_again(0.3, 15.0, 5));
+  EXPECT_FALSE(is_found_again(0.05, 15.0, 5));
+  EXPECT_FALSE(is_found_again(0.3, 25.0, 5));   // more than half of the semi-major axis
+  EXPECT_FALSE(is_found_again(0.3, 15.0, 12));  // for more than .3 s
 }
 
 // A hexagon in place of a disc has most of its edges within reach of the disc's outline.
