@@ -79,6 +79,10 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
   return target;
 }
 
+void FrameSearch::drop_candidates_below(double probability) {
+  std::erase_if(candidates_, [&](const Detection& one) { return one.probability < probability; });
+}
+
 void FrameSearch::begin(const PixelView& pixels) {
   luma_reader_.begin(pixels);
   region_ = {};

@@ -53,6 +53,9 @@ class FrameSearch {
                                                   const Thresholds& thresholds,
                                                   const std::optional<Ellipse>& last_target = {});
 
+  /// Drops the detections of the last search that are less probable.
+  void drop_candidates_below(double probability);
+
   /// Begins a frame: clears the region and the candidates. Borrows the pixels until the next one.
   void begin(const PixelView& pixels);
 

@@ -112,6 +112,7 @@ std::optional<Target> Tracker::detect_lost(const ScopedFrame& frame) {
   const double required = thresholds.min_probability;
   thresholds.min_probability = probability_of(log_odds(required) - kLostPrior);
   const auto target = search_->find_target(frame, frame.searchable, scale, thresholds);
+  search_->drop_candidates_below(required);
   const bool is_accepted = target && (target->probability >= required ||
                                       is_same(target->ellipse, last_ellipse_, kShortLoss));
   return is_accepted ? target : std::nullopt;

@@ -442,7 +442,9 @@ bool is_found_again(double probability, double shift_px, int lost_frames) {
   for (int i = 0; i < lost_frames; ++i) EXPECT_FALSE(process()) << i;
   found.probability = probability;
   found.ellipse.cx += shift_px;
-  return process().has_value();
+  const bool is_found = process().has_value();
+  EXPECT_TRUE(tracker.candidates().empty());  // below min-probability
+  return is_found;
 }
 
 TEST(FollowingTracker, FindsALessClearTargetWhereACertainOneWasLost) {
