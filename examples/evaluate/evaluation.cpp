@@ -194,8 +194,8 @@ void write_frames(std::ostream& out, const Evaluation& evaluation, std::size_t m
     const Result& result = evaluation.methods[method].results[i];
     if (!seen.frame->truth.is_labelled) continue;
     out << "{\"dataset\":" << std::quoted(seen.sequence->dataset)
-        << ",\"image\":" << std::quoted(seen.frame->name) << ",\"size\":[" << seen.size.width << ','
-        << seen.size.height << "],\"target\":";
+        << ",\"image\":" << std::quoted(seen.frame->name) << ",\"pts_ns\":" << seen.frame->pts_ns
+        << ",\"size\":[" << seen.size.width << ',' << seen.size.height << "],\"target\":";
     if (result.answer) {
       const ellipse::Ellipse& e = *result.answer;
       out << '[' << e.cx << ',' << e.cy << ',' << e.semi_major << ',' << e.semi_minor << ','

@@ -60,7 +60,7 @@ struct Evaluation {
                                                     const std::string& dataset);
 
 /// Writes one JSON line per judged frame for one method:
-/// {"dataset":"...","image":"...","size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,
+/// {"dataset":"...","image":"...","pts_ns":0,"size":[w,h],"target":[cx,cy,a,b,angle],"scale":1,
 /// "tracker":"following","probability":0.9,"visible":0.8,"ms":[..],"outcome":"TP"}. Peers that are
 /// other programs or box trackers have no "tracker" and "probability". `visible` is the fraction of
 /// the true perimeter inside the frame. `target` is in the ideal plane if a lens distorts the

@@ -78,9 +78,13 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(positive_number())
       ->needs(datasets);
-  app.add_option("--fps",
-                 options.pace.frames_per_second,
-                 "Frame rate of scenes, distorted and clutter, and of pictures without time stamps")
+  app.add_option(
+         "--fps", options.pace.frames_per_second, "Frame rate of scenes, distorted and clutter")
+      ->capture_default_str()
+      ->check(positive_number())
+      ->needs(datasets);
+  app.add_option(
+         "--picture-fps", options.pictures_per_second, "Frame rate of pictures without time stamps")
       ->capture_default_str()
       ->check(positive_number())
       ->needs(datasets);

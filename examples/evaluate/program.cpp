@@ -142,7 +142,7 @@ class Program {
     if (const auto seeds = scene_seeds(name, "distorted")) {
       return {make_distorted(*seeds, options_.pace), {}, 0};
     }
-    return read_dataset(name, options_.pace.frames_per_second);
+    return read_dataset(name, options_.pictures_per_second);
   }
 
   // Results are reported by data set name, so equal names get a prefix.

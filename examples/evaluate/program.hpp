@@ -24,6 +24,7 @@ struct Options {
   bool leave_one_out = false;
   bool all_ellipses = false;
   ScenePace pace;
+  double pictures_per_second = 30.0;
   double wild_seconds = 2.0;
   std::string rule = "iou";
   std::string ground_file;

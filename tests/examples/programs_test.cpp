@@ -82,7 +82,8 @@ TEST_F(Programs, NonFiniteNumbersAreRejectedByName) {
                                                           {"ellipse-landing ", "--width"},
                                                           {"ellipse-demo ", "--frames"},
                                                           {evaluate, "--seconds"},
-                                                          {evaluate, "--fps"}};
+                                                          {evaluate, "--fps"},
+                                                          {evaluate, "--picture-fps"}};
   for (const auto& [command, option] : commands) {
     for (const char* number : {"nan", "inf", "-nan", "1e999"}) {
       const Outcome outcome = run(command, option + " " + number);
@@ -123,6 +124,25 @@ void write_dataset(const fs::path& folder, std::size_t frames) {
   twin.resize(1);
   twin[0].frames.resize(frames);
   evaluate::write_dataset(twin, folder, [](const evaluate::Frame& /*frame*/) { return true; });
+}
+
+TEST_F(Programs, EvaluateTakesTheFrameRateOfPicturesWithoutTimes) {
+  write_dataset(folder_, 2);
+  std::ofstream(folder_ / "gt.csv") << "image,cx,cy,semi_major,semi_minor,angle_rad\n"
+                                       "images/approach/frame0000.png,,,,,\n"
+                                       "images/approach/frame0001.png,,,,,\n";
+  const fs::path frames = folder_ / "frames";
+  const Outcome outcome =
+      run("ellipse-evaluate",
+          folder_.string() + " --fps 2 --picture-fps 10 --methods arcs+none --frames " +
+              frames.string());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  std::ifstream in(frames);
+  for (const char* time : {"\"pts_ns\":0,", "\"pts_ns\":100000000,"}) {
+    std::string line;
+    std::getline(in, line);
+    EXPECT_NE(line.find(time), std::string::npos) << line;
+  }
 }
 
 TEST_F(Programs, EvaluateCountsAndShowsMissingFrames) {
