@@ -20,6 +20,32 @@ Interval clip(const Interval& a, double begin, double end) {
   return {std::max(a.begin, begin), std::min(a.end, end)};
 }
 
+// The parts of horizontal lines inside one ellipse.
+class Chords {
+ public:
+  explicit Chords(const Ellipse& e) : center_(e.center()) {
+    const Eigen::Matrix2d shape = shape_matrix(e);
+    half_height_sq_ = shape(1, 1);
+    slope_ = shape(0, 1) / shape(1, 1);
+    half_width_sq_ = shape.determinant() / shape(1, 1);
+  }
+
+  [[nodiscard]] Interval at(double y) const {
+    const double dy = y - center_.y();
+    const double room = 1.0 - dy * dy / half_height_sq_;
+    if (!(room > 0.0)) return {};
+    const double middle = center_.x() + slope_ * dy;
+    const double half = std::sqrt(half_width_sq_ * room);
+    return {middle - half, middle + half};
+  }
+
+ private:
+  Eigen::Vector2d center_;
+  double half_height_sq_ = 0.0;
+  double half_width_sq_ = 0.0;  // at the height of the centre
+  double slope_ = 0.0;          // of the line through the chords' centres, dx / dy
+};
+
 }  // namespace
 
 Eigen::Vector2d Ellipse::point_at(double t_rad) const {
@@ -35,13 +61,7 @@ Eigen::Vector2d half_extent(const Ellipse& e) {
 }
 
 Interval chord(const Ellipse& e, double y) {
-  const Eigen::Matrix2d shape = shape_matrix(e);
-  const double dy = y - e.cy;
-  const double room = 1.0 - dy * dy / shape(1, 1);
-  if (!(room > 0.0)) return {};
-  const double middle = e.cx + shape(0, 1) / shape(1, 1) * dy;
-  const double half = std::sqrt(shape.determinant() / shape(1, 1) * room);
-  return {middle - half, middle + half};
+  return Chords(e).at(y);
 }
 
 double perimeter_px(const Ellipse& e) {
@@ -147,12 +167,14 @@ double iou_inside(const Ellipse& a, const Ellipse& b, int width, int height) {
   if (!(bottom > top)) return 0.0;
 
   const int lines = std::clamp(static_cast<int>(std::ceil(2.0 * (bottom - top))), 512, 16384);
+  const Chords chords_a(a);
+  const Chords chords_b(b);
   double common = 0.0;
   double either = 0.0;
   for (int i = 0; i < lines; ++i) {
     const double y = top + (i + 0.5) * (bottom - top) / lines;
-    const Interval in_a = clip(chord(a, y), -0.5, width - 0.5);
-    const Interval in_b = clip(chord(b, y), -0.5, width - 0.5);
+    const Interval in_a = clip(chords_a.at(y), -0.5, width - 0.5);
+    const Interval in_b = clip(chords_b.at(y), -0.5, width - 0.5);
     const double both = clip(in_a, in_b.begin, in_b.end).length();
     common += both;
     either += in_a.length() + in_b.length() - both;
