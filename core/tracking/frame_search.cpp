@@ -79,6 +79,11 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
   return target;
 }
 
+std::optional<Target> FrameSearch::detect(const ScopedFrame& frame) {
+  const int scale = frame.finest_scale;
+  return find_target(frame, frame.searchable, scale, detecting_thresholds(scale));
+}
+
 void FrameSearch::drop_candidates_below(double probability) {
   std::erase_if(candidates_, [&](const Detection& one) { return one.probability < probability; });
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/camera/camera.hpp"
 #include "core/camera/lens_view.hpp"
 #include "core/detection/detector.hpp"
 #include "core/geometry/ellipse.hpp"
@@ -20,9 +21,10 @@ namespace ellipse {
 /// One frame and its search region. Valid during one call only.
 struct ScopedFrame {
   PixelView pixels;
-  Rect searchable;       ///< No pixel outside is read [px]; inside the frame.
-  int finest_scale = 1;  ///< Min frame scale.
-  LensView lens;         ///< Of the whole frame.
+  Rect searchable;                    ///< No pixel outside is read [px]; inside the frame.
+  int finest_scale = 1;               ///< Min frame scale.
+  LensView lens;                      ///< Of the whole frame.
+  std::optional<Camera> camera = {};  ///< If known.
 };
 
 /// Searches frame regions with a detector at a given frame scale; results are in frame pixels.
@@ -52,6 +54,9 @@ class FrameSearch {
                                                   int scale,
                                                   const Thresholds& thresholds,
                                                   const std::optional<Ellipse>& last_target = {});
+
+  /// Searches the whole scope of the frame, without a prior.
+  [[nodiscard]] std::optional<Target> detect(const ScopedFrame& frame);
 
   /// Drops the detections of the last search that are less probable.
   void drop_candidates_below(double probability);

@@ -246,7 +246,7 @@ TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
         EXPECT_TRUE(tracker.lock(window, *truth.outer_edge)) << film.scene;
         return;
       }
-      std::optional<EdgeTrack> track;
+      std::optional<PadTrack> track;
       EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0)
           << film.scene << ' ' << i;
       EXPECT_TRUE(track && track->is_visible) << film.scene << ' ' << i;
@@ -260,7 +260,7 @@ TEST_F(Allocations, NoneWhereEdgesAreNotMatched) {
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock({ring.view(), {0.0, 0.0}, {320.0, 240.0}}, kRing));
   for (int i = 0; i < 20; ++i) {
-    std::optional<EdgeTrack> track;
+    std::optional<PadTrack> track;
     const LumaWindow window{ground.view(), {0.0, 0.0}, {320.0, 240.0}};
     EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0) << i;
     EXPECT_FALSE(track && track->is_visible) << i;

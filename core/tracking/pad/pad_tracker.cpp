@@ -118,7 +118,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   return true;
 }
 
-std::optional<EdgeTrack> PadTracker::resume(const LumaWindow& window, const Ellipse& edge) {
+std::optional<PadTrack> PadTracker::resume(const LumaWindow& window, const Ellipse& edge) {
   if (!is_known_ || (is_locked_ && unmatched_s_ == 0.0)) return std::nullopt;
   begin_frame(window);
   for (const PadCircle& circle : model_.circles) {
@@ -214,7 +214,7 @@ bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
          attempt->support.matched >= HomographyChange::SizeAtCompileTime;
 }
 
-std::optional<EdgeTrack> PadTracker::track(const LumaWindow& window, double elapsed_s) {
+std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elapsed_s) {
   if (!is_locked_) return std::nullopt;
   begin_frame(window);
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
@@ -387,10 +387,10 @@ void PadTracker::coast(const Eigen::Matrix3d& prediction,
   if (unmatched_s_ > kMemory_s) is_locked_ = false;
 }
 
-std::optional<EdgeTrack> PadTracker::make_track(const Attempt* attempt) const {
+std::optional<PadTrack> PadTracker::make_track(const Attempt* attempt) const {
   const auto ellipse = outline();
   if (!ellipse) return std::nullopt;
-  EdgeTrack track;
+  PadTrack track;
   track.ellipse = *ellipse;
   track.coverage = last_coverage_;
   if (attempt == nullptr) return track;

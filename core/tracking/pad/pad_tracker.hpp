@@ -30,7 +30,7 @@ struct LumaWindow {
 };
 
 /// Tracking result of one frame.
-struct EdgeTrack {
+struct PadTrack {
   Ellipse ellipse;          ///< The outer circle [px of the frame's ideal plane].
   double coverage = 0.0;    ///< Matched share of the pad's visible edges.
   double outline = 0.0;     ///< The same of its outer edge alone.
@@ -52,11 +52,11 @@ class PadTracker {
   /// locked, the distance from the last match gives its velocity.
   /// @return nullopt if no pad is known, the last call of track() matched it, or its edges do not
   ///         match the image.
-  [[nodiscard]] std::optional<EdgeTrack> resume(const LumaWindow& window, const Ellipse& edge);
+  [[nodiscard]] std::optional<PadTrack> resume(const LumaWindow& window, const Ellipse& edge);
 
   /// @param elapsed_s  Since the last call.
   /// @return nullopt if the pad is lost.
-  [[nodiscard]] std::optional<EdgeTrack> track(const LumaWindow& window, double elapsed_s);
+  [[nodiscard]] std::optional<PadTrack> track(const LumaWindow& window, double elapsed_s);
 
   /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
@@ -66,7 +66,7 @@ class PadTracker {
   }
 
   [[nodiscard]] bool is_locked() const { return is_locked_; }
-  /// The outer circle in the last frame, as in EdgeTrack. nullopt if it is not an ellipse.
+  /// The outer circle in the last frame, as in PadTrack. nullopt if it is not an ellipse.
   [[nodiscard]] std::optional<Ellipse> outline() const { return project_circle(view_, 1.0); }
 
   /// Uncertainty of the outer edge in the last frame: from its refinement, else from all edges and
@@ -128,7 +128,7 @@ class PadTracker {
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
   void judge_lines(const HomographyChange& change);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
-  [[nodiscard]] std::optional<EdgeTrack> make_track(const Attempt* attempt) const;
+  [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
 
   std::optional<RingUncertainty> refined_;  // of the last frame

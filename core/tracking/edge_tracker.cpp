@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "core/tracking/edge_tracker.hpp"
+
+#include <algorithm>
+
+#include "core/detection/evidence.hpp"
+#include "core/detection/target_selection.hpp"
+
+namespace ellipse {
+namespace {
+
+constexpr double kMinPredicted = 0.4;  // min matched share of a reported prediction
+
+// Whether a detection may be an inner edge of the pad with this outer edge.
+bool lies_in(const Ellipse& inner, const Ellipse& outer) {
+  return (inner.center() - outer.center()).norm() + inner.semi_minor < outer.semi_major &&
+         inner.semi_major < outer.semi_major;
+}
+
+}  // namespace
+
+void EdgeTracker::configure(const TrackerSettings& settings) {
+  settings_ = settings;
+  pad_tracker_.configure(settings.refine, settings.ring_ratio);
+}
+
+void EdgeTracker::reset() {
+  state_ = TrackerState::kSearching;
+  hypothesis_.reset();
+  pad_tracker_.forget();
+}
+
+std::optional<Target> EdgeTracker::track_target(const ScopedFrame& frame, double elapsed_s) {
+  judge_.advance(elapsed_s);
+  since_detection_s_ += elapsed_s;
+  since_full_search_s_ += elapsed_s;
+
+  std::optional<Target> target = follow_edges(frame, elapsed_s);
+  if (needs_detection(target)) target = look(frame, target);
+  if (judge_.log_odds() < -kCertainLogOdds) pad_tracker_.forget();
+
+  if (target || !pad_tracker_.is_locked()) hypothesis_.reset();
+  if (target) hypothesis_ = target->ellipse;
+  state_ = state_after(target);
+  if (state_ == TrackerState::kSearching || state_ == TrackerState::kConfirming) return {};
+  target->probability = probability_of(judge_.log_odds());
+  return target;
+}
+
+// The new state does not depend on the previous one.
+TrackerState EdgeTracker::state_after(const std::optional<Target>& target) const {
+  if (!target) return TrackerState::kSearching;
+  if (judge_.log_odds() < required_log_odds()) return TrackerState::kConfirming;
+  if (target->state == TargetState::kPredicted) return TrackerState::kCoasting;
+  return TrackerState::kFollowing;
+}
+
+double EdgeTracker::required_log_odds() const {
+  const bool has_limit = search_.detector().has_probability();
+  const double required = has_limit ? log_odds(settings_.limits.min_probability) : 0.0;
+  return std::min(required, TargetOdds::kMax);
+}
+
+// Detects in each frame unless a visible target has sufficient odds. Then detects periodically,
+// since a better target may have come into view, and while an uncertain outline looks wrong in this
+// frame.
+bool EdgeTracker::needs_detection(const std::optional<Target>& followed) const {
+  const bool is_visible = followed && followed->state == TargetState::kTracked;
+  const double required = required_log_odds();
+  const bool looks_wrong = !judge_.is_sure() && judge_.last_log_odds() < required;
+  return !is_visible || judge_.log_odds() < required || looks_wrong || is_detection_due();
+}
+
+bool EdgeTracker::is_detection_due() const {
+  return settings_.wants_candidates || since_detection_s_ >= kCheckPeriod_s;
+}
+
+// Reads only the search window of the pad.
+std::optional<Target> EdgeTracker::follow_edges(const ScopedFrame& frame, double elapsed_s) {
+  if (!pad_tracker_.is_locked()) return std::nullopt;
+  const Rect region =
+      intersect(pad_tracker_.region_after(elapsed_s, frame.pixels.width, frame.pixels.height),
+                frame.searchable);
+  const LumaWindow window = window_on(frame, region);
+  const auto track = pad_tracker_.track(window, elapsed_s);
+  const std::optional<Target> target = track ? target_of(*track, frame, region) : std::nullopt;
+  // At most one of the periodic evaluation and the periodic detection runs per frame.
+  const bool is_put_off = judge_.is_sure() && is_detection_due() && !settings_.wants_candidates;
+  if (target && track->is_visible && !is_put_off) {
+    judge_.judge(search_.detector(), window, *target, settings_.limits);
+  }
+  return target;
+}
+
+// nullopt if too little is known about the pad's position.
+std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
+                                             const ScopedFrame& frame,
+                                             const Rect& region) const {
+  Target target;
+  target.ellipse = track.ellipse;
+  target.state = track.is_visible ? TargetState::kTracked : TargetState::kPredicted;
+  target.id = id_;
+  target.contour_overlap = track.coverage;
+  target.ellipse_overlap = track.outline;
+  target.visible_fraction =
+      visible_fraction(frame.lens, track.ellipse, frame.pixels.width, frame.pixels.height);
+  target.search_region = region;
+  const bool is_likely = target.visible_fraction >= kMajority && track.coverage >= kMinPredicted;
+  return track.is_visible || is_likely ? std::optional(target) : std::nullopt;
+}
+
+// Runs the detector. Cheaper searches come first, which limits the frame time: near a lost pad, or
+// in a reduced frame. The full resolution follows if the reduced frame shows a better target.
+std::optional<Target> EdgeTracker::look(const ScopedFrame& frame,
+                                        const std::optional<Target>& followed) {
+  const bool is_visible = followed && followed->state == TargetState::kTracked;
+  const bool is_likely = is_visible && judge_.log_odds() >= required_log_odds();
+  const auto is_rival = [&](const std::optional<Target>& candidate) {
+    if (!candidate) return false;
+    if (is_surer(*candidate)) return true;
+    return !is_inner_edge(candidate->ellipse, frame) &&
+           (!is_likely ||
+            is_better_target(candidate->ellipse, followed->ellipse, search_.candidates()));
+  };
+  const auto search = [&](const ScopedFrame& searched) {
+    return is_visible ? search_.detect(searched) : detect_lost(searched);
+  };
+  since_detection_s_ = 0.0;
+  if (auto resumed = is_visible ? std::nullopt : resume_nearby(frame)) return resumed;
+  ScopedFrame reduced = frame;
+  reduced.finest_scale = std::max(frame.finest_scale, first_scale(is_visible));
+  if (reduced.finest_scale > frame.finest_scale && !is_rival(search(reduced))) return followed;
+  since_full_search_s_ = 0.0;
+  const std::optional<Target> chosen = search(frame);
+  if (!chosen) return followed;
+  if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
+  if (is_rival(chosen)) return acquire(frame, *chosen);
+  if (followed && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
+    judge_.confirm(log_odds(chosen->probability), 0.0);
+  }
+  return followed;
+}
+
+// Also accepts a less clear ellipse if it resembles a target that was certain shortly before.
+std::optional<Target> EdgeTracker::detect_lost(const ScopedFrame& frame) {
+  if (!last_.was_certain()) return search_.detect(frame);
+  const int scale = frame.finest_scale;
+  Thresholds thresholds = search_.detecting_thresholds(scale);
+  const double required = thresholds.min_probability;
+  thresholds.min_probability = probability_of(log_odds(required) - TargetMemory::kLostPrior);
+  const auto target = search_.find_target(frame, frame.searchable, scale, thresholds);
+  search_.drop_candidates_below(required);
+  const bool is_accepted =
+      target && (target->probability >= required || last_.was_certain_as(target->ellipse));
+  return is_accepted ? target : std::nullopt;
+}
+
+// The scale of the first search of the whole frame: the coarsest while a visible target is certain,
+// half the size while a target is absent for long, except once per kCheckPeriod_s.
+int EdgeTracker::first_scale(bool is_visible) const {
+  if (settings_.wants_candidates) return 1;
+  if (is_visible && judge_.is_sure()) return kCoarsestScale;
+  const bool is_absent = !hypothesis_ && last_.absence_s() > kLongAbsence_s;
+  return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
+}
+
+// Whether a certain detection competes with an uncertain outline.
+bool EdgeTracker::is_surer(const Target& chosen) const {
+  return !judge_.is_sure() && is_certain(chosen.probability);
+}
+
+// Whether an ellipse may be an inner edge of the pad, which is predicted if it is not visible.
+bool EdgeTracker::is_inner_edge(const Ellipse& e, const ScopedFrame& frame) const {
+  const auto outer = pad_tracker_.is_locked() ? pad_tracker_.outline() : std::nullopt;
+  if (!outer || judge_.log_odds() < required_log_odds()) return false;
+  if (is_same(e, *outer, kSameTarget)) return false;
+  if (judge_.is_sure() && is_too_large(*outer, frame) && lies_in(e, *outer)) return true;
+  return are_concentric(e, *outer) && e.semi_major < outer->semi_major;
+}
+
+// Whether the detector can find only the inner edges of a target of this size.
+bool EdgeTracker::is_too_large(const Ellipse& e, const ScopedFrame& frame) const {
+  return !settings_.limits.accepts_axes(e) ||
+         2.0 * e.semi_major > std::max(frame.pixels.width, frame.pixels.height);
+}
+
+// Searches a lost pad where it is predicted. Only a certain detection spares the whole frame.
+std::optional<Target> EdgeTracker::resume_nearby(const ScopedFrame& frame) {
+  if (!pad_tracker_.is_locked() || settings_.wants_candidates) return std::nullopt;
+  ScopedFrame nearby = frame;
+  nearby.searchable = intersect(
+      pad_tracker_.region_after(0.0, frame.pixels.width, frame.pixels.height), frame.searchable);
+  const std::optional<Target> found = search_.detect(nearby);
+  return found && is_certain(found->probability) ? resume(frame, *found) : std::nullopt;
+}
+
+// Continues with the known pad where the detector found one of its circles.
+std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target& detection) {
+  const bool is_elsewhere = !hypothesis_ || !is_near(*hypothesis_, detection.ellipse);
+  if (pad_tracker_.is_locked() && is_elsewhere) return std::nullopt;
+  const LumaWindow window = window_on(frame, frame.searchable);
+  const auto track = pad_tracker_.resume(window, detection.ellipse);
+  if (!track) return std::nullopt;
+  std::optional<Target> target = target_of(*track, frame, detection.search_region);
+  if (!target) return std::nullopt;
+  add_detection(track->ellipse, log_odds(detection.probability));
+  target->id = id_;
+  if (id_ != last_.id()) target->state = TargetState::kDetected;
+  return target;
+}
+
+// Replaces or confirms the hypothesis by a detection. Locks only if most of its perimeter is
+// visible.
+Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
+  const bool is_confirmed = add_detection(target.ellipse, log_odds(target.probability));
+  target.id = id_;
+  if (target.visible_fraction >= kMajority) {
+    (void)pad_tracker_.lock(window_on(frame, frame.searchable), target.ellipse);
+  } else if (!is_confirmed) {
+    pad_tracker_.release();
+  }
+  return target;
+}
+
+// Adds to the odds of the hypothesis if it has this outline, else starts another one.
+// Returns whether it has.
+bool EdgeTracker::add_detection(const Ellipse& outline, double detected_log_odds) {
+  const bool is_confirmed = hypothesis_ && is_same(*hypothesis_, outline, kSameTarget);
+  if (is_confirmed) {
+    judge_.confirm(detected_log_odds, last_.prior_of(outline));
+  } else {
+    judge_.start(detected_log_odds, last_.prior_of(outline));
+    id_ = last_.was_near(outline) ? last_.id() : last_.id() + 1;
+  }
+  return is_confirmed;
+}
+
+LumaWindow EdgeTracker::window_on(const ScopedFrame& frame, const Rect& region) {
+  return {search_.read(region),
+          Eigen::Vector2d(region.x, region.y),
+          Eigen::Vector2d(frame.pixels.width, frame.pixels.height),
+          frame.lens,
+          frame.camera};
+}
+
+}  // namespace ellipse
