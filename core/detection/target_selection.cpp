@@ -145,17 +145,20 @@ std::optional<Detection> select_target(std::span<const Detection> detections,
 }
 
 bool is_better_target(const Ellipse& chosen,
-                      const Ellipse& followed,
+                      const KnownTarget& followed,
                       std::span<const Detection> detections) {
+  const auto& [known, has_two_edges, score] = followed;
   // A concentric edge farther out: an inner edge of the same target was tracked.
-  if (are_concentric(chosen, followed) && chosen.semi_major > followed.semi_major &&
-      !is_same(chosen, followed, kSameTarget)) {
+  if (are_concentric(chosen, known) && chosen.semi_major > known.semi_major &&
+      !is_same(chosen, known, kSameTarget)) {
     return true;
   }
   const ConcentricSet other = set_around(chosen, detections);
-  const ConcentricSet own = set_around(followed, detections);
-  if (!(own < other)) return false;
-  return other.has_two_edges > own.has_two_edges || other.score > scaled(own.score, kMuchBetter);
+  ConcentricSet own = set_around(known, detections);
+  own.has_two_edges = own.has_two_edges || has_two_edges;
+  if (score) own.score = std::max(own.score, *score);
+  if (own.has_two_edges != other.has_two_edges) return other.has_two_edges && own < other;
+  return own < other && other.score > scaled(own.score, kMuchBetter);
 }
 
 }  // namespace ellipse

@@ -25,13 +25,23 @@ namespace ellipse {
                                                      const std::optional<Ellipse>& last_target = {},
                                                      DetectionTrace* trace = nullptr);
 
+/// What the tracker knows of its target besides the detections.
+struct KnownTarget {
+  Ellipse ellipse;
+  bool has_two_edges = false;        ///< Whether it has inner edges.
+  std::optional<double> score = {};  ///< Of its outline in this frame, as Detection::score.
+};
+
 /// Whether to switch from the tracked target (`followed`) to `chosen`: to an edge farther out of
-/// the same target, or to a better set of concentric ellipses.
+/// the same target, or to a better set of concentric ellipses elsewhere. A set with two edges
+/// replaces a single edge that is not more probable; a single edge never replaces two. Between
+/// equals the sum of scores must be 1.5 times as large.
 ///
-/// @param detections  Of the frame that shows both; `followed` need not be among them.
+/// @param detections  Of the frame that shows both. A search that ends at a reduced size may miss
+///                    edges of `followed`.
 /// Deterministic, thread-safe, allocates nothing; O(N).
 [[nodiscard]] bool is_better_target(const Ellipse& chosen,
-                                    const Ellipse& followed,
+                                    const KnownTarget& followed,
                                     std::span<const Detection> detections);
 
 }  // namespace ellipse

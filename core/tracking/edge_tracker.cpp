@@ -67,7 +67,7 @@ double EdgeTracker::required_log_odds() const {
 bool EdgeTracker::needs_detection(const std::optional<Target>& followed) const {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const double required = required_log_odds();
-  const bool looks_wrong = !judge_.is_sure() && judge_.last_log_odds() < required;
+  const bool looks_wrong = !judge_.is_certain() && judge_.last_log_odds() < required;
   return !is_visible || judge_.log_odds() < required || looks_wrong || is_detection_due();
 }
 
@@ -84,8 +84,9 @@ std::optional<Target> EdgeTracker::follow_edges(const ScopedFrame& frame, double
   const LumaWindow window = window_on(frame, region);
   const auto track = pad_tracker_.track(window, elapsed_s);
   const std::optional<Target> target = track ? target_of(*track, frame, region) : std::nullopt;
-  // At most one of the periodic evaluation and the periodic detection runs per frame.
-  const bool is_put_off = judge_.is_sure() && is_detection_due() && !settings_.wants_candidates;
+  // At most one of the periodic evaluation and the periodic detection runs per frame; is_better()
+  // may add an evaluation.
+  const bool is_put_off = judge_.is_certain() && is_detection_due() && !settings_.wants_candidates;
   if (target && track->is_visible && !is_put_off) {
     judge_.judge(search_.detector(), window, *target, settings_.limits);
   }
@@ -114,13 +115,12 @@ std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
 std::optional<Target> EdgeTracker::look(const ScopedFrame& frame,
                                         const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
-  const bool is_likely = is_visible && judge_.log_odds() >= required_log_odds();
   const auto is_rival = [&](const std::optional<Target>& candidate) {
     if (!candidate) return false;
-    if (is_surer(*candidate)) return true;
-    return !is_inner_edge(candidate->ellipse, frame) &&
-           (!is_likely ||
-            is_better_target(candidate->ellipse, followed->ellipse, search_.candidates()));
+    if (is_certain_rival(*candidate)) return true;
+    if (is_inner_edge(candidate->ellipse, frame)) return false;
+    const bool is_likely = is_visible && judge_.log_odds() >= required_log_odds();
+    return !is_likely || is_better(*candidate, *followed, frame);
   };
   const auto search = [&](const ScopedFrame& searched) {
     return is_visible ? search_.detect(searched) : detect_lost(searched);
@@ -141,6 +141,19 @@ std::optional<Target> EdgeTracker::look(const ScopedFrame& frame,
   return followed;
 }
 
+// The search may have ended at a reduced size, before it found the followed target. Therefore the
+// detector evaluates this target before it is replaced, if its scores are log odds.
+bool EdgeTracker::is_better(const Target& candidate,
+                            const Target& followed,
+                            const ScopedFrame& frame) {
+  KnownTarget known{.ellipse = followed.ellipse, .has_two_edges = pad_tracker_.has_inner_edges()};
+  const bool seems_better = is_better_target(candidate.ellipse, known, search_.candidates());
+  if (!seems_better || !search_.detector().has_probability()) return seems_better;
+  known.score = judge_.evaluate(
+      search_.detector(), window_on(frame, frame.searchable), followed, settings_.limits);
+  return is_better_target(candidate.ellipse, known, search_.candidates());
+}
+
 // Also accepts a less clear ellipse if it resembles a target that was certain shortly before.
 std::optional<Target> EdgeTracker::detect_lost(const ScopedFrame& frame) {
   if (!last_.was_certain()) return search_.detect(frame);
@@ -159,14 +172,14 @@ std::optional<Target> EdgeTracker::detect_lost(const ScopedFrame& frame) {
 // half the size while a target is absent for long, except once per kCheckPeriod_s.
 int EdgeTracker::first_scale(bool is_visible) const {
   if (settings_.wants_candidates) return 1;
-  if (is_visible && judge_.is_sure()) return kCoarsestScale;
+  if (is_visible && judge_.is_certain()) return kCoarsestScale;
   const bool is_absent = !hypothesis_ && last_.absence_s() > kLongAbsence_s;
   return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
 }
 
 // Whether a certain detection competes with an uncertain outline.
-bool EdgeTracker::is_surer(const Target& chosen) const {
-  return !judge_.is_sure() && is_certain(chosen.probability);
+bool EdgeTracker::is_certain_rival(const Target& chosen) const {
+  return !judge_.is_certain() && is_certain(chosen.probability);
 }
 
 // Whether an ellipse may be an inner edge of the pad, which is predicted if it is not visible.
@@ -174,7 +187,7 @@ bool EdgeTracker::is_inner_edge(const Ellipse& e, const ScopedFrame& frame) cons
   const auto outer = pad_tracker_.is_locked() ? pad_tracker_.outline() : std::nullopt;
   if (!outer || judge_.log_odds() < required_log_odds()) return false;
   if (is_same(e, *outer, kSameTarget)) return false;
-  if (judge_.is_sure() && is_too_large(*outer, frame) && lies_in(e, *outer)) return true;
+  if (judge_.is_certain() && is_too_large(*outer, frame) && lies_in(e, *outer)) return true;
   return are_concentric(e, *outer) && e.semi_major < outer->semi_major;
 }
 

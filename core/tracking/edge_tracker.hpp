@@ -49,9 +49,12 @@ class EdgeTracker {
                                                 const Rect& region) const;
   [[nodiscard]] std::optional<Target> look(const ScopedFrame& frame,
                                            const std::optional<Target>& followed);
+  [[nodiscard]] bool is_better(const Target& candidate,
+                               const Target& followed,
+                               const ScopedFrame& frame);
   [[nodiscard]] std::optional<Target> detect_lost(const ScopedFrame& frame);
   [[nodiscard]] int first_scale(bool is_visible) const;
-  [[nodiscard]] bool is_surer(const Target& chosen) const;
+  [[nodiscard]] bool is_certain_rival(const Target& chosen) const;
   [[nodiscard]] bool is_inner_edge(const Ellipse& e, const ScopedFrame& frame) const;
   [[nodiscard]] bool is_too_large(const Ellipse& e, const ScopedFrame& frame) const;
   [[nodiscard]] std::optional<Target> resume_nearby(const ScopedFrame& frame);

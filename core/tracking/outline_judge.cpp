@@ -52,8 +52,16 @@ void OutlineJudge::judge(Detector& detector,
                          const Target& target,
                          const Thresholds& limits) {
   max_visible_ = std::max(max_visible_, target.visible_fraction);
+  if (is_due(target)) (void)evaluate(detector, window, target, limits);
+}
+
+std::optional<double> OutlineJudge::evaluate(Detector& detector,
+                                             const LumaWindow& window,
+                                             const Target& target,
+                                             const Thresholds& limits) {
+  if (since_judged_s_ == 0.0) return odds_.last();
   const auto outline = distorted(window.lens, target.ellipse);
-  if (!outline || !is_due(target)) return;
+  if (!outline || is_short_arc(target)) return std::nullopt;
   judged_overlap_ = target.ellipse_overlap;
   const LumaWindow part = part_around(window, *outline);
   const Eigen::Vector2d& origin = part.origin_px;
@@ -63,19 +71,23 @@ void OutlineJudge::judge(Detector& detector,
   const auto judged = detector.log_odds_of({part.luma, window.lens.part(origin)},
                                            translated(target.ellipse, -origin.x(), -origin.y()),
                                            thresholds);
-  if (judged) add(*judged);
+  if (!judged) return std::nullopt;
+  add(*judged);
+  return odds_.last();
+}
+
+bool OutlineJudge::is_due(const Target& target) const {
+  const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
+  return !is_certain() || is_less_matched || since_judged_s_ >= kCheckPeriod_s;
 }
 
 // A short arc is weak evidence against a certain outline that was more visible since the last
 // detection.
-bool OutlineJudge::is_due(const Target& target) const {
-  if (!is_sure()) return true;
-  if (target.visible_fraction < std::min(kMajority, max_visible_)) return false;
-  const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
-  return is_less_matched || since_judged_s_ >= kCheckPeriod_s;
+bool OutlineJudge::is_short_arc(const Target& target) const {
+  return is_certain() && target.visible_fraction < std::min(kMajority, max_visible_);
 }
 
-bool OutlineJudge::is_sure() const {
+bool OutlineJudge::is_certain() const {
   return log_odds() >= kCertainLogOdds;
 }
 

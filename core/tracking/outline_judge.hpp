@@ -1,5 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <optional>
+
 #include "core/detection/detector.hpp"
 #include "core/detection/thresholds.hpp"
 #include "core/tracking/pad/pad_tracker.hpp"
@@ -36,15 +38,25 @@ class OutlineJudge {
              const Target& target,
              const Thresholds& limits);
 
+  /// Evaluates the outline now, whether or not it is due, at most once per frame, and adds the
+  /// result to the odds. Parameters as above.
+  /// @return Its log odds in this frame, bounded as in TargetOdds; nullopt if they are unknown, or
+  ///         if only a short arc of a certain outline is visible.
+  std::optional<double> evaluate(Detector& detector,
+                                 const LumaWindow& window,
+                                 const Target& target,
+                                 const Thresholds& limits);
+
   /// Log odds from all frames so far.
   [[nodiscard]] double log_odds() const { return odds_.value(); }
   /// Log odds from the last frame that was evaluated.
   [[nodiscard]] double last_log_odds() const { return odds_.last(); }
   /// Whether the odds are high enough for periodic evaluation.
-  [[nodiscard]] bool is_sure() const;
+  [[nodiscard]] bool is_certain() const;
 
  private:
   [[nodiscard]] bool is_due(const Target& target) const;
+  [[nodiscard]] bool is_short_arc(const Target& target) const;
   void add(double log_odds);
 
   TargetOdds odds_;

@@ -6,7 +6,7 @@
 namespace ellipse {
 namespace {
 
-constexpr double kNewPrior = -0.4;  // log odds of a new target, as kLostPrior
+constexpr double kNewPrior = -0.4;  // prior log odds of a new target
 
 // Of a target's ellipses before and after it was lost for up to kMemory_s.
 constexpr Tolerance kShortLoss{0.0, 0.5};

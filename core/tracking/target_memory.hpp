@@ -14,14 +14,14 @@ namespace ellipse {
 /// Deterministic; allocates nothing; one thread at a time.
 class TargetMemory {
  public:
-  /// Log odds of a target that was certain shortly before, before it is found again. The largest
-  /// prior. See docs/provenance.md, "Evidence over time".
+  /// Prior log odds of an ellipse like a target that was certain within the last kMemory_s; the
+  /// largest prior. See docs/provenance.md, "Evidence over time".
   static constexpr double kLostPrior = 2.0;
 
   /// Call once per frame.
   void advance(double elapsed_s);
   void remember(const Target& target);
-  /// Forgets when the target was reported, but not its id.
+  /// Forgets when a target was reported; id() and ellipse() stay.
   void forget() { absence_s_ = since_certain_s_ = kMemory_s; }
 
   [[nodiscard]] const Ellipse& ellipse() const { return ellipse_; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/tracker.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/detection/detectors.hpp"
@@ -73,7 +72,6 @@ ScopedFrame Tracker::prepare_frame(const PixelView& frame, const SearchScope& sc
           lens_ ? std::optional(lens_->camera()) : std::nullopt};
 }
 
-// Each tracking mode finds the target in its own way.
 std::optional<Target> Tracker::track(const ScopedFrame& frame, double elapsed_s) {
   if (settings_.tracking == TrackingMode::kEdges) {
     const std::optional<Target> target = edge_tracker_->track_target(frame, elapsed_s);

@@ -237,7 +237,7 @@ void show(const Film& film, const Use& use) {
   }
 }
 
-TEST_F(Allocations, NoneInEdgeTrackerOnceItIsLocked) {
+TEST_F(Allocations, NoneInPadTrackerOnceItIsLocked) {
   for (const Film& film : kFilms) {
     PadTracker tracker;
     show(film, [&](int i, const ImageView& luma, const Truth& truth) {

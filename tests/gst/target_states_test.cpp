@@ -97,7 +97,7 @@ GstPadProbeReturn note_metadata(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 // The states in the metadata of each frame; fails if messages or lines differ.
 std::vector<Report> story() {
-  // With the default min-probability, half a pad would be detected again.
+  // With .99 or less, half a pad would be detected again: a lost target has a prior.
   const auto harness = support::harness_of(
       "ellipsetrack name=t min-probability=0.999 "
       "messages=every-frame ! ellipsejson",

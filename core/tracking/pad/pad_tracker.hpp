@@ -69,6 +69,9 @@ class PadTracker {
   /// The outer circle in the last frame, as in PadTrack. nullopt if it is not an ellipse.
   [[nodiscard]] std::optional<Ellipse> outline() const { return project_circle(view_, 1.0); }
 
+  /// Whether circles inside the outer one are known.
+  [[nodiscard]] bool has_inner_edges() const { return model_.circles.size() > 1; }
+
   /// Uncertainty of the outer edge in the last frame: from its refinement, else from all edges and
   /// the motion.
   [[nodiscard]] RingUncertainty uncertainty() const;

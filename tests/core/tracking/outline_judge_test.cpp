@@ -26,7 +26,7 @@ class CountingDetector final : public Detector {
   Overlaps detecting_overlaps() const override { return {}; }
   Overlaps tracking_overlaps() const override { return {}; }
 
-  double answer = 5.0;
+  std::optional<double> answer = 5.0;
   int calls = 0;
   Rect size;
   Ellipse outline;
@@ -65,6 +65,35 @@ TEST_F(OutlineJudgeTest, JudgesEveryFrameUntilItIsCertain) {
   EXPECT_LT(calls_in_a_second(), 8);
 }
 
+TEST_F(OutlineJudgeTest, EvaluatesOnRequestAtMostOncePerFrame) {
+  judge_.start(5.0, -0.4);
+  judge_.judge(detector_, window_, target_, {});
+  judge_.advance(1.0 / 30.0);
+  detector_.answer = -2.0;
+  EXPECT_EQ(judge_.evaluate(detector_, window_, target_, {}), -2.0);
+  EXPECT_LT(judge_.log_odds(), 4.6);
+  const int before = detector_.calls;
+  EXPECT_EQ(judge_.evaluate(detector_, window_, target_, {}), -2.0);
+  EXPECT_EQ(detector_.calls, before);
+}
+
+TEST_F(OutlineJudgeTest, DoesNotEvaluateAShortArcOfACertainOutline) {
+  judge_.start(5.0, -0.4);
+  judge_.judge(detector_, window_, target_, {});
+  judge_.advance(1.0 / 30.0);
+  target_.visible_fraction = 0.2;
+  EXPECT_FALSE(judge_.evaluate(detector_, window_, target_, {}));
+  EXPECT_EQ(judge_.log_odds(), 4.6);
+}
+
+TEST_F(OutlineJudgeTest, HasNoEvidenceIfTheDetectorGivesNone) {
+  judge_.start(5.0, -0.4);
+  judge_.advance(1.0 / 30.0);
+  detector_.answer = {};
+  EXPECT_FALSE(judge_.evaluate(detector_, window_, target_, {}));
+  EXPECT_EQ(judge_.log_odds(), 4.6);
+}
+
 TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
   judge_.start(5.0, -0.4);
   judge_.judge(detector_, window_, target_, {});
@@ -73,6 +102,7 @@ TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
   const int before = detector_.calls;
   judge_.judge(detector_, window_, target_, {});
   EXPECT_EQ(detector_.calls, before);
+  judge_.advance(1.0 / 30.0);
   target_.ellipse_overlap = 0.8;
   judge_.judge(detector_, window_, target_, {});
   EXPECT_EQ(detector_.calls, before + 1);
@@ -97,6 +127,7 @@ TEST_F(OutlineJudgeTest, JudgesShortArcsOfUncertainTargets) {
 
 TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
   judge_.start(0.0, -0.4);
+  judge_.advance(1.0 / 30.0);
   judge_.judge(detector_, window_, target_, {});
   // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).
   EXPECT_EQ(detector_.size.width, 84);

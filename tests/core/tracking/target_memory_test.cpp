@@ -30,8 +30,10 @@ TEST(TargetMemory, HasNoTargetAtFirst) {
   const TargetMemory memory;
   EXPECT_EQ(memory.id(), 0U);
   EXPECT_FALSE(memory.was_certain());
-  EXPECT_FALSE(memory.was_near(memory.ellipse()));
-  EXPECT_LT(memory.prior_of(kTarget), 0.0);
+  EXPECT_GE(memory.absence_s(), kMemory_s);
+  constexpr Ellipse kAtOrigin{0.0, 0.0, 30.0, 20.0, 0.2};
+  EXPECT_FALSE(memory.was_near(kAtOrigin));
+  EXPECT_LT(memory.prior_of(kAtOrigin), 0.0);
 }
 
 TEST(TargetMemory, KnowsTheLastTarget) {
@@ -82,11 +84,12 @@ TEST(TargetMemory, CertaintyIsForgottenThoughTheTargetIsStillReported) {
   EXPECT_TRUE(memory.was_near(kTarget));
 }
 
-TEST(TargetMemory, ForgetsAllButTheId) {
+TEST(TargetMemory, ForgetsWhenButNotWhatItSaw) {
   TargetMemory memory;
   memory.remember(target_with(0.99));
   memory.forget();
   EXPECT_EQ(memory.id(), 7U);
+  EXPECT_EQ(memory.ellipse().cx, kTarget.cx);
   EXPECT_FALSE(memory.was_certain());
   EXPECT_FALSE(memory.was_near(kTarget));
 }

@@ -601,6 +601,30 @@ TEST(FollowingTracker, SwitchesFromADiscOrASmallerRingToThePad) {
   }
 }
 
+// The search may end at a reduced size, with the larger disc alone.
+TEST(FollowingTracker, StaysOnASmallTargetBesideALargerDisc) {
+  Scene disc = plain_ring();
+  disc.pad.pattern = Pattern::kDisc;
+  for (const Scene& small : {plain_ring(), disc}) {
+    for (const double radius : {14.0, 18.0, 22.0, 26.0}) {
+      for (const double other : {26.0, 40.0, 60.0}) {
+        const Ellipse truth{70.0, 60.0, radius, 0.85 * radius, 0.2};
+        const Picture before = rendered(small, truth);
+        const Picture after =
+            both(before, rendered(disc, {220.0, 150.0, other, 0.85 * other, 0.1}));
+        Tracker tracker;
+        for (int frame = 0; frame < 40; ++frame) {
+          const Picture& picture = frame < 20 ? before : after;
+          const auto target = tracker.process(picture.view(), frame * kFrameNs);
+          ASSERT_TRUE(target);
+          EXPECT_GT(iou_inside(target->ellipse, truth, 320, 240), 0.9)
+              << radius << " beside " << other << ", frame " << frame;
+        }
+      }
+    }
+  }
+}
+
 TEST(FollowingTracker, ReportsCandidatesInEveryFrameOnRequest) {
   const Picture picture = rendered(plain_ring(), {160.0, 120.0, 60.0, 50.0, 0.2});
   for (const bool is_wanted : {false, true}) {
