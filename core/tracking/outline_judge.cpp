@@ -59,7 +59,7 @@ std::optional<double> OutlineJudge::evaluate(Detector& detector,
                                              const LumaWindow& window,
                                              const Target& target,
                                              const Thresholds& limits) {
-  if (since_judged_s_ == 0.0) return odds_.last();
+  if (since_judged_s_ == 0.0) return odds_.last();  // already in this frame
   const auto outline = distorted(window.lens, target.ellipse);
   if (!outline || is_short_arc(target)) return std::nullopt;
   judged_overlap_ = target.ellipse_overlap;
