@@ -13,6 +13,20 @@ namespace {
 
 constexpr int kIterations = 2;  // with each reach
 
+struct Matches {
+  int visible = 0;
+  int matched = 0;
+};
+
+bool refuted(const Matches& feature) {
+  return is_refuted(feature.matched, feature.visible);
+}
+
+// Whether it is matched significantly more often than not.
+bool confirmed(const Matches& feature) {
+  return is_refuted(feature.visible - feature.matched, feature.visible);
+}
+
 }  // namespace
 
 const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px) {
@@ -67,8 +81,7 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
                              double tolerance_px,
                              int circles) {
   HomographySupport support;
-  std::array<int, kMaxCircles> visible{};
-  std::array<int, kMaxCircles> matched{};
+  std::array<Matches, kMaxCircles + 1> features{};  // of each circle, then of all lines
   std::array<float, EdgeSearch::kMaxSamples> gains;
   for (const EdgeSample& sample : samples) {
     if (!sample.is_visible) continue;
@@ -80,18 +93,18 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
       gains[static_cast<std::size_t>(support.matched)] = edge->contrast / sample.contrast;
     ++support.visible;
     support.matched += has_edge ? 1 : 0;
-    if (sample.feature >= circles) continue;
-    const auto circle = static_cast<std::size_t>(sample.feature);
-    ++visible[circle];
-    matched[circle] += has_edge ? 1 : 0;
+    Matches& feature = features[static_cast<std::size_t>(std::min(sample.feature, circles))];
+    ++feature.visible;
+    feature.matched += has_edge ? 1 : 0;
   }
   if (support.visible == 0) return support;
   support.coverage = static_cast<double>(support.matched) / support.visible;
-  if (visible[0] > 0) support.outline = static_cast<double>(matched[0]) / visible[0];
-  support.has_all_circles = true;
-  for (std::size_t i = 0; i < visible.size(); ++i) {
-    support.has_all_circles &= !is_refuted(matched[i], visible[i]);
-  }
+  const auto& [outer_visible, outer_matched] = features[0];
+  if (outer_visible > 0) support.outline = static_cast<double>(outer_matched) / outer_visible;
+  const auto inside = std::span(features).subspan(1);
+  const bool is_one_refuted = std::any_of(inside.begin(), inside.begin() + circles - 1, refuted);
+  const bool is_one_confirmed = std::any_of(inside.begin(), inside.end(), confirmed);
+  support.has_circles = !refuted(features[0]) && (!is_one_refuted || is_one_confirmed);
   if (support.matched > 0) {
     const auto middle = gains.begin() + support.matched / 2;
     std::nth_element(gains.begin(), middle, gains.begin() + support.matched);

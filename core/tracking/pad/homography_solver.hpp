@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -28,8 +29,11 @@ struct HomographySupport {
   int matched = 0;        ///< Of these, with an edge within the tolerance.
   double coverage = 0.0;  ///< matched over visible.
   double outline = 0.0;   ///< The same of the outer circle alone; 0 if none of it is visible.
-  bool has_all_circles = false;  ///< No visible circle is refuted, see is_refuted().
-  double gain = 1.0;             ///< Median ratio of image contrast to model contrast.
+  double gain = 1.0;      ///< Median ratio of image contrast to model contrast.
+  /// No visible circle is refuted; or only inner ones are, while another one or the lines are
+  /// matched significantly more often than not. An inner one may be in shadow, or another pattern
+  /// that looks like a circle from afar.
+  bool has_circles = false;
 };
 
 /// Solves for the maximum a posteriori change that moves all edges to their matches: iteratively
@@ -55,6 +59,7 @@ struct HomographySupport {
                               const HomographyChange& change,
                               double max_px);
 
+/// @param circles  Of the model; at least one.
 [[nodiscard]] HomographySupport support_of(std::span<const EdgeSample> samples,
                                            const HomographyChange& change,
                                            double tolerance_px,

@@ -210,7 +210,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
 }
 
 bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
-  return attempt && attempt->support.coverage >= kMinCoverage && attempt->support.has_all_circles &&
+  return attempt && attempt->support.coverage >= kMinCoverage && attempt->support.has_circles &&
          attempt->support.matched >= HomographyChange::SizeAtCompileTime;
 }
 

@@ -681,22 +681,54 @@ TEST(Support, DecreasesWithTheErrorOfTheView) {
     coverage = support.coverage;
     if (off > 0.0) continue;
     EXPECT_EQ(support.coverage, 1.0);
-    EXPECT_TRUE(support.has_all_circles);
+    EXPECT_TRUE(support.has_circles);
     EXPECT_NEAR(support.gain, 0.75, 0.15);
   }
   EXPECT_LT(coverage, 0.3);
 }
 
-TEST(Support, ReportsMissingCircles) {
-  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
-  PadModel model = ring_model();
-  model.circles.push_back({0.4, true, 145.0});
+// Of a model on a picture of a pad at kPad.
+HomographySupport support_on(Pattern pattern, const PadModel& model) {
+  const Picture picture = rendered(scene_of(pattern), kPad);
   EdgeSearch search;
   search.sample(model, image_from_pad(kPad), picture.view());
   search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
-  const HomographySupport support = support_of(search.samples(), HomographyChange::Zero(), 1.5, 3);
-  EXPECT_FALSE(support.has_all_circles);
+  return support_of(
+      search.samples(), HomographyChange::Zero(), 1.5, static_cast<int>(model.circles.size()));
+}
+
+TEST(Support, ReportsAMissingCircle) {
+  PadModel model = disc_model();
+  model.circles.push_back({0.4, true, 145.0});
+  const HomographySupport support = support_on(Pattern::kDisc, model);
+  EXPECT_FALSE(support.has_circles);
+  EXPECT_NEAR(support.coverage, 1.0 / 1.4, 0.05);
+}
+
+TEST(Support, ToleratesAMissingCircleInsideAMatchedRing) {
+  PadModel model = ring_model();
+  model.circles.push_back({0.4, true, 145.0});
+  const HomographySupport support = support_on(Pattern::kRing, model);
+  EXPECT_TRUE(support.has_circles);
   EXPECT_NEAR(support.coverage, (1.0 + kInner) / (1.4 + kInner), 0.05);
+}
+
+TEST(Support, ToleratesAMissingCircleAroundMatchedLines) {
+  PadModel model = Learned(scene_of(Pattern::kRingX)).model;
+  ASSERT_FALSE(model.lines.empty());
+  model.circles = disc_model().circles;
+  model.circles.push_back({0.9, true, 145.0});
+  EXPECT_TRUE(support_on(Pattern::kRingX, model).has_circles);
+  model.lines.clear();
+  EXPECT_FALSE(support_on(Pattern::kRingX, model).has_circles);
+}
+
+TEST(Support, NeedsTheOuterCircle) {
+  PadModel model = ring_model();
+  model.circles[0].is_bright_outside = false;
+  const HomographySupport support = support_on(Pattern::kRing, model);
+  EXPECT_EQ(support.outline, 0.0);
+  EXPECT_FALSE(support.has_circles);
 }
 
 TEST(LineOf, IsNoCircleAndNoRemovedLine) {

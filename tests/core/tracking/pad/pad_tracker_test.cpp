@@ -53,6 +53,19 @@ Picture empty_frame() {
   return frame_of(kPad, pad_scene(Pattern::kNone), 1);
 }
 
+// A ring with a dot, which looks like a circle of the pad.
+Picture ring_with_dot(std::uint64_t number = 0) {
+  Picture picture = frame_of(kPad, pad_scene(), number);
+  Picture dot = frame_of(circle_of_pad(0.3), pad_scene(Pattern::kDisc), number);
+  const Ellipse around = circle_of_pad(0.5);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (sampson_distance(around, Vector2d(x, y)) < 0.0) picture.at(x, y) = dot.at(x, y);
+    }
+  }
+  return picture;
+}
+
 struct Look {
   const char* name;
   Pattern pattern;
@@ -249,6 +262,20 @@ TEST(PadTracker, ForgetsLinesOfOtherObjects) {
     EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
   }
   EXPECT_GT(coverage, 0.97);
+}
+
+TEST(PadTracker, FollowsARingWithoutACircleThatWasNotOnIt) {
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(ring_with_dot()), kPad));
+  const auto with_dot = tracker.track(whole(ring_with_dot(1)), kFrame_s);
+  ASSERT_TRUE(with_dot && with_dot->is_visible);
+  EXPECT_GT(with_dot->coverage, 0.97);
+  for (std::uint64_t i = 2; i < 10; ++i) {
+    const auto track = tracker.track(whole(frame_of(kPad, pad_scene(), i)), kFrame_s);
+    ASSERT_TRUE(track && track->is_visible) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
+    EXPECT_LT(track->coverage, 0.95) << "the dot was learned";
+  }
 }
 
 // Bars that stay where they are while the pad moves behind them, as lids do in front of a pupil.
