@@ -1,6 +1,5 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <array>
 #include <optional>
 #include <span>
 
