@@ -5,17 +5,42 @@
 #include <array>
 #include <cmath>
 
+#include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr std::array<double, 2> kTukeyReach = {2.0, 1.0};  // of each step [px]
+using Points = std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples>;
 
-// The errors of five parameters follow Student's t with n - 5 degrees of freedom if the variance is
-// estimated from n independent residuals; its covariance is the sum of their squares over n - 7.
-double share_of_freedom(double independent) {
-  return std::max(1.0, independent - 7.0) / independent;
+// One Gauss-Newton step of the ellipse to the edges, at these points of the ideal plane.
+std::optional<FittedEllipse> stepped(const Ellipse& e,
+                                     std::span<const EdgeMeasurement> edges,
+                                     const Points& ideal) {
+  GeometricFit fit(e);
+  std::array<PerimeterOffset, OutlineSamples::kMaxSamples> offsets;
+  std::array<double, OutlineSamples::kMaxSamples> distances;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    offsets[i] = fit.offset_of(ideal[i]);
+    offsets[i].distance_px *= edges[i].px_per_ideal;
+    offsets[i].px_per_unit *= edges[i].px_per_ideal;
+    distances[i] = offsets[i].distance_px;
+  }
+  const double scatter_px = robust_sigma(std::span(distances).first(edges.size()));
+  const double reach_px = std::max(double{kPixelError}, kAllSigmas * scatter_px);
+  ResidualSums residuals;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double distance_px = offsets[i].distance_px;
+    const double precision = edges[i].length_px * std::pow(kVertexError / edges[i].sigma_px, 2);
+    const double weight = precision * tukey_weight(distance_px, reach_px);
+    if (weight > 0.0) fit.add(offsets[i], weight);
+    residuals.add(edges[i].sample, distance_px, reach_px, precision);
+  }
+  const auto better = fit.solve();
+  if (!better) return std::nullopt;
+  const double factor = residuals.information_factor(RingMatrix::RowsAtCompileTime, kVertexError);
+  return FittedEllipse{*better, {image_from_pad(*better), factor * fit.information()}};
 }
 
 }  // namespace
@@ -31,44 +56,18 @@ std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
   return fitted_to_edges(measurer, picture.lens, e);
 }
 
+// Two steps, since the scatter around the given ellipse contains its own error.
 std::optional<FittedEllipse> fitted_to_edges(const EdgeMeasurer& measurer,
                                              const LensView& lens,
                                              const Ellipse& e) {
   const std::span<const EdgeMeasurement> edges = measurer.edges();
   if (edges.size() < kMinEdgesOfEllipse) return std::nullopt;
-  FittedEllipse refined{e, {}};
-  std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples> ideal;
+  Points ideal;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     ideal[i] = lens.approximate_ideal(measurer.origin() + edges[i].point.cast<double>());
   }
-  for (const double reach_px : kTukeyReach) {
-    GeometricFit fit(refined.ellipse);
-    double squares = kVertexError * kVertexError;  // a prior of weight 1
-    double weights = 1.0;
-    double length_px = 0.0;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      PerimeterOffset offset = fit.offset_of(ideal[i]);
-      offset.distance_px *= edges[i].px_per_ideal;
-      offset.px_per_unit *= edges[i].px_per_ideal;
-      const double precision = std::pow(kVertexError / edges[i].sigma_px, 2);
-      const double weight =
-          edges[i].length_px * precision * tukey_weight(offset.distance_px, reach_px);
-      if (!(weight > 0.0)) continue;
-      fit.add(offset, weight);
-      squares += weight * offset.distance_px * offset.distance_px;
-      weights += weight;
-      length_px += edges[i].length_px;
-    }
-    const double independent_px =
-        std::max(kIndependentPx, length_px / static_cast<double>(edges.size()));
-    const auto better = fit.solve();
-    if (!better) return std::nullopt;
-    refined.ellipse = *better;
-    const double scale =
-        weights / squares * share_of_freedom(length_px / independent_px) / independent_px;
-    refined.uncertainty = {image_from_pad(*better), scale * fit.information()};
-  }
-  return refined;
+  const auto nearer = stepped(e, edges, ideal);
+  return nearer ? stepped(nearer->ellipse, edges, ideal) : std::nullopt;
 }
 
 }  // namespace ellipse

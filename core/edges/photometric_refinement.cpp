@@ -12,6 +12,7 @@
 #include "core/edges/edge_measurement.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 #include "core/image/simd.hpp"
 
 namespace ellipse {
@@ -27,7 +28,6 @@ constexpr std::size_t kNeighbours = 3;     // sectors on each side that share th
 constexpr double kTypicalStepPx = 2.3;     // half the width of the blurred step; others are within
                                            // half and twice of it
 constexpr double kTukeyOfSigma = 4.7;      // reach over the scatter
-constexpr double kSigmaOfMedian = 1.4826;  // sigma over the median of absolute normal deviates
 
 // Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
 // g, its derivative w by narrowing, and the brightness i.
@@ -346,11 +346,8 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
 // Outlines that are not exactly elliptical scatter more than pixel noise explains.
 double scatter_of(std::span<const Edge> edges) {
   std::array<double, kMaxSectors> distances;
-  for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = std::abs(edges[i].offset_px);
-  const auto end = distances.begin() + static_cast<std::ptrdiff_t>(edges.size());
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
-  std::nth_element(distances.begin(), middle, end);
-  return kSigmaOfMedian * *middle;
+  for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = edges[i].offset_px;
+  return robust_sigma(std::span(distances).first(edges.size()));
 }
 
 // One Gauss-Newton step. Returns half the width of the blurred step between the levels [px].

@@ -2,17 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 namespace ellipse {
-
-/// Tukey's biweight [BeatonTukey1974]: 1 for no distance, 0 from `reach` on.
-[[nodiscard]] inline double tukey_weight(double distance, double reach) {
-  const double r = distance / reach;
-  return std::abs(r) < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
-}
 
 /// Normal equations of weighted linear least squares, with a prior: minimizes the sum of
 /// weight (row . x - value)^2 plus the prior's (x - mean)^T information (x - mean).

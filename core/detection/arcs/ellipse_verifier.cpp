@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 namespace {
@@ -46,12 +47,6 @@ constexpr std::array<Step, 4> kSteps = {{{kSamples / 2, 1.0, 7.0},
 
 double radius_of(const Ellipse& e) {
   return std::sqrt(e.semi_major * e.semi_minor);
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Longest run of samples without an edge, as a share of all samples.
@@ -230,7 +225,7 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   measured.on_ellipse = sums.length > 0.0 ? sums.length_on_ellipse / sums.length : 0.0;
   const double turn_support = found.turn_support * sums.share_of_turn();
   const double largest_error = std::acos(std::sqrt(kMinSquaredCosine));
-  const double error = direction_errors_.empty() ? largest_error : median(direction_errors_);
+  const double error = direction_errors_.empty() ? largest_error : median(std::span(direction_errors_));
   const double coverage = turn_support * (1.0 - longest_gap(edges, samples));
   const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
   const double signal_to_noise =

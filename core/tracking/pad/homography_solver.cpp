@@ -7,6 +7,7 @@
 
 #include "core/edges/noise.hpp"
 #include "core/geometry/least_squares.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 namespace {
@@ -106,9 +107,7 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
   const bool is_one_confirmed = std::any_of(inside.begin(), inside.end(), confirmed);
   support.has_circles = !refuted(features[0]) && (!is_one_refuted || is_one_confirmed);
   if (support.matched > 0) {
-    const auto middle = gains.begin() + support.matched / 2;
-    std::nth_element(gains.begin(), middle, gains.begin() + support.matched);
-    support.gain = *middle;
+    support.gain = median(std::span(gains).first(static_cast<std::size_t>(support.matched)));
   }
   return support;
 }

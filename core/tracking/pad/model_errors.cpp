@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/geometry/least_squares.hpp"
+#include "core/geometry/robust.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
 
 namespace ellipse {

@@ -9,6 +9,7 @@
 #include "core/edges/noise.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/geometry/ellipse.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 namespace {
@@ -83,9 +84,7 @@ class RadialProfile {
       if (!std::isnan(here)) *end++ = here;
     }
     if (end == levels.begin()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = levels.begin() + (end - levels.begin()) / 2;
-    std::nth_element(levels.begin(), middle, end);
-    return *middle;
+    return ellipse::median(std::span(levels.begin(), end));
   }
 
   const ImageView& luma_;

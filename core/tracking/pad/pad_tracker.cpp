@@ -11,6 +11,7 @@
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 #include "core/image/roi.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/pad/model_errors.hpp"
