@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/camera/arc_tangent.hpp"
 #include "core/image/simd.hpp"
 
 namespace ellipse {
@@ -84,19 +85,9 @@ ELLIPSE_INLINE double arc_tangent(double x) {
   return std::atan(x);
 }
 
-/// For x >= 0, within 2e-7 [Abramowitz1964] 4.4.49.
+/// For x >= 0.
 ELLIPSE_INLINE float arc_tangent(float x) {
-  const float z = x > 1.0F ? 1.0F / x : x;
-  const float s = z * z;
-  float sum = 0.0028662257F;
-  sum = sum * s - 0.0161657367F;
-  sum = sum * s + 0.0429096138F;
-  sum = sum * s - 0.0752896400F;
-  sum = sum * s + 0.1065626393F;
-  sum = sum * s - 0.1420889944F;
-  sum = sum * s + 0.1999355085F;
-  sum = sum * s - 0.3333314528F;
-  const float angle = z + z * s * sum;
+  const float angle = arc_tangent_of_share(x > 1.0F ? 1.0F / x : x);
   return x > 1.0F ? 1.57079637F - angle : angle;
 }
 

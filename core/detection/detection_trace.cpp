@@ -69,6 +69,7 @@ void DetectionTrace::report(std::span<const Detection> detections) {
     TracedCandidate& candidate = candidates_[static_cast<std::size_t>(detection.candidate)];
     candidate.ellipse = detection.ellipse;
     candidate.verdict = {};
+    candidate.is_detection = true;
     candidate.contour_overlap = detection.contour_overlap;
     candidate.ellipse_overlap = detection.ellipse_overlap;
     candidate.score = detection.score;

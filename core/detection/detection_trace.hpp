@@ -56,6 +56,7 @@ struct TracedCandidate {
   double probability = 0.0;         ///< Of being an ellipse; 0 if not measured.
   Features features{};              ///< Inputs of the probability.
   Features contributions{};         ///< Term of each feature in the log odds.
+  bool is_detection = false;        ///< Reported by the detector.
   bool is_target = false;           ///< Chosen by select_target().
 };
 

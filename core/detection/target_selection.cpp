@@ -156,7 +156,10 @@ bool is_better_target(const Ellipse& chosen,
   const ConcentricSet other = set_around(chosen, detections);
   ConcentricSet own = set_around(known, detections);
   own.has_two_edges = own.has_two_edges || has_two_edges;
-  if (score) own.score = std::max(own.score, *score);
+  if (score) {
+    own.score = std::max(own.score, *score);
+    own.probability = std::max(own.probability, probability_of(*score));
+  }
   if (own.has_two_edges != other.has_two_edges) return other.has_two_edges && own < other;
   return own < other && other.score > scaled(own.score, kMuchBetter);
 }

@@ -83,8 +83,8 @@ void draw_candidates(Sheet& sheet, const DetectionTrace& trace, std::size_t pass
       }
     }
   };
-  draw(kRejectedColor, [](const TracedCandidate& c) { return c.contour_overlap == 0.0; });
-  draw(kFound, [](const TracedCandidate& c) { return c.contour_overlap > 0.0 && !c.is_target; });
+  draw(kRejectedColor, [](const TracedCandidate& c) { return !c.is_detection; });
+  draw(kFound, [](const TracedCandidate& c) { return c.is_detection && !c.is_target; });
   draw(kTarget, [](const TracedCandidate& c) { return c.is_target; });
 }
 

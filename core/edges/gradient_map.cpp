@@ -251,6 +251,8 @@ void GradientMap::compute(const Picture& picture, const EdgeThresholds& threshol
   lens_ = picture.lens;
   resize(luma);
   block_count_ = 0;
+  thresholds_ = {};
+  noise_ = texture_ = 0.0;
   if (luma.empty()) return;
   measure_noise(luma);
   const auto used = [](double level, double by_default) {

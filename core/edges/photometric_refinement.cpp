@@ -23,11 +23,11 @@ namespace {
 constexpr double kPhotometricBandPx = 3.8;
 constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees
 constexpr int kLinesOfSector = 6;
-constexpr std::size_t kMaxSectors = 80;    // of a long outline, whose lines are subsampled
-constexpr std::size_t kNeighbours = 3;     // sectors on each side that share the two levels
-constexpr double kTypicalStepPx = 2.3;     // half the width of the blurred step; others are within
-                                           // half and twice of it
-constexpr double kTukeyOfSigma = 4.7;      // reach over the scatter
+constexpr std::size_t kMaxSectors = 80;  // of a long outline, whose lines are subsampled
+constexpr std::size_t kNeighbours = 3;   // sectors on each side that share the two levels
+constexpr double kTypicalStepPx = 2.3;   // half the width of the blurred step; others are within
+                                         // half and twice of it
+constexpr double kTukeyOfSigma = 4.7;    // reach over the scatter
 
 // Sums over a sector's pixels of the products of: the unit step s between the two levels, its slope
 // g, its derivative w by narrowing, and the brightness i.
@@ -214,7 +214,10 @@ class Band {
       at[other] = slant * at[axis] +
                   side * std::sqrt(std::max(0.0, (1.0 - determinant * at[axis] * at[axis]) * c));
       const double crossing = center_[other] + at[other];
-      if (!(crossing >= kLanes / 2 && crossing < size[other] - kLanes + kLanes / 2)) continue;
+      if (!(crossing >= kLanes / 2 && crossing < size[other] - kLanes + kLanes / 2)) {
+        close_sector();
+        continue;
+      }
       const int nearest = static_cast<int>(std::floor(crossing + 0.5));
       add_crossing(luma_.data + nearest * along + line * step, along, crossing - nearest, at);
     }
@@ -334,7 +337,7 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
   const double rest = squares(own, alone.values);
   // At least the variance of rounding to grey levels.
   const double noise = 1.0 / 12.0 + rest / std::max(1.0, own[k1] - 3.0);
-  const bool is_alike = std::sqrt((squares(own, shared.values) - rest) / noise) < kAllSigmas;
+  const bool is_alike = squares(own, shared.values) - rest < kAllSigmas * kAllSigmas * noise;
   const Eigen::Vector4d& values = is_alike ? shared.values : alone.values;
   const double variance = noise * (is_alike ? 1.0 / own[kGG] : alone.offset_variance);
   return Edge{&sectors[i],
@@ -383,7 +386,7 @@ std::optional<FittedEllipse> refined_photometrically(const ImageView& luma,
                                                      Polarity polarity,
                                                      double inside_px,
                                                      double min_contrast) {
-  inside_px -= kTypicalStepPx;  // the next edge is blurred alike
+  inside_px -= kTypicalStepPx;  // the next edge has the same blur
   if (!(inside_px >= kTypicalStepPx)) return std::nullopt;
   const double brighter_outside = polarity == Polarity::kDarkInside ? 1.0 : -1.0;
   FittedEllipse refined{e, {}};

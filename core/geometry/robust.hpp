@@ -58,8 +58,8 @@ class ResidualSums {
   double squares_ = 0.0;          // of influences, over the precision
   double slopes_ = 0.0;           // of the influence
   double squared_slopes_ = 0.0;
-  double own_products_ = 0.0;     // of neighbouring residuals with themselves,
-  double products_ = 0.0;         // and with each other
+  double own_products_ = 0.0;  // of neighbouring residuals with themselves,
+  double products_ = 0.0;      // and with each other
   double last_ = 0.0;
   int last_sample_ = -2;
   int pairs_ = 0;

@@ -30,11 +30,16 @@ void EdgeTracker::reset() {
   pad_tracker_.forget();
 }
 
+std::optional<Ellipse> EdgeTracker::hypothesis() const {
+  return pad_tracker_.is_locked() ? pad_tracker_.outline() : hypothesis_;
+}
+
 std::optional<Target> EdgeTracker::track_target(const ScopedFrame& frame, double elapsed_s) {
   judge_.advance(elapsed_s);
   since_detection_s_ += elapsed_s;
   since_full_search_s_ += elapsed_s;
 
+  is_pad_ = true;
   std::optional<Target> target = follow_edges(frame, elapsed_s);
   if (needs_detection(target)) target = look(frame, target);
   if (judge_.log_odds() < -kCertainLogOdds) pad_tracker_.forget();
@@ -214,10 +219,9 @@ std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target
   const LumaWindow window = window_on(frame, frame.searchable);
   const auto track = pad_tracker_.resume(window, detection.ellipse);
   if (!track) return std::nullopt;
+  add_detection(track->ellipse, log_odds(detection.probability));
   std::optional<Target> target = target_of(*track, frame, detection.search_region);
   if (!target) return std::nullopt;
-  add_detection(track->ellipse, log_odds(detection.probability));
-  target->id = id_;
   if (id_ != last_.id()) target->state = TargetState::kDetected;
   return target;
 }
@@ -227,7 +231,8 @@ std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target
 Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
   const bool is_confirmed = add_detection(target.ellipse, log_odds(target.probability));
   target.id = id_;
-  if (target.visible_fraction >= kMajority) {
+  is_pad_ = target.visible_fraction >= kMajority;
+  if (is_pad_) {
     (void)pad_tracker_.lock(window_on(frame, frame.searchable), target.ellipse);
   } else if (!is_confirmed) {
     pad_tracker_.release();

@@ -35,8 +35,12 @@ class EdgeTracker {
 
   /// State after the last frame.
   [[nodiscard]] TrackerState state() const { return state_; }
-  /// The pad that is tracked, if it is locked.
-  [[nodiscard]] const PadTracker& pad() const { return pad_tracker_; }
+  /// The outline of the hypothesis, reported or not, in the last frame.
+  [[nodiscard]] std::optional<Ellipse> hypothesis() const;
+  /// The pad, if the last target is its outline; nullptr if it is a detection that is not locked.
+  [[nodiscard]] const PadTracker* reported_pad() const {
+    return pad_tracker_.is_locked() && is_pad_ ? &pad_tracker_ : nullptr;
+  }
 
  private:
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;
@@ -71,6 +75,7 @@ class EdgeTracker {
 
   TrackerState state_ = TrackerState::kSearching;
   std::optional<Ellipse> hypothesis_;  // tracked by its edges, reported or not
+  bool is_pad_ = false;                // whether the target is the pad's outline
   std::uint64_t id_ = 0;               // of the hypothesis, if it is reported
   double since_detection_s_ = 0.0;     // since the detector ran
   double since_full_search_s_ = 0.0;   // since it ran on the whole frame at the full resolution

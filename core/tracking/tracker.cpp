@@ -46,7 +46,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   if (scoped.searchable.empty()) return std::nullopt;
   last_target_.advance(elapsed_s);
   std::optional<Target> target = track(scoped, elapsed_s);
-  had_target_ = target.has_value() || edge_tracker_->pad().is_locked();
+  had_target_ = target.has_value();
   if (!target) return std::nullopt;
   last_target_.remember(*target);
   target->pts_ns = pts_ns;
@@ -87,20 +87,19 @@ std::optional<Target> Tracker::track(const ScopedFrame& frame, double elapsed_s)
 }
 
 RingUncertainty Tracker::uncertainty_of(const Target& target) const {
-  if (edge_tracker_->pad().is_locked()) return edge_tracker_->pad().uncertainty();
+  if (const PadTracker* pad = edge_tracker_->reported_pad()) return pad->uncertainty();
   return expected_uncertainty(
       target.ellipse, frame_bounds_.width, frame_bounds_.height, kPixelError);
 }
 
 // Adds the pose, which needs a camera.
 void Tracker::locate(Target& target, double elapsed_s) {
-  const PadTracker& pad = edge_tracker_->pad();
   if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
   PoseEvidence evidence{.gravity = Eigen::Vector3d::Map(settings_.gravity.data())};
-  if (pad.is_locked()) {
-    evidence.inner_edges = pad.inner_edges();
-    evidence.pattern = pad.pattern();
+  if (const PadTracker* pad = edge_tracker_->reported_pad()) {
+    evidence.inner_edges = pad->inner_edges();
+    evidence.pattern = pad->pattern();
   }
   target.pose = pose_estimator_.estimate(*lens_,
                                          target.ellipse,
@@ -155,8 +154,10 @@ void Tracker::configure(const TrackerSettings& settings) {
   }
   const bool is_other_camera = !has_same_camera(settings, settings_);
   // A tracked target may outgrow the limits; changed limits that exclude it reset the tracker.
-  const bool is_excluded = had_target_ && settings_.limits.accepts_axes(last_target_.ellipse()) &&
-                           !settings.limits.accepts_axes(last_target_.ellipse());
+  const std::optional<Ellipse> tracked =
+      had_target_ ? last_target_.ellipse() : edge_tracker_->hypothesis();
+  const bool is_excluded =
+      tracked && settings_.limits.accepts_axes(*tracked) && !settings.limits.accepts_axes(*tracked);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;
   settings_ = settings;
   search_->configure(settings);

@@ -90,7 +90,7 @@ class Tracker {
   std::optional<Lens> lens_;      // for the current frame size
   Rect frame_bounds_;
   TrackerState state_ = TrackerState::kSearching;
-  bool had_target_ = false;  // in the last frame, reported or not
+  bool had_target_ = false;  // in the last frame
   bool is_lens_stale_ = true;
   bool is_detector_given_ = false;  // by the constructor; overrides the settings
 };

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "core/camera/arc_tangent.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -15,8 +17,7 @@ constexpr std::size_t kCornerReach = 3;    // [px] on each side of a corner
 constexpr double kCornerTurn = 0.9;        // [rad] across both sides
 constexpr double kRetreatOverNoise = 5.0;  // reverse turn that ends an arc, in sigma
 
-// Replaces x by atan2(y, x), within 3e-4 rad, by a polynomial on [0, 1] [Abramowitz1964] 4.4.47,
-// shortened. Branch-free, so that the compiler vectorizes it. The strength is |x| + |y|.
+// Replaces x by atan2(y, x). The strength is |x| + |y|.
 void to_angles(float* __restrict x,
                const float* __restrict y,
                float* __restrict strengths,
@@ -27,9 +28,7 @@ void to_angles(float* __restrict x,
     const float larger = ax > ay ? ax : ay;
     const float smaller = ax > ay ? ay : ax;
     strengths[i] = ax + ay;
-    const float z = smaller / (larger + 1e-9F);
-    const float s = z * z;
-    const float low = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * z + z;
+    const float low = arc_tangent_of_share(smaller / (larger + 1e-9F));
     const float octant = ay > ax ? 1.57079637F - low : low;
     const float half = x[i] < 0.0F ? 3.14159274F - octant : octant;
     x[i] = y[i] < 0.0F ? -half : half;

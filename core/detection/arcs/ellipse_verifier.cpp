@@ -225,7 +225,8 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   measured.on_ellipse = sums.length > 0.0 ? sums.length_on_ellipse / sums.length : 0.0;
   const double turn_support = found.turn_support * sums.share_of_turn();
   const double largest_error = std::acos(std::sqrt(kMinSquaredCosine));
-  const double error = direction_errors_.empty() ? largest_error : median(std::span(direction_errors_));
+  const double error =
+      direction_errors_.empty() ? largest_error : median(std::span(direction_errors_));
   const double coverage = turn_support * (1.0 - longest_gap(edges, samples));
   const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
   const double signal_to_noise =

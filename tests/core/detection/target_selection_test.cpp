@@ -70,6 +70,10 @@ TEST(TargetSelection, KeepsAFollowedTargetThatTheSearchMissed) {
   EXPECT_TRUE(is_better_target(disc, {.ellipse = followed, .score = 5.0}, ring));
   EXPECT_FALSE(
       is_better_target(disc, {.ellipse = followed, .has_two_edges = true, .score = 5.0}, ring));
+  // A ring that is less probable than the followed edge does not replace it.
+  const std::vector<Detection> faint = {{disc, 1.0, 1.0, 0.4, 0.6}, {hole, 1.0, 1.0, 0.4, 0.6}};
+  EXPECT_TRUE(is_better_target(disc, {.ellipse = followed}, faint));
+  EXPECT_FALSE(is_better_target(disc, {.ellipse = followed, .score = 5.0}, faint));
 }
 
 TEST(TargetSelection, AcceptsOnlySimilarEllipsesWhileTracking) {

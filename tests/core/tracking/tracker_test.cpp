@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,8 @@
 
 #include "core/detection/contours/contour_detector.hpp"
 #include "core/detection/detectors.hpp"
+#include "core/edges/edge_measurement.hpp"
+#include "core/geometry/ellipse_fit.hpp"
 #include "core/scene/catalog.hpp"
 #include "tests/support/picture.hpp"
 #include "tests/support/scripted_detector.hpp"
@@ -416,10 +419,13 @@ TEST(FollowingTracker, ConfirmsOverSeveralFrames) {
 // Finds one given ellipse, in pictures without edges.
 class OneEllipseDetector final : public Detector {
  public:
-  explicit OneEllipseDetector(const Detection& ellipse) : ellipse_(ellipse) {}
+  /// @param required  Probability below which it finds nothing; default: as the limits say.
+  explicit OneEllipseDetector(const Detection& ellipse, std::optional<double> required = {})
+      : ellipse_(ellipse), required_(required) {}
 
   std::span<const Detection> detect(const ellipse::Picture&, const Thresholds& limits) override {
-    return {&ellipse_, ellipse_.probability >= limits.min_probability ? 1U : 0U};
+    const double required = required_.value_or(limits.min_probability);
+    return {&ellipse_, ellipse_.probability >= required ? 1U : 0U};
   }
   [[nodiscard]] bool has_probability() const override { return true; }
   [[nodiscard]] Overlaps detecting_overlaps() const override { return {}; }
@@ -427,7 +433,42 @@ class OneEllipseDetector final : public Detector {
 
  private:
   const Detection& ellipse_;
+  std::optional<double> required_;
 };
+
+// A probability below min-probability: the hypothesis is confirmed over several frames.
+TEST(FollowingTracker, DropsAnUnreportedHypothesisThatNewLimitsExclude) {
+  Detection found = support::detection_at(160.0, 120.0, 40.0);
+  found.probability = 0.7;
+  TrackerSettings settings;
+  settings.limits.min_probability = 0.99;
+  Tracker tracker(settings, std::make_unique<OneEllipseDetector>(found, 0.0));
+  EXPECT_FALSE(tracker.process(Picture(320, 240, 90).view(), 0));
+  ASSERT_EQ(tracker.state(), TrackerState::kConfirming);
+  settings.limits.max_axis_px = 70.0;
+  tracker.configure(settings);
+  EXPECT_EQ(tracker.state(), TrackerState::kSearching);
+}
+
+// The pad, of which less than half is in view, disappears, but the detector still sees it.
+TEST(FollowingTracker, ADetectionHasItsOwnUncertainty) {
+  const Ellipse whole{100.0, 110.0, 40.0, 36.0, 0.0};
+  Detection found{whole, 1.0, 1.0, 6.0, 0.99};
+  Tracker tracker({}, std::make_unique<OneEllipseDetector>(found));
+  std::int64_t frame = 0;
+  for (; found.ellipse.cx > -4.0; ++frame) {
+    found.ellipse.cx = 100.0 - 4.0 * static_cast<double>(frame);
+    const auto target =
+        tracker.process(rendered(plain_ring(), found.ellipse, 320, 240).view(), frame * kFrameNs);
+    ASSERT_TRUE(target) << frame;
+  }
+  ASSERT_EQ(tracker.state(), TrackerState::kFollowing);
+  const auto target = tracker.process(Picture(320, 240, 90).view(), frame * kFrameNs);
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->ellipse, found.ellipse);
+  const RingUncertainty expected = expected_uncertainty(found.ellipse, 320, 240, kPixelError);
+  EXPECT_TRUE(target->uncertainty.information.isApprox(expected.information));
+}
 
 // Whether the tracker reports an ellipse of this probability after it has lost a certain target.
 bool is_found_again(double probability, double shift_px, int lost_frames) {
