@@ -99,10 +99,7 @@ double visible_fraction(const LensView& lens, const Ellipse& ideal, int width, i
     const Vector2d middle = 0.5 * (from + to);
     if (is_shown(middle)) length = (to - from).norm();
     total += length;
-    if (middle.x() >= -0.5 && middle.y() >= -0.5 && middle.x() < width - 0.5 &&
-        middle.y() < height - 0.5) {
-      inside += length;
-    }
+    if (is_in_picture(middle, width, height)) inside += length;
   }
   return total > 0.0 ? inside / total : 0.0;
 }

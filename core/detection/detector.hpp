@@ -32,6 +32,10 @@ struct Overlaps {
   double contour = 0.0;  ///< ContourOverlap, 0 to 1.
   double ellipse = 0.0;  ///< EllipseOverlap, 0 to 1.
 
+  /// Replaces zeros by the detector's own overlaps.
+  [[nodiscard]] Overlaps or_own(const Overlaps& own) const {
+    return {contour > 0.0 ? contour : own.contour, ellipse > 0.0 ? ellipse : own.ellipse};
+  }
   bool operator==(const Overlaps&) const = default;
 };
 
@@ -41,7 +45,8 @@ class Detector {
   virtual ~Detector() = default;
 
   /// @param picture     Any size, also empty. Borrowed for the call only.
-  /// @param thresholds  Must pass Thresholds::validate().
+  /// @param thresholds  In their ranges, as TrackerSettings::validate() checks; lengths may be
+  ///                    smaller by the scale, see Thresholds::at_scale().
   /// @return Every ellipse found, in no particular order. Valid until the next call.
   ///
   /// No content of the picture throws. Deterministic. One object serves one thread at a time.

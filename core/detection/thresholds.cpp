@@ -22,20 +22,6 @@ void check_order(const char* min_field, double min, const char* max_field, doubl
   throw std::invalid_argument(message.str());
 }
 
-void Thresholds::validate() const {
-  check_range("contour_overlap", contour_overlap, kShareRange);
-  check_range("ellipse_overlap", ellipse_overlap, kShareRange);
-  check_range("min_probability", min_probability, kShareRange);
-  check_range("min_axis_px", min_axis_px, kAxisRangePx);
-  check_range("max_axis_px", max_axis_px, kAxisRangePx);
-  check_order("min_axis_px", min_axis_px, "max_axis_px", max_axis_px);
-  check_range("max_axis_ratio", max_axis_ratio, kAxisRatioRange);
-  check_range("min_contour_size", min_contour_size, kContourSizeRangePx);
-  check_range("edge_high", edge_high, kEdgeRange);
-  check_range("edge_low", edge_low, kEdgeRange);
-  if (edge_high > 0.0) check_order("edge_low", edge_low, "edge_high", edge_high);
-}
-
 Verdict Thresholds::judge_axes_of(const Ellipse& e) const {
   const Verdict large = at_most(Reason::kTooLarge, 2.0 * e.semi_major, max_axis_px);
   if (!large.is_accepted()) return large;

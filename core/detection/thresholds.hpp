@@ -39,10 +39,6 @@ struct Thresholds {
   double min_probability = 0.5;  ///< Smallest accepted, if the detector has one; 0 to 1.
   bool wants_all = false;        ///< Report all ellipses, not only those that may be a target.
 
-  /// Throws std::invalid_argument that names the field if a value is NaN, out of its range, or a
-  /// minimum exceeds its maximum.
-  void validate() const;
-
   /// Tests both axes and their ratio against the limits: too large, too small, too flat, in this
   /// order.
   [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;

@@ -36,6 +36,10 @@ enum Code : std::uint8_t {
 };
 }  // namespace maximum
 
+/// The 5 x 5 kernels: along the edge and across it.
+inline constexpr std::array<int, 5> kSmoothing = {1, 4, 6, 4, 1};
+inline constexpr std::array<int, 5> kDifference = {-1, -2, 0, 2, 1};
+
 /// Computes the gradients of a line of pixels as GradientMap does: from (x, y) to the right, or
 /// down. All pixels are at least two pixels from the border.
 template <std::size_t kPixels>
@@ -58,8 +62,8 @@ void gradients_along(
     const int* s = smooth.data() + i;
     const int* t = difference.data() + i;
     const auto in_line = static_cast<std::int16_t>(s[4] - s[0] + 2 * (s[3] - s[1]));
-    const auto athwart = static_cast<std::int16_t>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
-    gradients[i] = is_row ? Gradient{in_line, athwart} : Gradient{athwart, in_line};
+    const auto across_line = static_cast<std::int16_t>(t[0] + t[4] + 4 * (t[1] + t[3]) + 6 * t[2]);
+    gradients[i] = is_row ? Gradient{in_line, across_line} : Gradient{across_line, in_line};
   }
 }
 

@@ -18,7 +18,7 @@
 namespace ellipse {
 namespace {
 
-// Found by experiment, see docs/provenance.md.
+// See docs/provenance.md.
 // Largest distance from an edge at which pixels carry information on its position [px].
 constexpr double kPhotometricBandPx = 3.8;
 constexpr int kLanes = 12;  // pixels across the edge: kPhotometricBandPx at 45 degrees

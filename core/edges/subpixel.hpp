@@ -1,6 +1,8 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cstdlib>
 
 #include "core/edges/gradient_map.hpp"
 
@@ -29,6 +31,12 @@ inline constexpr double kLensVariance = 0.36;
 /// The 5 x 5 kernels have a variance of 1 along the edge.
 inline constexpr auto kMaximumShift = static_cast<float>(0.5 * (1.0 + kLensVariance));
 
+/// Vertex of the parabola through three values at -1, 0 and 1, if it has one.
+template <class Number>
+[[nodiscard]] Number parabola_vertex(Number before, Number middle, Number after) {
+  return Number(0.5) * (before - after) / (before - Number(2) * middle + after);
+}
+
 /// The vertex of the parabola through three pixels along the axis closest to the gradient
 /// [Devernay1995] 2. Projects the neighbours' gradients on the middle one.
 /// @param here  The middle gradient in a map; its neighbours are `step` before and after.
@@ -39,8 +47,16 @@ inline constexpr auto kMaximumShift = static_cast<float>(0.5 * (1.0 + kLensVaria
   const float height = gx * gx + gy * gy;
   const float after = here[step].x * gx + here[step].y * gy;
   const float curvature = before - 2.0F * height + after;
-  const float offset = curvature < 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  const float offset = curvature < 0.0F ? parabola_vertex(before, height, after) : 0.0F;
   return {std::clamp(offset, -0.5F, 0.5F), height > 0.0F ? -curvature / height : 0.0F};
+}
+
+/// The same as an offset from the pixel's centre [px].
+/// @param stride  Of the map.
+[[nodiscard]] inline Eigen::Vector2d subpixel_offset(const Gradient* here, int stride) {
+  const bool is_along_row = std::abs(here->x) > std::abs(here->y);
+  const double offset_px = subpixel_maximum(here, is_along_row ? 1 : stride).offset_px;
+  return is_along_row ? Eigen::Vector2d(offset_px, 0.0) : Eigen::Vector2d(0.0, offset_px);
 }
 
 }  // namespace ellipse

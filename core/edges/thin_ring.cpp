@@ -31,14 +31,12 @@ double bar_at(double distance, double width) {
 
 // Response of GradientMap's 5 x 5 kernels to the bar at pixel (x, 0), against its normal.
 double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
-  constexpr std::array<double, 5> kSmooth = {1, 4, 6, 4, 1};
-  constexpr std::array<double, 5> kDifference = {-1, -2, 0, 2, 1};
   double slope = 0.0;
   for (std::size_t j = 0; j < 5; ++j) {
     for (std::size_t i = 0; i < 5; ++i) {
       const Eigen::Vector2d pixel(x + static_cast<double>(i) - 2.0, static_cast<double>(j) - 2.0);
       const double along =
-          normal.x() * kDifference[i] * kSmooth[j] + normal.y() * kSmooth[i] * kDifference[j];
+          normal.x() * kDifference[i] * kSmoothing[j] + normal.y() * kSmoothing[i] * kDifference[j];
       slope += along * bar_at(normal.dot(pixel), width);
     }
   }
@@ -58,8 +56,7 @@ double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
       x += 1.0;
       slopes = {slopes[1], slopes[2], slope_of_bar(normal, x + 1.0, width)};
     }
-    const double curvature = slopes[0] - 2.0 * slopes[1] + slopes[2];
-    sum += x + 0.5 * (slopes[0] - slopes[2]) / curvature;
+    sum += x + parabola_vertex(slopes[0], slopes[1], slopes[2]);
   }
   return normal.x() * sum / kSteps;
 }

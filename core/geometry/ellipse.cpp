@@ -32,10 +32,10 @@ class Chords {
 
   [[nodiscard]] Interval at(double y) const {
     const double dy = y - center_.y();
-    const double room = 1.0 - dy * dy / half_height_sq_;
-    if (!(room > 0.0)) return {};
+    const double remaining = 1.0 - dy * dy / half_height_sq_;
+    if (!(remaining > 0.0)) return {};
     const double middle = center_.x() + slope_ * dy;
-    const double half = std::sqrt(half_width_sq_ * room);
+    const double half = std::sqrt(half_width_sq_ * remaining);
     return {middle - half, middle + half};
   }
 
@@ -58,10 +58,6 @@ Eigen::Vector2d Ellipse::point_at(double t_rad) const {
 
 Eigen::Vector2d half_extent(const Ellipse& e) {
   return shape_matrix(e).diagonal().cwiseSqrt();
-}
-
-Interval chord(const Ellipse& e, double y) {
-  return Chords(e).at(y);
 }
 
 double perimeter_px(const Ellipse& e) {
@@ -191,11 +187,8 @@ double visible_fraction(const Ellipse& e, int width, int height) {
   double inside = 0.0;
   double total = 0.0;
   walk_perimeter(e, [&](const PerimeterStep& step) {
-    const Eigen::Vector2d& p = step.point;
     total += step.length_px;
-    if (p.x() >= -0.5 && p.y() >= -0.5 && p.x() < width - 0.5 && p.y() < height - 0.5) {
-      inside += step.length_px;
-    }
+    if (is_in_picture(step.point, width, height)) inside += step.length_px;
   });
   return total > 0.0 ? inside / total : 0.0;
 }

@@ -29,11 +29,12 @@ struct Ellipse {
 struct PerimeterStep {
   Eigen::Vector2d point;    ///< [px]
   Eigen::Vector2d tangent;  ///< Unit vector.
-  double length_px = 0.0;   ///< At most 1.
+  double length_px = 0.0;
   [[nodiscard]] Eigen::Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
 };
 
-/// Walks once around the perimeter in steps of at most a pixel. Allocates nothing.
+/// Walks once around the perimeter in steps of at most a pixel; above a semi-major axis of
+/// 10,000 px in 65,536 longer ones. Allocates nothing.
 template <class Use>
 void walk_perimeter(const Ellipse& e, const Use& use) {
   const int steps = static_cast<int>(std::clamp(std::ceil(kTwoPi * e.semi_major), 16.0, 65536.0));
@@ -55,6 +56,11 @@ void walk_perimeter(const Ellipse& e, const Use& use) {
   }
 }
 
+/// Whether a point lies on a pixel of a picture.
+[[nodiscard]] inline bool is_in_picture(const Eigen::Vector2d& p, double width, double height) {
+  return p.x() >= -0.5 && p.y() >= -0.5 && p.x() < width - 0.5 && p.y() < height - 0.5;
+}
+
 /// Half the width and height of the upright box around the ellipse [px].
 [[nodiscard]] Eigen::Vector2d half_extent(const Ellipse& e);
 
@@ -65,9 +71,6 @@ struct Interval {
 
   [[nodiscard]] double length() const { return std::max(0.0, end - begin); }
 };
-
-/// The part of the horizontal line at y inside the ellipse [px].
-[[nodiscard]] Interval chord(const Ellipse& e, double y);
 
 /// Circumference [px], [Ramanujan1914]; relative error below 4e-5 up to an aspect ratio of 5.
 [[nodiscard]] double perimeter_px(const Ellipse& e);

@@ -84,8 +84,8 @@ Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
   });
 }
 
-// A Gauss-Newton step changes no semi-axis by more than this share.
-constexpr double kLongestStep = 0.3;
+// Largest norm of a Gauss-Newton step, in units of the axes.
+constexpr double kMaxStep = 0.3;
 
 bool is_collinear(const Moments& standardized) {
   const double n = standardized.count();
@@ -241,7 +241,7 @@ std::optional<Ellipse> GeometricFit::solve() const {
   if (equations_.samples() < LeastSquares<5>::Vector::SizeAtCompileTime) return std::nullopt;
   const auto solution = equations_.solve();
   if (!solution) return std::nullopt;
-  const LeastSquares<5>::Vector step = std::min(1.0, kLongestStep / solution->norm()) * *solution;
+  const LeastSquares<5>::Vector step = std::min(1.0, kMaxStep / solution->norm()) * *solution;
   Eigen::Matrix2d change;
   change << 1.0 + step(2) + step(3), step(4), step(4), 1.0 + step(2) - step(3);
   const Eigen::Matrix2d axes = rotation_ * axes_.asDiagonal();
@@ -259,9 +259,7 @@ RingUncertainty expected_uncertainty(const Ellipse& e,
   for (int i = 0; i < kSamples; ++i) {
     const double t = step * i;
     const Eigen::Vector2d point = e.point_at(t);
-    const bool is_inside = point.x() >= -0.5 && point.y() >= -0.5 && point.x() < width - 0.5 &&
-                           point.y() < height - 0.5;
-    if (!is_inside) continue;
+    if (!is_in_picture(point, width, height)) continue;
     const double length = step * std::hypot(e.semi_major * std::sin(t), e.semi_minor * std::cos(t));
     fit.add(point, length / (kIndependentPx * sigma_px * sigma_px));
   }

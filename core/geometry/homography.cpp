@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace ellipse {
@@ -133,16 +134,26 @@ Eigen::Matrix<double, 8, 6> change_by_camera(const Matrix3d& image_from_pad,
   return changes;
 }
 
+bool is_in_front(const Matrix3d& h, const Vector3d& projected) {
+  return projected.z() > double{std::numeric_limits<float>::epsilon()} * std::abs(h(2, 2));
+}
+
+std::optional<ProjectedPoint> project_point(const Matrix3d& h, const Vector2d& pad_point) {
+  const Vector3d projected = h * pad_point.homogeneous();
+  if (!is_in_front(h, projected)) return std::nullopt;
+  const Vector2d point = projected.hnormalized();
+  return ProjectedPoint{
+      point, (h.topLeftCorner<2, 2>() - point * h.bottomLeftCorner<1, 2>()) / projected.z()};
+}
+
 std::optional<EdgeView> view_of(const Matrix3d& h,
                                 const Vector2d& pad_point,
                                 const Vector2d& normal) {
-  const Vector3d projected = h * pad_point.homogeneous();
-  if (!(projected.z() > 1e-6 * std::abs(h(2, 2)))) return std::nullopt;
+  const auto projected = project_point(h, pad_point);
+  if (!projected) return std::nullopt;
   EdgeView view;
-  view.point = projected.hnormalized();
-  const Eigen::Matrix2d slope =
-      (h.topLeftCorner<2, 2>() - view.point * h.bottomLeftCorner<1, 2>()) / projected.z();
-  const Vector2d across = slope.inverse().transpose() * normal;
+  view.point = projected->point;
+  const Vector2d across = projected->slope.inverse().transpose() * normal;
   view.px_per_unit = 1.0 / across.norm();
   view.normal = view.px_per_unit * across;
   const double x = pad_point.x();

@@ -76,6 +76,21 @@ struct RingUncertainty {
 [[nodiscard]] Eigen::Matrix<double, 8, 6> change_by_camera(const Eigen::Matrix3d& image_from_pad,
                                                            const Eigen::Matrix3d& camera_matrix);
 
+/// Whether a point of the pad is in front of the camera.
+/// @param projected  image_from_pad times the point.
+[[nodiscard]] bool is_in_front(const Eigen::Matrix3d& image_from_pad,
+                               const Eigen::Vector3d& projected);
+
+/// Image of a point on the pad's plane.
+struct ProjectedPoint {
+  Eigen::Vector2d point;  ///< [px]
+  Eigen::Matrix2d slope;  ///< Jacobian of the point by its pad coordinates.
+};
+
+/// nullopt if the point is behind the camera.
+[[nodiscard]] std::optional<ProjectedPoint> project_point(const Eigen::Matrix3d& image_from_pad,
+                                                          const Eigen::Vector2d& pad_point);
+
 /// Image of a point on an edge of the pad.
 struct EdgeView {
   Eigen::Vector2d point;   ///< [px]

@@ -31,7 +31,6 @@ ELLIPSE_INLINE void average(const std::uint16_t* __restrict sums,
   }
 }
 
-// Scales 2 and 4, the most frequent, are specialized at compile time.
 void halve(const std::uint8_t* __restrict upper,
            const std::uint8_t* __restrict lower,
            int width,
@@ -61,7 +60,7 @@ ImageView Scaler::reduce(const ImageView& luma, int scale) {
       halve(luma.row(2 * y), luma.row(2 * y + 1), width, out);
     } else {
       add_rows(luma, y * scale, scale, sums_.data());
-      if (scale == 4) {
+      if (scale == 4) {  // specialized at compile time, as scale 2
         average(sums_.data(), 4, width, out);
       } else {
         average(sums_.data(), static_cast<unsigned>(scale), width, out);

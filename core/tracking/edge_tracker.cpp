@@ -41,7 +41,7 @@ std::optional<Target> EdgeTracker::track_target(const ScopedFrame& frame, double
 
   is_pad_ = true;
   std::optional<Target> target = follow_edges(frame, elapsed_s);
-  if (needs_detection(target)) target = look(frame, target);
+  if (needs_detection(target)) target = run_detector(frame, target);
   if (judge_.log_odds() < -kCertainLogOdds) pad_tracker_.forget();
 
   if (target || !pad_tracker_.is_locked()) hypothesis_.reset();
@@ -91,8 +91,8 @@ std::optional<Target> EdgeTracker::follow_edges(const ScopedFrame& frame, double
   const std::optional<Target> target = track ? target_of(*track, frame, region) : std::nullopt;
   // At most one of the periodic evaluation and the periodic detection runs per frame; is_better()
   // may add an evaluation.
-  const bool is_put_off = judge_.is_certain() && is_detection_due() && !settings_.wants_candidates;
-  if (target && track->is_visible && !is_put_off) {
+  const bool is_deferred = judge_.is_certain() && is_detection_due() && !settings_.wants_candidates;
+  if (target && track->is_visible && !is_deferred) {
     judge_.judge(search_.detector(), window, *target, settings_.limits);
   }
   return target;
@@ -117,8 +117,8 @@ std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
 
 // Runs the detector. Cheaper searches come first, which limits the frame time: near a lost pad, or
 // in a reduced frame. The full resolution follows if the reduced frame shows a better target.
-std::optional<Target> EdgeTracker::look(const ScopedFrame& frame,
-                                        const std::optional<Target>& followed) {
+std::optional<Target> EdgeTracker::run_detector(const ScopedFrame& frame,
+                                                const std::optional<Target>& followed) {
   const bool is_visible = followed && followed->state == TargetState::kTracked;
   const auto is_rival = [&](const std::optional<Target>& candidate) {
     if (!candidate) return false;

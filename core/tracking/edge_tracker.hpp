@@ -51,8 +51,8 @@ class EdgeTracker {
   [[nodiscard]] std::optional<Target> target_of(const PadTrack& track,
                                                 const ScopedFrame& frame,
                                                 const Rect& region) const;
-  [[nodiscard]] std::optional<Target> look(const ScopedFrame& frame,
-                                           const std::optional<Target>& followed);
+  [[nodiscard]] std::optional<Target> run_detector(const ScopedFrame& frame,
+                                                   const std::optional<Target>& followed);
   [[nodiscard]] bool is_better(const Target& candidate,
                                const Target& followed,
                                const ScopedFrame& frame);

@@ -5,14 +5,6 @@
 #include "core/detection/target_selection.hpp"
 
 namespace ellipse {
-namespace {
-
-double or_own(double setting, double own) {
-  return setting > 0.0 ? setting : own;
-}
-
-}  // namespace
-
 void FrameSearch::configure(const TrackerSettings& settings) {
   settings_ = settings;
   detector_->set_evidence(settings.evidence);
@@ -30,20 +22,18 @@ void FrameSearch::set_trace(DetectionTrace* trace) {
 }
 
 Thresholds FrameSearch::detecting_thresholds(int scale) const {
-  return thresholds_at(scale, settings_.detect_overlaps, detector_->detecting_overlaps());
+  return thresholds_at(scale, settings_.detect_overlaps.or_own(detector_->detecting_overlaps()));
 }
 
 Thresholds FrameSearch::tracking_thresholds(int scale) const {
-  return thresholds_at(scale, settings_.track_overlaps, detector_->tracking_overlaps());
+  return thresholds_at(scale, settings_.track_overlaps.or_own(detector_->tracking_overlaps()));
 }
 
-Thresholds FrameSearch::thresholds_at(int scale,
-                                      const Overlaps& requested,
-                                      const Overlaps& own) const {
+Thresholds FrameSearch::thresholds_at(int scale, const Overlaps& overlaps) const {
   Thresholds thresholds = settings_.limits.at_scale(scale);
   thresholds.wants_all = settings_.wants_candidates;
-  thresholds.contour_overlap = or_own(requested.contour, own.contour);
-  thresholds.ellipse_overlap = or_own(requested.ellipse, own.ellipse);
+  thresholds.contour_overlap = overlaps.contour;
+  thresholds.ellipse_overlap = overlaps.ellipse;
   return thresholds;
 }
 

@@ -74,9 +74,7 @@ class FrameSearch {
   [[nodiscard]] Detector& detector() { return *detector_; }
 
  private:
-  [[nodiscard]] Thresholds thresholds_at(int scale,
-                                         const Overlaps& requested,
-                                         const Overlaps& own) const;
+  [[nodiscard]] Thresholds thresholds_at(int scale, const Overlaps& overlaps) const;
 
   TrackerSettings settings_;
   std::unique_ptr<Detector> detector_;

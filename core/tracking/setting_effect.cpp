@@ -39,12 +39,8 @@ std::string blurb_of(const std::string& description, const SettingEffect& effect
 TrackerSettings in_force(const TrackerSettings& settings) {
   TrackerSettings result = settings;
   const auto detector = make_detector(settings.detector);
-  const auto fill = [](Overlaps& overlaps, const Overlaps& own) {
-    if (overlaps.contour == 0.0) overlaps.contour = own.contour;
-    if (overlaps.ellipse == 0.0) overlaps.ellipse = own.ellipse;
-  };
-  fill(result.detect_overlaps, detector->detecting_overlaps());
-  fill(result.track_overlaps, detector->tracking_overlaps());
+  result.detect_overlaps = settings.detect_overlaps.or_own(detector->detecting_overlaps());
+  result.track_overlaps = settings.track_overlaps.or_own(detector->tracking_overlaps());
   if (result.fy_px == 0.0) result.fy_px = settings.fx_px;
   return result;
 }

@@ -203,7 +203,6 @@ void TrackerSettings::validate() const {
     check_order("edge-low", limits.edge_low, "edge-high", limits.edge_high);
   }
   check_order("min-target-size", min_target_size_px, "max-target-size", max_target_size_px);
-  limits.validate();
   if (camera) camera->validate();
   for (const double g : gravity) {
     if (!std::isfinite(g)) throw std::invalid_argument("gravity is not finite");

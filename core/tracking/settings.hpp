@@ -74,7 +74,7 @@ struct SettingInfo {
   void (*set)(TrackerSettings&, double);
 };
 
-/// All numeric settings, in the order of [Keipour2021].
+/// All numeric settings.
 [[nodiscard]] std::span<const SettingInfo> setting_infos();
 
 /// The effect of a setting: a numeric one, "detector", "tracking", "refine" or "candidates".

@@ -26,8 +26,8 @@ void TargetOdds::raise(double log_odds, double prior) {
 void TargetOdds::add(double log_odds, double elapsed_s) {
   const double correlation = std::exp(-elapsed_s / kCorrelation_s);
   const double now = bounded(log_odds);
-  const double news = (now - correlation * last_) / (1.0 + correlation);
-  sum_ = bounded(sum_ + news);
+  const double innovation = (now - correlation * last_) / (1.0 + correlation);
+  sum_ = bounded(sum_ + innovation);
   last_ = now;
 }
 

@@ -44,9 +44,8 @@ double visible_part(const Truth& truth, const FrameSize& frame) {
 bool is_in_view(const TrueEllipse& truth, const FrameSize& frame) {
   if (visible_part(truth, frame) > 0.0) return true;
   // Without perimeter inside, the frame is entirely inside or entirely outside the ellipse.
-  const ellipse::Interval inside = chord(truth.ellipse, 0.5 * (frame.height - 1));
-  const double middle = 0.5 * (frame.width - 1);
-  return inside.begin < middle && middle < inside.end;
+  const Eigen::Vector2d middle(0.5 * (frame.width - 1), 0.5 * (frame.height - 1));
+  return sampson_distance(truth.ellipse, middle) < 0.0;
 }
 
 bool is_in_view(const Truth& truth, const FrameSize& frame) {

@@ -16,6 +16,7 @@
 #include "core/image/roi.hpp"
 #include "core/image/scale.hpp"
 #include "core/tracking/settings.hpp"
+#include "core/tracking/settings.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -71,20 +72,19 @@ TEST(Thresholds, DefaultsAreThoseOfThePaper) {
   EXPECT_EQ(t.max_axis_px, kAxisRangePx.max);  // the paper: 700
   EXPECT_EQ(t.max_axis_ratio, 5);
   EXPECT_EQ(t.min_contour_size, 50);
-  EXPECT_NO_THROW(t.validate());
 }
 
-TEST(Thresholds, ErrorNamesTheInvalidField) {
-  Thresholds t;
-  t.max_axis_px = 3.0;
-  EXPECT_NE(message_of([&] { t.validate(); }).find("max_axis_px"), std::string::npos);
+TEST(Settings, ErrorNamesTheInvalidThreshold) {
+  TrackerSettings t;
+  t.limits.max_axis_px = 3.0;
+  EXPECT_NE(message_of([&] { t.validate(); }).find("max-axis"), std::string::npos);
   t = {};
-  t.contour_overlap = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message_of([&] { t.validate(); }).find("contour_overlap"), std::string::npos);
+  t.detect_overlaps.contour = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message_of([&] { t.validate(); }).find("detect-contour-overlap"), std::string::npos);
   t = {};
-  t.edge_low = 9.0;
-  t.edge_high = 5.0;
-  EXPECT_NE(message_of([&] { t.validate(); }).find("edge_low"), std::string::npos);
+  t.limits.edge_low = 9.0;
+  t.limits.edge_high = 5.0;
+  EXPECT_NE(message_of([&] { t.validate(); }).find("edge-low"), std::string::npos);
 }
 
 TEST(Thresholds, ScaleWithThePicture) {

@@ -43,11 +43,8 @@ Eigen::Vector2d position_of(std::int32_t pixel, int stride) {
 
 // The sub-pixel position of a gradient maximum, in the ideal plane.
 Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
-  const Gradient* here = map.gradients() + pixel;
-  const bool is_flat = std::abs(here->x) > std::abs(here->y);
-  Eigen::Vector2d point = position_of(pixel, map.stride());
-  point[is_flat ? 0 : 1] += subpixel_maximum(here, is_flat ? 1 : map.stride()).offset_px;
-  return map.lens().approximate_ideal(point);
+  const Eigen::Vector2d offset = subpixel_offset(map.gradients() + pixel, map.stride());
+  return map.lens().approximate_ideal(position_of(pixel, map.stride()) + offset);
 }
 
 // Transforms a normal from the picture to the ideal plane, at the point `ideal_px`.
@@ -224,7 +221,6 @@ Arc ArcSplitter::make_arc(const GradientMap& map, const Piece& piece) const {
   Arc arc;
   arc.begin = piece.begin;
   arc.end = piece.end;
-  arc.turn_rad = std::abs(piece.turn_rad);
   // The chain runs with the bright side on its left, so that a right turn encloses the dark side.
   arc.polarity = piece.turn_rad > 0.0 ? Polarity::kDarkInside : Polarity::kBrightInside;
   const std::array<std::size_t, 3> at = {arc.begin + 2, (arc.begin + arc.end) / 2, arc.end - 3};

@@ -18,7 +18,6 @@ namespace ellipse {
 struct Arc {
   std::size_t begin = 0;  ///< Index into ChainTracer::pixels().
   std::size_t end = 0;
-  double turn_rad = 0.0;  ///< Magnitude of its turn.
   Polarity polarity = Polarity::kDarkInside;
   // In the ideal plane:
   std::array<Eigen::Vector2d, 3> points;   ///< Near its begin, middle and end [px].

@@ -208,11 +208,11 @@ std::size_t EllipseVerifier::measure(const GradientMap& map,
   return samples;
 }
 
-// Of the measured edges.
+// Computes the features from the measured edges.
 void EllipseVerifier::set_features(const OutlineSupport& found,
                                    std::size_t samples,
                                    double reach_px,
-                                   double noise,
+                                   double texture,
                                    MeasuredEllipse& measured) {
   const std::span<const EdgeMeasurement> edges = measurer_.edges();
   Sums sums;
@@ -230,7 +230,7 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   const double coverage = turn_support * (1.0 - longest_gap(edges, samples));
   const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
   const double signal_to_noise =
-      std::clamp(measured.gradient / noise, kSignalToNoise.min, kSignalToNoise.max);
+      std::clamp(measured.gradient / texture, kSignalToNoise.min, kSignalToNoise.max);
   const auto set = [&](Feature feature, double value) {
     measured.features[static_cast<std::size_t>(feature)] = value;
   };

@@ -69,7 +69,7 @@ class EllipseVerifier {
   void set_features(const OutlineSupport& found,
                     std::size_t samples,
                     double reach_px,
-                    double noise,
+                    double texture,
                     MeasuredEllipse& measured);
 
   EdgeMeasurer measurer_;

@@ -39,8 +39,8 @@ class FoundEllipses {
   /// certain; uncertain ones remain for merge_duplicates().
   void add(const FoundEllipse& found);
 
-  /// Whether a certain ellipse was found here at this scale. Only such a one excludes a guess: an
-  /// uncertain one may be a wrong fit.
+  /// Whether a certain ellipse was found here at this scale. Only a certain ellipse excludes a
+  /// guess: an uncertain one may be a wrong fit.
   [[nodiscard]] bool has_certain(const Ellipse& guess, Polarity polarity, int scale) const;
 
   /// Merges duplicates of all sizes. Call it after the finer sizes confirmed the ellipses.

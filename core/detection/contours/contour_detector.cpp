@@ -12,6 +12,7 @@
 #include "core/edges/chains.hpp"
 #include "core/edges/edge_measurement.hpp"
 #include "core/edges/noise.hpp"
+#include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
@@ -95,7 +96,7 @@ Eigen::Vector2d maximum(const EdgeField& field,
   const double after = field.gradient(p + across).norm();
   const double curvature = before - 2.0 * here + after;
   const double offset =
-      curvature < 0.0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0.0;
+      curvature < 0.0 ? std::clamp(parabola_vertex(before, here, after), -0.5, 0.5) : 0.0;
   return {p.x + across.x * offset, p.y + across.y * offset};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/edges/noise.hpp"
+#include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/tracking/pad/visible_part.hpp"
 
@@ -50,8 +51,7 @@ void keep_edges(const Profile& profile, float min_contrast, double reach_px, Edg
   for (std::size_t i = half + 1; i + half < profile.count; ++i) {
     const float here = rises[i];
     if (here < min_contrast || rises[i - 1] > here || rises[i + 1] >= here) continue;
-    const float curvature = rises[i - 1] - 2.0F * here + rises[i + 1];
-    const float vertex = 0.5F * (rises[i - 1] - rises[i + 1]) / curvature;
+    const float vertex = parabola_vertex(rises[i - 1], here, rises[i + 1]);
     const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
     EdgeCandidate candidate{at * profile.step_px + profile.middle_px, here};
     if (std::abs(candidate.distance_px) > reach_px) continue;
@@ -245,15 +245,15 @@ std::optional<Profile> profile_at(const Crossing& crossing,
   const int steps = static_cast<int>(std::ceil(reach / step));
   const double step_px = step * std::abs(slope);
   const int box = static_cast<int>(std::clamp(0.5 * gap_px / step_px, 1.0, double(kMaxBox)));
-  const bool is_forth = slope > 0.0;
-  const int before = (is_forth ? middle : end - 1 - middle) / step;
-  const int behind = (is_forth ? end - 1 - middle : middle) / step;
+  const bool is_forward = slope > 0.0;
+  const int before = (is_forward ? middle : end - 1 - middle) / step;
+  const int behind = (is_forward ? end - 1 - middle : middle) / step;
   const int first = -std::min(steps + box, before);
   const int last = std::min(steps + box, behind);
   if (first > -box || last < box) return std::nullopt;
 
   const std::ptrdiff_t along = axis == 0 ? 1 : luma.stride;
-  const std::ptrdiff_t stride = (is_forth ? step : -step) * along;
+  const std::ptrdiff_t stride = (is_forward ? step : -step) * along;
   const std::uint8_t* pixel =
       luma.data + middle * along + line * (axis == 0 ? luma.stride : 1) + first * stride;
   std::optional<Profile> profile(std::in_place);
@@ -279,7 +279,7 @@ void EdgeSearch::search_along(const ImageView& luma,
   sample.count = 0;
   sample.is_visible = profile.has_value();
   if (!profile) return;
-  // Of a difference of boxes.
+  // Of the difference between the means of two boxes.
   const double noise = levels.noise * std::sqrt(2.0 / static_cast<double>(profile->box));
   const double min_contrast =
       std::max(kUnlikelySigmas * noise, kMajority * levels.gain * sample.contrast);

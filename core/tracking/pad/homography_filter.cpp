@@ -58,30 +58,30 @@ HomographyFilter HomographyFilter::after(double elapsed_s,
   const HomographyCovariance added = elapsed_s * noise;
   HomographyFilter next;
   next.velocity = velocity;
-  next.pose = pose + elapsed_s * (homography_velocity + homography_velocity.transpose()) +
-              elapsed_s * elapsed_s * (velocity_variance + 0.5 * added);
-  next.homography_velocity = homography_velocity + elapsed_s * (velocity_variance + 0.5 * added);
-  next.velocity_variance = velocity_variance + added;
+  next.covariance = covariance + elapsed_s * (cross_covariance + cross_covariance.transpose()) +
+                    elapsed_s * elapsed_s * (velocity_covariance + 0.5 * added);
+  next.cross_covariance = cross_covariance + elapsed_s * (velocity_covariance + 0.5 * added);
+  next.velocity_covariance = velocity_covariance + added;
   // Changes that no motion of the camera explains.
-  next.pose.diagonal().array() += std::pow(elapsed_s, 3) * kShiftNoise * kShiftNoise;
+  next.covariance.diagonal().array() += std::pow(elapsed_s, 3) * kShiftNoise * kShiftNoise;
   return next;
 }
 
 HomographyFilter HomographyFilter::corrected(const HomographyEstimate& measured) const {
-  const HomographyCovariance gain = homography_velocity.transpose() * inverse_of(pose);
+  const HomographyCovariance gain = cross_covariance.transpose() * inverse_of(covariance);
   HomographyFilter result;
-  result.pose = inverse_of(measured.information);
+  result.covariance = inverse_of(measured.information);
   result.velocity = velocity + gain * measured.change;
-  result.homography_velocity = result.pose * gain.transpose();
+  result.cross_covariance = result.covariance * gain.transpose();
   const HomographyCovariance reduced =
-      velocity_variance - gain * (pose - result.pose) * gain.transpose();
-  result.velocity_variance = 0.5 * (reduced + reduced.transpose());
+      velocity_covariance - gain * (covariance - result.covariance) * gain.transpose();
+  result.velocity_covariance = 0.5 * (reduced + reduced.transpose());
   return result;
 }
 
 void HomographyFilter::fix_rotation() {
   velocity(5) = 0.0;
-  for (HomographyCovariance* part : {&pose, &homography_velocity, &velocity_variance}) {
+  for (HomographyCovariance* part : {&covariance, &cross_covariance, &velocity_covariance}) {
     part->row(5).setZero();
     part->col(5).setZero();
   }

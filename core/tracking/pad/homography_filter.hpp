@@ -20,17 +20,17 @@ namespace ellipse {
 /// Kalman filter [Kalman1960] of a moving view. The state is the view's change and its velocity,
 /// the change per second. A value.
 struct HomographyFilter {
-  HomographyChange velocity = HomographyChange::Zero();  ///< Per second.
-  HomographyCovariance pose = HomographyCovariance::Zero();
-  HomographyCovariance homography_velocity =
-      HomographyCovariance::Zero();  ///< Cross-covariance of change and velocity.
-  HomographyCovariance velocity_variance = HomographyCovariance::Zero();
+  HomographyChange velocity = HomographyChange::Zero();            ///< Per second.
+  HomographyCovariance covariance = HomographyCovariance::Zero();  ///< Of the change.
+  HomographyCovariance cross_covariance =
+      HomographyCovariance::Zero();  ///< Of the change and the velocity.
+  HomographyCovariance velocity_covariance = HomographyCovariance::Zero();
 
   /// Predicts at constant velocity plus noise.
   /// @param noise  Growth of the velocity's covariance per second.
   [[nodiscard]] HomographyFilter after(double elapsed_s, const HomographyCovariance& noise) const;
 
-  /// Updates with a measurement of the pose; the cross-covariance corrects the velocity.
+  /// Updates with a measurement of the view; the cross-covariance corrects the velocity.
   /// @param measured  Posterior change from the prediction: the prior is already included.
   [[nodiscard]] HomographyFilter corrected(const HomographyEstimate& measured) const;
 

@@ -144,10 +144,8 @@ PadLine LineLearner::line_through(std::span<const std::int32_t> pixels,
   Eigen::Vector2d gradient(0.0, 0.0);
   for (const std::int32_t pixel : pixels) {
     const Gradient* here = map_.gradients() + pixel;
-    const bool is_flat = std::abs(here->x) > std::abs(here->y);
-    const SubpixelMaximum vertex = subpixel_maximum(here, is_flat ? 1 : map_.stride());
-    Eigen::Vector2d from_middle = pad_point_of(pixel) - middle;
-    from_middle[is_flat ? 0 : 1] += kPixel * vertex.offset_px;
+    const Eigen::Vector2d from_middle =
+        pad_point_of(pixel) + kPixel * subpixel_offset(here, map_.stride()) - middle;
     sum += from_middle;
     squares += from_middle * from_middle.transpose();
     gradient += Eigen::Vector2d(here->x, here->y);

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/detection/arcs/arcs.hpp"
 #include "core/edges/chains.hpp"
 #include "core/edges/gradient_map.hpp"
+#include "core/edges/subpixel.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_model.hpp"
 #include "core/tracking/pad/pad_view.hpp"

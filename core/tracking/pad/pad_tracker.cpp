@@ -159,8 +159,8 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   innovation_ratio_ = 1.0;
   motion_ = {};
   motion_.velocity = velocity;
-  motion_.pose = inverse_of(attempt.estimate.information);
-  motion_.velocity_variance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
+  motion_.covariance = inverse_of(attempt.estimate.information);
+  motion_.velocity_covariance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
   propagate_errors(attempt.last, HomographyCovariance::Zero());
 }
 
@@ -221,12 +221,12 @@ std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elaps
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
   double looseness = innovation_ratio_;
   HomographyFilter before = predicted(elapsed_s, looseness);
-  auto attempt = search_from(window, prediction, before.pose);
+  auto attempt = search_from(window, prediction, before.covariance);
   last_coverage_ = attempt ? attempt->support.coverage : 0.0;
   if (!is_good(attempt)) {
     looseness = kUnknownMotion;
     before = predicted(elapsed_s, looseness);
-    attempt = search_from(window, prediction, before.pose);
+    attempt = search_from(window, prediction, before.covariance);
   }
   if (!is_good(attempt)) {
     coast(prediction, before, elapsed_s);
@@ -274,7 +274,7 @@ void PadTracker::accept(const Attempt& attempt,
   double expected_px = 0.0;
   for (const EdgeSample& sample : search_.samples()) {
     moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
-    expected_px += variance_along(sample.view.row, before.pose);
+    expected_px += variance_along(sample.view.row, before.covariance);
   }
   const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   const double needed = looseness * moved_px / expected_px;
@@ -282,7 +282,7 @@ void PadTracker::accept(const Attempt& attempt,
       innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
-  propagate_errors(attempt.last, inverse_of(before.pose));
+  propagate_errors(attempt.last, inverse_of(before.covariance));
   judge_lines(attempt.last);
   if (attempt.visible >= kMajority) learn_radii(attempt.last, adaptation);
   view_ = attempt.view;
@@ -291,13 +291,14 @@ void PadTracker::accept(const Attempt& attempt,
 
 void PadTracker::propagate_errors(const HomographyChange& change,
                                   const HomographyCovariance& prior_information) {
-  propagate_model_errors(
-      model_, search_.samples(), {change, motion_.pose, prior_information, kReachPx, kEdgeSigmaPx});
+  propagate_model_errors(model_,
+                         search_.samples(),
+                         {change, motion_.covariance, prior_information, kReachPx, kEdgeSigmaPx});
 }
 
 // Of the filter's view, and of the model's errors.
 HomographyCovariance PadTracker::covariance() const {
-  return motion_.pose + model_error_covariance(model_);
+  return motion_.covariance + model_error_covariance(model_);
 }
 
 void PadTracker::measure_edges(const LumaWindow& window, double visible) {

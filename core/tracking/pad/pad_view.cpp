@@ -11,17 +11,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 std::optional<ProjectedPoint> PadView::at(const Vector2d& pad_point) const {
-  const Eigen::Matrix3d& h = ideal_from_pad;
-  const Vector3d projected = h * pad_point.homogeneous();
-  if (!is_in_front(projected)) return std::nullopt;
-  ProjectedPoint result;
-  result.point = projected.hnormalized();
-  result.slope =
-      (h.topLeftCorner<2, 2>() - result.point * h.bottomLeftCorner<1, 2>()) / projected.z();
-  if (!lens.is_distorted()) return result;
-  const auto shown = lens.picture_from_ideal(result.point);
+  const auto ideal = project_point(ideal_from_pad, pad_point);
+  if (!ideal || !lens.is_distorted()) return ideal;
+  const auto shown = lens.picture_from_ideal(ideal->point);
   if (!shown) return std::nullopt;
-  return ProjectedPoint{shown->picture_px, shown->slope * result.slope};
+  return ProjectedPoint{shown->picture_px, shown->slope * ideal->slope};
 }
 
 double PadView::radius_px() const {

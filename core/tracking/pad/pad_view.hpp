@@ -6,15 +6,10 @@
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
+#include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
 
 namespace ellipse {
-
-/// Image of a point on the pad's plane.
-struct ProjectedPoint {
-  Eigen::Vector2d point;  ///< [px]
-  Eigen::Matrix2d slope;  ///< Jacobian of the point by its pad coordinates.
-};
 
 /// Projection of a pad into an image: a homography into the ideal plane, then the lens distortion.
 /// A homography alone means no distortion. Borrows the lens.
@@ -33,7 +28,7 @@ struct PadView {
   ///                   needs one addition per point.
   [[nodiscard]] float level_at(const ImageView& luma, const Eigen::Vector3d& projected) const {
     const float outside = std::numeric_limits<float>::quiet_NaN();
-    if (!is_in_front(projected)) return outside;
+    if (!is_in_front(ideal_from_pad, projected)) return outside;
     Eigen::Vector2d point = projected.head<2>() / projected.z();
     if (lens.is_distorted()) {
       const auto shown = lens.picture_from_ideal(point);
@@ -49,11 +44,6 @@ struct PadView {
 
   /// Approximate radius of the pad in the image [px].
   [[nodiscard]] double radius_px() const;
-
- private:
-  [[nodiscard]] bool is_in_front(const Eigen::Vector3d& projected) const {
-    return projected.z() > 1e-6 * std::abs(ideal_from_pad(2, 2));
-  }
 };
 
 }  // namespace ellipse

@@ -236,8 +236,10 @@ TEST(ArcSplitter, CutsAtCorners) {
   }
   const Traced traced(picture);
   EXPECT_FALSE(traced.arcs.empty());  // the closed chain as a whole, and straight lines
-  for (const Arc& arc : traced.arcs)
-    EXPECT_TRUE(std::abs(arc.turn_rad) < 0.5 || arc.turn_rad > 5.0);
+  for (const Arc& arc : traced.arcs) {
+    const bool is_whole = arc.end - arc.begin > 150;
+    EXPECT_TRUE(is_whole || arc.inwards.front().dot(arc.inwards.back()) > std::cos(0.5));
+  }
 }
 
 TEST(ArcSplitter, CutsWhereTheCurvatureChangesItsSign) {
