@@ -20,23 +20,25 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
                                      const Points& ideal) {
   GeometricFit fit(e);
   std::array<PerimeterOffset, OutlineSamples::kMaxSamples> offsets;
-  std::array<double, OutlineSamples::kMaxSamples> distances;
+  std::array<WeightedDistance, OutlineSamples::kMaxSamples> distances;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     offsets[i] = fit.offset_of(ideal[i]);
     offsets[i].distance_px *= edges[i].px_per_ideal;
     offsets[i].px_per_unit *= edges[i].px_per_ideal;
-    distances[i] = offsets[i].distance_px;
+    const double precision = edges[i].length_px * std::pow(kVertexError / edges[i].sigma_px, 2);
+    distances[i] = {offsets[i].distance_px, precision};
   }
-  const double scatter_px = robust_sigma(std::span(distances).first(edges.size()));
+  std::array<WeightedDistance, OutlineSamples::kMaxSamples> sorted = distances;
+  const double scatter_px = robust_sigma(std::span(sorted).first(edges.size()));
   const double reach_px = std::max(double{kPixelError}, kAllSigmas * scatter_px);
   ResidualSums residuals;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const double distance_px = offsets[i].distance_px;
-    const double precision = edges[i].length_px * std::pow(kVertexError / edges[i].sigma_px, 2);
+    const auto& [distance_px, precision] = distances[i];
     const double weight = precision * tukey_weight(distance_px, reach_px);
     if (weight > 0.0) fit.add(offsets[i], weight);
     residuals.add(edges[i].sample, distance_px, reach_px, precision);
   }
+  if (residuals.samples() < kMinEdgesOfEllipse) return std::nullopt;
   const auto better = fit.solve();
   if (!better) return std::nullopt;
   const double factor = residuals.information_factor(RingMatrix::RowsAtCompileTime, kVertexError);

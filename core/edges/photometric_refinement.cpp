@@ -348,8 +348,8 @@ std::optional<Edge> edge_of(std::span<const Sector> sectors,
 
 // Outlines that are not exactly elliptical scatter more than pixel noise explains.
 double scatter_of(std::span<const Edge> edges) {
-  std::array<double, kMaxSectors> distances;
-  for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = edges[i].offset_px;
+  std::array<WeightedDistance, kMaxSectors> distances;
+  for (std::size_t i = 0; i < edges.size(); ++i) distances[i] = {edges[i].offset_px, 1.0};
   return robust_sigma(std::span(distances).first(edges.size()));
 }
 

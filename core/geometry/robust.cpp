@@ -8,9 +8,21 @@ constexpr double kSigmaOfMedian = 1.4826;  // over the median of absolute normal
 
 }  // namespace
 
-double robust_sigma(std::span<double> distances) {
-  for (double& distance : distances) distance = std::abs(distance);
-  return kSigmaOfMedian * median(distances);
+double robust_sigma(std::span<WeightedDistance> distances) {
+  double weights = 0.0;
+  for (WeightedDistance& one : distances) {
+    one.distance = std::abs(one.distance);
+    weights += one.weight;
+  }
+  std::sort(
+      distances.begin(), distances.end(), [](const WeightedDistance& a, const WeightedDistance& b) {
+        return a.distance < b.distance;
+      });
+  std::size_t i = 0;
+  for (double below = distances[0].weight; below <= 0.5 * weights && i + 1 < distances.size();) {
+    below += distances[++i].weight;
+  }
+  return kSigmaOfMedian * distances[i].distance;
 }
 
 // The influence of a sample is its weight x distance.
@@ -37,9 +49,8 @@ void ResidualSums::add(int sample, double distance, double reach, double precisi
   last_sample_ = sample;
 }
 
-// Samples of unequal precision count as fewer equal ones [Kish1965].
 double ResidualSums::samples() const {
-  return precisions_ * precisions_ / squared_precisions_;
+  return precisions_ > 0.0 ? precisions_ * precisions_ / squared_precisions_ : 0.0;
 }
 
 // The variance of a mean of correlated samples is (1 + rho) / (1 - rho) times that of independent

@@ -22,9 +22,15 @@ template <typename Value>
   return *middle;
 }
 
-/// Standard deviation of normal errors from the median of their absolute values. Reorders the
-/// distances, at least one, which need not be absolute. O(n).
-[[nodiscard]] double robust_sigma(std::span<double> distances);
+/// A distance from a model, and its weight.
+struct WeightedDistance {
+  double distance = 0.0;
+  double weight = 1.0;
+};
+
+/// Standard deviation of normal errors, from the weighted median of their absolute values. Reorders
+/// the distances, at least one. O(n log n).
+[[nodiscard]] double robust_sigma(std::span<WeightedDistance> distances);
 
 /// Covariance of a least-squares fit with Tukey's biweight, from its residuals: these need not be
 /// normal, and those of neighbours may be correlated, since an edge is not exactly elliptical or
@@ -36,6 +42,10 @@ class ResidualSums {
   /// @param precision  Weight of the sample without Tukey's; the unit does not matter.
   void add(int sample, double distance, double reach, double precision);
 
+  /// Number of samples within the reach; those of unequal precision count as fewer equal ones
+  /// [Kish1965]. 0 if there are none.
+  [[nodiscard]] double samples() const;
+
   /// Factor from the fit's information, in which each sample has the weight precision x
   /// tukey_weight(), to that with these residuals: [Huber1981], 7.6, for the robust weights, and
   /// [Bartlett1946] for the correlation.
@@ -44,7 +54,6 @@ class ResidualSums {
   [[nodiscard]] double information_factor(int parameters, double min_sigma) const;
 
  private:
-  [[nodiscard]] double samples() const;
   // Number of samples per independent one.
   [[nodiscard]] double samples_per_independent(int parameters) const;
   // Factor of the variance for few samples.

@@ -39,8 +39,24 @@ struct Profile {
   }
 };
 
+// Minimum contrast of an edge: less in shadow, where contrast falls with the light.
+struct MinContrast {
+  float noise = 0.0F;     // standard deviation
+  float by_gain = 0.0F;   // of the image
+  float by_light = 1.0F;  // share of the local bright level; 1 = never less
+
+  [[nodiscard]] bool accepts(float contrast, float bright_level) const {
+    const bool is_in_shadow =
+        contrast > by_light * bright_level && contrast >= float{kAllSigmas} * noise;
+    return contrast >= by_gain || is_in_shadow;
+  }
+};
+
 // Keeps the strongest local maxima of the difference between the boxes after and before a position.
-void keep_edges(const Profile& profile, float min_contrast, double reach_px, EdgeSample& sample) {
+void keep_edges(const Profile& profile,
+                const MinContrast& min,
+                double reach_px,
+                EdgeSample& sample) {
   const auto& sums = profile.sums;
   const std::size_t half = profile.box;
   const float scale = 1.0F / static_cast<float>(half);
@@ -48,9 +64,11 @@ void keep_edges(const Profile& profile, float min_contrast, double reach_px, Edg
   for (std::size_t i = half; i + half <= profile.count; ++i) {
     rises[i] = (sums[i + half] - 2.0F * sums[i] + sums[i - half]) * scale;
   }
+  const float min_rise = float{kUnlikelySigmas} * min.noise;
   for (std::size_t i = half + 1; i + half < profile.count; ++i) {
     const float here = rises[i];
-    if (here < min_contrast || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    if (here < min_rise || rises[i - 1] > here || rises[i + 1] >= here) continue;
+    if (!min.accepts(here, (sums[i + half] - sums[i]) * scale)) continue;
     const float vertex = parabola_vertex(rises[i - 1], here, rises[i + 1]);
     const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
     EdgeCandidate candidate{at * profile.step_px + profile.middle_px, here};
@@ -281,9 +299,12 @@ void EdgeSearch::search_along(const ImageView& luma,
   if (!profile) return;
   // Of the difference between the means of two boxes.
   const double noise = levels.noise * std::sqrt(2.0 / static_cast<double>(profile->box));
-  const double min_contrast =
-      std::max(kUnlikelySigmas * noise, kMajority * levels.gain * sample.contrast);
-  keep_edges(*profile, static_cast<float>(min_contrast), reach_px, sample);
+  const double contrast = kMajority * sample.contrast;
+  const double by_light = levels.bright_level > 0.0 ? contrast / levels.bright_level : 1.0;
+  const MinContrast min{static_cast<float>(noise),
+                        static_cast<float>(levels.gain * contrast),
+                        static_cast<float>(by_light)};
+  keep_edges(*profile, min, reach_px, sample);
 }
 
 }  // namespace ellipse

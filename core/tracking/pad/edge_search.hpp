@@ -34,10 +34,11 @@ struct EdgeSample {
   }
 };
 
-/// Contrast gain and pixel noise of an image.
+/// Light and pixel noise of an image.
 struct ImageLevels {
-  double gain = 1.0;   ///< Ratio of image contrast to model contrast.
-  double noise = 0.0;  ///< Standard deviation of a pixel [grey levels], see pixel_noise().
+  double gain = 1.0;          ///< Ratio of image contrast to model contrast.
+  double noise = 0.0;         ///< Standard deviation of a pixel [grey levels], see pixel_noise().
+  double bright_level = 0.0;  ///< As PadModel::bright_level; 0 = unknown.
 };
 
 /// Searches an image for the edges of a pad along their normals.

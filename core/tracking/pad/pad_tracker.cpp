@@ -187,7 +187,9 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
   const double max_reach_px = kReachPx + kMaxReach * radius_px();
-  const ImageLevels levels{gain_, pixel_noise(window.luma)};
+  // A single edge in shadow cannot be told from an edge of the shadow's object.
+  const double bright_level = has_inner_edges() ? model_.bright_level : 0.0;
+  const ImageLevels levels{gain_, pixel_noise(window.luma), bright_level};
   std::optional<Attempt> attempt;
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {

@@ -30,11 +30,16 @@ TEST(Median, IsTheUpperOneInTheMiddle) {
 TEST(RobustSigma, OfNormalErrorsWithOutliers) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 0.5);
-  std::vector<double> errors(4000);
-  for (double& error : errors) error = normal(random);
-  std::vector<double> copy = errors;
+  std::vector<WeightedDistance> errors(4000);
+  for (WeightedDistance& error : errors) error.distance = normal(random);
+  std::vector<WeightedDistance> copy = errors;
   EXPECT_NEAR(robust_sigma(copy), 0.5, 0.02);
-  for (std::size_t i = 0; i < errors.size(); i += 10) errors[i] = 50.0;
+  for (std::size_t i = 0; i < errors.size(); i += 10) errors[i].distance = 50.0;
+  copy = errors;
+  EXPECT_NEAR(robust_sigma(copy), 0.5, 0.1);
+  for (std::size_t i = 0; i < errors.size(); ++i) {  // most, but of little weight
+    if (i % 3 != 0) errors[i] = {50.0, 0.01};
+  }
   EXPECT_NEAR(robust_sigma(errors), 0.5, 0.1);
 }
 
@@ -73,7 +78,8 @@ double squared_error(const std::array<double, kSamples>& values, double min_sigm
   for (int step = 0; step < 10; ++step) {
     std::array<double, kSamples> distances;
     for (std::size_t i = 0; i < kSamples; ++i) distances[i] = values[i] - row_at(i).dot(solution);
-    std::array<double, kSamples> copy = distances;
+    std::array<WeightedDistance, kSamples> copy;
+    for (std::size_t i = 0; i < kSamples; ++i) copy[i] = {distances[i], 1.0};
     const double reach = kReachOfSigma * std::max(min_sigma, robust_sigma(copy));
     LeastSquares<5> equations;
     ResidualSums residuals;

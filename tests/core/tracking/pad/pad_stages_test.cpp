@@ -47,11 +47,11 @@ Picture flat_picture() {
 }
 
 PadModel ring_model() {
-  return {{{1.0, true, 145.0}, {kInner, false, 145.0}}, {}};
+  return {{{1.0, true, 145.0}, {kInner, false, 145.0}}, {}, 0.0};
 }
 
 PadModel disc_model() {
-  return {{{1.0, true, 145.0}}, {}};
+  return {{{1.0, true, 145.0}}, {}, 0.0};
 }
 
 Ellipse resized(Ellipse e, double factor) {
@@ -478,6 +478,21 @@ TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
 }
 
 // Of a disc as faint as the noise, chance matches are few.
+// A shadow leaves .3 of the light, and of the contrast.
+TEST(EdgeSearch, SeesEdgesInShadow) {
+  Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
+  EXPECT_GT(model.bright_level, model.circles.front().contrast);
+  for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(0.3 * level);
+  const double noise = pixel_noise(picture.view());
+  for (const bool knows_light : {true, false}) {
+    EdgeSearch search;
+    search.sample(model, image_from_pad(kPad), picture.view());
+    search.search(picture.view(), {1.0, noise, knows_light ? model.bright_level : 0.0}, 5.0);
+    for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, knows_light ? 1 : 0);
+  }
+}
+
 TEST(EdgeSearch, IgnoresNoise) {
   Scene flat = scene_of(Pattern::kDisc);
   flat.pad.paint_level = flat.ground.level;

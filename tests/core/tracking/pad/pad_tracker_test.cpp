@@ -278,6 +278,24 @@ TEST(PadTracker, FollowsARingWithoutACircleThatWasNotOnIt) {
   }
 }
 
+// A shadow with a quarter of the light moves over the pad.
+TEST(PadTracker, FollowsAPadHalfInShadow) {
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
+  for (std::uint64_t i = 1; i < 40; ++i) {
+    Picture frame = frame_of(kPad, pad_scene(), i);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < static_cast<int>(230 + 5 * i); ++x) {
+        frame.at(x, y) = static_cast<std::uint8_t>(0.25 * frame.at(x, y));
+      }
+    }
+    const auto track = tracker.track(whole(frame), kFrame_s);
+    ASSERT_TRUE(track && track->is_visible) << i;
+    EXPECT_GT(track->coverage, 0.9) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.5) << i;
+  }
+}
+
 // Bars that stay where they are while the pad moves behind them, as lids do in front of a pupil.
 TEST(PadTracker, IgnoresLinesThatDoNotMoveWithThePad) {
   Scene scene = pad_scene();
