@@ -254,6 +254,7 @@ RingUncertainty expected_uncertainty(const Ellipse& e,
                                      double height,
                                      double sigma_px) {
   constexpr int kSamples = 48;
+  constexpr double kIndependentPx = 8.0;  // distance of edges with independent errors
   const double step = kTwoPi / kSamples;
   GeometricFit fit(e);
   for (int i = 0; i < kSamples; ++i) {

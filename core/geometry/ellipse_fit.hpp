@@ -106,13 +106,10 @@ struct FittedEllipse {
 
 /// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame; a radius
 /// if nothing is inside.
-/// @param sigma_px  Standard deviation of an edge position, every kIndependentPx of the perimeter.
+/// @param sigma_px  Standard deviation of an edge position, independent every 8 px.
 [[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
                                                    double width,
                                                    double height,
                                                    double sigma_px);
-
-/// Min distance along the perimeter between edges with independent errors [px].
-inline constexpr double kIndependentPx = 8.0;
 
 }  // namespace ellipse

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace ellipse {
@@ -132,10 +131,6 @@ Eigen::Matrix<double, 8, 6> change_by_camera(const Matrix3d& image_from_pad,
     changes.col(3 + axis) = change_of(inverse * unit * Eigen::RowVector3d::UnitZ());
   }
   return changes;
-}
-
-bool is_in_front(const Matrix3d& h, const Vector3d& projected) {
-  return projected.z() > double{std::numeric_limits<float>::epsilon()} * std::abs(h(2, 2));
 }
 
 std::optional<ProjectedPoint> project_point(const Matrix3d& h, const Vector2d& pad_point) {

@@ -1,6 +1,8 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/geometry/ellipse.hpp"
@@ -78,8 +80,11 @@ struct RingUncertainty {
 
 /// Whether a point of the pad is in front of the camera.
 /// @param projected  image_from_pad times the point.
-[[nodiscard]] bool is_in_front(const Eigen::Matrix3d& image_from_pad,
-                               const Eigen::Vector3d& projected);
+[[nodiscard]] inline bool is_in_front(const Eigen::Matrix3d& image_from_pad,
+                                      const Eigen::Vector3d& projected) {
+  const double rounding = std::numeric_limits<float>::epsilon();
+  return projected.z() > rounding * std::abs(image_from_pad(2, 2));
+}
 
 /// Image of a point on the pad's plane.
 struct ProjectedPoint {

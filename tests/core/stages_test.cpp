@@ -16,7 +16,6 @@
 #include "core/image/roi.hpp"
 #include "core/image/scale.hpp"
 #include "core/tracking/settings.hpp"
-#include "core/tracking/settings.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
