@@ -11,10 +11,10 @@
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
-#include "core/geometry/robust.hpp"
 #include "core/image/roi.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/pad/model_errors.hpp"
+#include "core/tracking/pad/model_updates.hpp"
 
 namespace ellipse {
 namespace {
@@ -110,7 +110,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     attempt = search_from(window, view_, covariance);
     if (!is_good(attempt)) return false;
     view_ = attempt->view;
-    learn_radii(attempt->last, 1.0);
+    update_radii(model_, search_.samples(), attempt->last, 1.0, kReachPx);
   }
   if (!has_circle(attempt->view, 1.0, outer_edge)) return false;
   begin_motion(*attempt, HomographyChange::Zero());
@@ -285,8 +285,10 @@ void PadTracker::accept(const Attempt& attempt,
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
   propagate_errors(attempt.last, inverse_of(before.covariance));
-  judge_lines(attempt.last);
-  if (attempt.visible >= kMajority) learn_radii(attempt.last, adaptation);
+  drop_refuted_lines(model_, search_.samples(), attempt.last, tolerance_px(radius_px()));
+  if (attempt.visible >= kMajority) {
+    update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
+  }
   view_ = attempt.view;
   unmatched_s_ = 0.0;
 }
@@ -335,28 +337,6 @@ void PadTracker::measure_inner_edges(const LumaWindow& window) {
   }
 }
 
-// Updates the inner radii from their matches; the outer radius is the unit.
-void PadTracker::learn_radii(const HomographyChange& change, double share) {
-  for (std::size_t i = 1; i < model_.circles.size(); ++i) {
-    PadCircle& circle = model_.circles[i];
-    if (circle.is_given) continue;
-    const double sign = circle.is_bright_outside ? 1.0 : -1.0;
-    double sum = 0.0;
-    double weights = 0.0;
-    for (const EdgeSample& sample : search_.samples()) {
-      if (sample.feature != static_cast<int>(i)) continue;
-      const EdgeCandidate* edge = nearest_candidate(sample, sample.predicted_px(change));
-      if (edge == nullptr) continue;
-      const double beside_px = edge->distance_px - sample.predicted_px(change);
-      const double px = sample.view.px_per_unit;
-      const double weight = tukey_weight(beside_px, kReachPx) * px * px;
-      sum += weight * sign * beside_px / px;
-      weights += weight;
-    }
-    if (weights > 0.0) circle.radius += share * sum / weights;
-  }
-}
-
 // Learns the lines again as the pad grows in the image and shows finer ones.
 void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   const double radius = radius_px();
@@ -366,20 +346,6 @@ void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
   line_learner_.learn(model_, gain_);
   line_learner_.start();
   learned_radius_px_ = radius;
-}
-
-// Removes lines that are unmatched significantly more often than not, such as edges of shadows or
-// occluders.
-void PadTracker::judge_lines(const HomographyChange& change) {
-  const double max_px = tolerance_px(radius_px());
-  for (const EdgeSample& sample : search_.samples()) {
-    PadLine* line = line_of(model_, sample.feature);
-    if (line == nullptr || !sample.is_visible) continue;
-    ++line->visible;
-    line->matched += is_matched(sample, change, max_px) ? 1 : 0;
-  }
-  std::erase_if(model_.lines,
-                [](const PadLine& line) { return is_refuted(line.matched, line.visible); });
 }
 
 void PadTracker::coast(const Eigen::Matrix3d& prediction,

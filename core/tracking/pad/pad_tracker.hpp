@@ -127,9 +127,7 @@ class PadTracker {
   void refine(const LumaWindow& window, double visible);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
-  void learn_radii(const HomographyChange& change, double share);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
-  void judge_lines(const HomographyChange& change);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;

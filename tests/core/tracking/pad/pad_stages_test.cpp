@@ -16,6 +16,7 @@
 #include "core/tracking/pad/homography_solver.hpp"
 #include "core/tracking/pad/line_learner.hpp"
 #include "core/tracking/pad/model_errors.hpp"
+#include "core/tracking/pad/model_updates.hpp"
 #include "core/tracking/pad/pad_model.hpp"
 #include "tests/support/picture.hpp"
 
@@ -710,6 +711,49 @@ HomographySupport support_on(Pattern pattern, const PadModel& model) {
   search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
   return support_of(
       search.samples(), HomographyChange::Zero(), 1.5, static_cast<int>(model.circles.size()));
+}
+
+// Two matches on each circle: one as expected, one .8 px farther out.
+TEST(ModelUpdates, MoveInnerRadiiTowardsTheirMatches) {
+  PadModel model = ring_model();
+  model.circles.push_back({0.3, true, 145.0, true});
+  std::vector<EdgeSample> samples;
+  for (int feature = 0; feature < 3; ++feature) {
+    for (const float beside_px : {0.0F, 0.8F}) {
+      EdgeSample& sample = samples.emplace_back();
+      sample.view.px_per_unit = 50.0;
+      sample.view.row.setZero();
+      sample.feature = feature;
+      const float sign =
+          model.circles[static_cast<std::size_t>(feature)].is_bright_outside ? 1.0F : -1.0F;
+      sample.candidates[0] = {sign * beside_px, 100.0F};
+      sample.count = 1;
+    }
+  }
+  const PadModel before = model;
+  update_radii(model, samples, HomographyChange::Zero(), 0.5, 1000.0);
+  EXPECT_EQ(model.circles[0].radius, before.circles[0].radius) << "the unit";
+  EXPECT_NEAR(model.circles[1].radius, before.circles[1].radius + 0.5 * 0.4 / 50.0, 1e-6);
+  EXPECT_EQ(model.circles[2].radius, before.circles[2].radius) << "given";
+}
+
+TEST(ModelUpdates, DropLinesThatAreMostlyUnmatched) {
+  PadModel model = disc_model();
+  model.lines.resize(2);
+  std::vector<EdgeSample> samples;
+  for (const int feature : {1, 2}) {
+    for (int i = 0; i < 20; ++i) {
+      EdgeSample& sample = samples.emplace_back();
+      sample.view.row.setZero();
+      sample.feature = feature;
+      sample.is_visible = true;
+      sample.candidates[0] = {feature == 1 ? 5.0F : 0.5F, 100.0F};
+      sample.count = 1;
+    }
+  }
+  drop_refuted_lines(model, samples, HomographyChange::Zero(), 2.0);
+  ASSERT_EQ(model.lines.size(), 1U);
+  EXPECT_EQ(model.lines[0].matched, 20);
 }
 
 TEST(Support, ReportsAMissingCircle) {
