@@ -40,6 +40,12 @@ struct ConcentricSet {
   }
 };
 
+// Whether the outer ellipse contains the inner one. Misses some that the circle inside the outer
+// one does not contain.
+bool encloses(const Ellipse& outer, const Ellipse& inner) {
+  return (inner.center() - outer.center()).norm() + inner.semi_major < outer.semi_minor;
+}
+
 // The ellipse itself need not be one of the detections.
 ConcentricSet set_around(const Ellipse& ellipse, std::span<const Detection> detections) {
   ConcentricSet set;
@@ -161,6 +167,7 @@ bool is_better_target(const Ellipse& chosen,
     own.probability = std::max(own.probability, probability_of(*score));
   }
   if (own.has_two_edges != other.has_two_edges) return other.has_two_edges && own < other;
+  if (encloses(chosen, known)) return own < other;
   return own < other && other.score > scaled(own.score, kMuchBetter);
 }
 

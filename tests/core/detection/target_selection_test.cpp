@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "core/detection/evidence.hpp"
+
 namespace ellipse {
 namespace {
 
@@ -74,6 +76,22 @@ TEST(TargetSelection, KeepsAFollowedTargetThatTheSearchMissed) {
   const std::vector<Detection> faint = {{disc, 1.0, 1.0, 0.4, 0.6}, {hole, 1.0, 1.0, 0.4, 0.6}};
   EXPECT_TRUE(is_better_target(disc, {.ellipse = followed}, faint));
   EXPECT_FALSE(is_better_target(disc, {.ellipse = followed, .score = 5.0}, faint));
+}
+
+// The followed target may be a detail of the better one: a reflection inside a pupil.
+TEST(TargetSelection, AnEnclosingTargetNeedsOnlyBeBetter) {
+  const Ellipse followed{100.0, 100.0, 20.0, 18.0, 0.1};
+  const KnownTarget known{.ellipse = followed, .score = 4.0};
+  const Ellipse around{130.0, 100.0, 60.0, 55.0, 0.1};
+  const Ellipse across{145.0, 100.0, 60.0, 55.0, 0.1};
+  const auto is_better = [&](const Ellipse& chosen, double score) {
+    return is_better_target(
+        chosen, known, std::vector<Detection>{{chosen, 1.0, 1.0, score, probability_of(score)}});
+  };
+  EXPECT_TRUE(is_better(around, 4.5));
+  EXPECT_FALSE(is_better(around, 3.5));
+  EXPECT_FALSE(is_better(across, 4.5));
+  EXPECT_TRUE(is_better(across, 6.5));
 }
 
 TEST(TargetSelection, AcceptsOnlySimilarEllipsesWhileTracking) {

@@ -642,6 +642,34 @@ TEST(FollowingTracker, SwitchesFromADiscOrASmallerRingToThePad) {
   }
 }
 
+// As an eye that opens: the reflection inside the pupil comes into view first.
+TEST(FollowingTracker, SwitchesFromAReflectionToThePupilAroundIt) {
+  Scene lit = plain_ring();
+  lit.pad.pattern = Pattern::kDisc;
+  lit.pad.paint_level = 240.0;
+  lit.ground.level = 90.0;
+  Scene dark = lit;
+  dark.pad.paint_level = 30.0;
+  const Ellipse reflection{140.0, 110.0, 16.0, 15.0, 0.0};
+  const Ellipse pupil{165.0, 118.0, 60.0, 56.0, 0.2};
+  const Picture closed = rendered(lit, reflection);
+  Picture open = rendered(dark, pupil);
+  for (int y = 0; y < open.height; ++y) {
+    for (int x = 0; x < open.width; ++x) {
+      if (sampson_distance(reflection, {x, y}) < 0.0) open.at(x, y) = 240;
+    }
+  }
+  Tracker tracker;
+  std::optional<Target> target = tracker.process(closed.view(), 0);
+  ASSERT_TRUE(target);
+  EXPECT_GT(iou_inside(target->ellipse, reflection, 320, 240), 0.9);
+  for (int frame = 1; frame < 10; ++frame) {
+    target = tracker.process(open.view(), frame * kFrameNs);
+  }
+  ASSERT_TRUE(target);
+  EXPECT_GT(iou_inside(target->ellipse, pupil, 320, 240), 0.9) << target->ellipse.semi_major;
+}
+
 // The search may end at a reduced size, with the larger disc alone.
 TEST(FollowingTracker, StaysOnASmallTargetBesideALargerDisc) {
   Scene disc = plain_ring();
