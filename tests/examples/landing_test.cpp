@@ -292,7 +292,6 @@ Flight short_flight() {
   Flight flight;
   flight.seed = 3;
   flight.speed = 1.5;
-  flight.rig.camera = flight.rig.camera.resized(320, 180);
   return flight;
 }
 
@@ -312,6 +311,7 @@ TEST(Landing, EndsOnTheMovingPadAndIsDeterministic) {
 
 TEST(Landing, AbortsAndRetriesWhenThePadIsHidden) {
   Flight flight = short_flight();
+  flight.rig.camera = flight.rig.camera.resized(320, 180);
   flight.hidden_below = 2.5;
   flight.hidden_s = 3.0;
   const Outcome outcome = landing::fly(flight);

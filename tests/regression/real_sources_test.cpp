@@ -39,7 +39,7 @@ constexpr Source kSources[] = {
     {"airlab-gascola", {455, 0}, {455, 0}},
     {"pupil-infrared", {1094, 8}, {1058, 0}},
     {"pupil-blinks", {263, 0}, {258, 0}},
-    {"pupil-blinks", {218, 0}, {204, 0}, "jpeg"},
+    {"pupil-blinks", {219, 2}, {204, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},
     {"large-cut-ellipse", {50, 0}, {50, 0}},
     {"octagon-negative", {141, 0}, {138, 3}},

@@ -37,18 +37,28 @@ struct Profile {
       sums[i + 1] = sums[i] + static_cast<float>(*pixel);
     }
   }
+
+  // Highest mean of a box from this position on, towards the bright side.
+  [[nodiscard]] float brightest_from(std::size_t i) const {
+    float sum = 0.0F;
+    for (; i + box <= count; ++i) sum = std::max(sum, sums[i + box] - sums[i]);
+    return sum / static_cast<float>(box);
+  }
 };
 
 // Minimum contrast of an edge: less in shadow, where contrast falls with the light.
 struct MinContrast {
   float noise = 0.0F;     // standard deviation
   float by_gain = 0.0F;   // of the image
-  float by_light = 1.0F;  // share of the local bright level; 1 = never less
+  float relative = 0.0F;  // share of the light; 0 = unknown
 
-  [[nodiscard]] bool accepts(float contrast, float bright_level) const {
-    const bool is_in_shadow =
-        contrast > by_light * bright_level && contrast >= float{kAllSigmas} * noise;
-    return contrast >= by_gain || is_in_shadow;
+  // Whether there is a light in which an edge of this contrast is accepted.
+  [[nodiscard]] bool may_accept(float contrast) const {
+    const bool is_noise = contrast < float{kAllSigmas} * noise;
+    return contrast >= by_gain || (relative > 0.0F && !is_noise);
+  }
+  [[nodiscard]] bool accepts(const EdgeCandidate& edge) const {
+    return edge.contrast >= by_gain || edge.contrast > relative * edge.light;
   }
 };
 
@@ -68,11 +78,12 @@ void keep_edges(const Profile& profile,
   for (std::size_t i = half + 1; i + half < profile.count; ++i) {
     const float here = rises[i];
     if (here < min_rise || rises[i - 1] > here || rises[i + 1] >= here) continue;
-    if (!min.accepts(here, (sums[i + half] - sums[i]) * scale)) continue;
     const float vertex = parabola_vertex(rises[i - 1], here, rises[i + 1]);
     const float at = profile.first + static_cast<float>(i) - 0.5F + vertex;
-    EdgeCandidate candidate{at * profile.step_px + profile.middle_px, here};
-    if (std::abs(candidate.distance_px) > reach_px) continue;
+    const float distance_px = at * profile.step_px + profile.middle_px;
+    if (std::abs(distance_px) > reach_px || !min.may_accept(here)) continue;
+    EdgeCandidate candidate{distance_px, here, profile.brightest_from(i)};
+    if (!min.accepts(candidate)) continue;
     for (int k = 0; k < sample.count; ++k) {  // the strongest first
       EdgeCandidate& other = sample.candidates[static_cast<std::size_t>(k)];
       if (candidate.contrast > other.contrast) std::swap(candidate, other);
@@ -300,10 +311,9 @@ void EdgeSearch::search_along(const ImageView& luma,
   // Of the difference between the means of two boxes.
   const double noise = levels.noise * std::sqrt(2.0 / static_cast<double>(profile->box));
   const double contrast = kMajority * sample.contrast;
-  const double by_light = levels.bright_level > 0.0 ? contrast / levels.bright_level : 1.0;
   const MinContrast min{static_cast<float>(noise),
                         static_cast<float>(levels.gain * contrast),
-                        static_cast<float>(by_light)};
+                        static_cast<float>(levels.relative_gain * contrast)};
   keep_edges(*profile, min, reach_px, sample);
 }
 

@@ -14,10 +14,11 @@
 
 namespace ellipse {
 
-/// An edge found along a sample's normal.
+/// An edge found along a sample's normal. Its relative contrast is contrast over light.
 struct EdgeCandidate {
   float distance_px = 0.0F;  ///< Along the normal, from the expected position.
   float contrast = 0.0F;     ///< [grey levels], above 0.
+  float light = 0.0F;        ///< Brightest level on its bright side, in the search range.
 };
 
 /// A sample on an edge of the pad, and the edges found near it.
@@ -36,9 +37,11 @@ struct EdgeSample {
 
 /// Light and pixel noise of an image.
 struct ImageLevels {
-  double gain = 1.0;          ///< Ratio of image contrast to model contrast.
-  double noise = 0.0;         ///< Standard deviation of a pixel [grey levels], see pixel_noise().
-  double bright_level = 0.0;  ///< As PadModel::bright_level; 0 = unknown.
+  double gain = 1.0;   ///< Ratio of image contrast to model contrast.
+  double noise = 0.0;  ///< Standard deviation of a pixel [grey levels], see pixel_noise().
+  /// Ratio of relative contrast, see EdgeCandidate, to model contrast [1 / grey level]. 0 =
+  /// unknown: no edge in shadow is accepted.
+  double relative_gain = 0.0;
 };
 
 /// Searches an image for the edges of a pad along their normals.

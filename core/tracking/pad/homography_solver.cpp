@@ -84,14 +84,18 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
   HomographySupport support;
   std::array<Matches, kMaxCircles + 1> features{};  // of each circle, then of all lines
   std::array<float, EdgeSearch::kMaxSamples> gains;
+  std::array<float, EdgeSearch::kMaxSamples> relative_gains;
   for (const EdgeSample& sample : samples) {
     if (!sample.is_visible) continue;
     const double predicted = sample.predicted_px(change);
     const EdgeCandidate* edge = nearest_candidate(sample, predicted);
     const bool has_edge =
         edge != nullptr && std::abs(edge->distance_px - predicted) <= tolerance_px;
-    if (has_edge)
-      gains[static_cast<std::size_t>(support.matched)] = edge->contrast / sample.contrast;
+    if (has_edge) {
+      const auto i = static_cast<std::size_t>(support.matched);
+      gains[i] = edge->contrast / sample.contrast;
+      relative_gains[i] = gains[i] / edge->light;
+    }
     ++support.visible;
     support.matched += has_edge ? 1 : 0;
     Matches& feature = features[static_cast<std::size_t>(std::min(sample.feature, circles))];
@@ -107,7 +111,9 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
   const bool is_one_confirmed = std::any_of(inside.begin(), inside.end(), confirmed);
   support.has_circles = !refuted(features[0]) && (!is_one_refuted || is_one_confirmed);
   if (support.matched > 0) {
-    support.gain = median(std::span(gains).first(static_cast<std::size_t>(support.matched)));
+    const auto matched = static_cast<std::size_t>(support.matched);
+    support.gain = median(std::span(gains).first(matched));
+    support.relative_gain = median(std::span(relative_gains).first(matched));
   }
   return support;
 }

@@ -53,13 +53,6 @@ class RadialProfile {
     return std::isnan(sum) ? 0.0 : sum / kApart;
   }
 
-  // Median brightness on the bright side of a step.
-  [[nodiscard]] double bright_level(int i) const {
-    const double outside = *(medians_.begin() + i + kApart);
-    const double inside = *(medians_.begin() + i - kApart);
-    return std::max(outside, inside);
-  }
-
   // Share of the visible angles with a step of the same sign and at least half the size.
   [[nodiscard]] double agreement(int i) const {
     const double whole = step(i);
@@ -145,7 +138,6 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
         {radius_at(i) / radius_at(outer), profile.step(i) > 0.0, profile.strength(i)});
   };
   add(outer);
-  model.bright_level = profile.bright_level(outer);
   if (ring_ratio > 0.0) {
     const PadCircle& edge = model.circles.front();
     model.circles.push_back({ring_ratio, !edge.is_bright_outside, edge.contrast, true});

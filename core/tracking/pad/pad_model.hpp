@@ -45,7 +45,6 @@ struct PadLine {
 struct PadModel {
   std::vector<PadCircle> circles;  ///< The outer one first.
   std::vector<PadLine> lines;
-  double bright_level = 0.0;  ///< On the bright side of the outer circle [grey levels].
 };
 
 /// The line of a sample's feature, see EdgeSample::feature. nullptr for a circle, or if the model's

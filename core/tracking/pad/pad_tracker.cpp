@@ -103,6 +103,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
+  relative_gain_ = 0.0;
   learned_radius_px_ = 0.0;
   const HomographyCovariance covariance = detected_covariance();
   std::optional<Attempt> attempt;
@@ -113,6 +114,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
     update_radii(model_, search_.samples(), attempt->last, 1.0, kReachPx);
   }
   if (!has_circle(attempt->view, 1.0, outer_edge)) return false;
+  relative_gain_ = attempt->support.relative_gain;
   begin_motion(*attempt, HomographyChange::Zero());
   is_known_ = true;
   if (window.camera) measure_edges(window, attempt->visible);
@@ -187,9 +189,9 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
   const double max_reach_px = kReachPx + kMaxReach * radius_px();
-  // A single edge in shadow cannot be told from an edge of the shadow's object.
-  const double bright_level = has_inner_edges() ? model_.bright_level : 0.0;
-  const ImageLevels levels{gain_, pixel_noise(window.luma), bright_level};
+  // A single edge in shadow cannot be told from an edge of the object that casts it.
+  const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
+  const ImageLevels levels{gain_, pixel_noise(window.luma), relative_gain};
   std::optional<Attempt> attempt;
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
@@ -284,6 +286,7 @@ void PadTracker::accept(const Attempt& attempt,
       innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
+  relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);
   propagate_errors(attempt.last, inverse_of(before.covariance));
   drop_refuted_lines(model_, search_.samples(), attempt.last, tolerance_px(radius_px()));
   if (attempt.visible >= kMajority) {

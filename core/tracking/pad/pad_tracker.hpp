@@ -148,6 +148,7 @@ class PadTracker {
   LensView lens_;
   double innovation_ratio_ = 1.0;  // adaptive factor of the motion noise
   double gain_ = 1.0;              // ratio of image contrast to model contrast
+  double relative_gain_ = 0.0;     // the same of relative contrast [1 / grey level]
   double unmatched_s_ = 0.0;       // since the last match
   double last_coverage_ = 0.0;     // of the search near the prediction
   bool is_locked_ = false;

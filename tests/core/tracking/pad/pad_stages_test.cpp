@@ -7,7 +7,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "core/edges/noise.hpp"
@@ -48,11 +50,11 @@ Picture flat_picture() {
 }
 
 PadModel ring_model() {
-  return {{{1.0, true, 145.0}, {kInner, false, 145.0}}, {}, 0.0};
+  return {{{1.0, true, 145.0}, {kInner, false, 145.0}}, {}};
 }
 
 PadModel disc_model() {
-  return {{{1.0, true, 145.0}}, {}, 0.0};
+  return {{{1.0, true, 145.0}}, {}};
 }
 
 Ellipse resized(Ellipse e, double factor) {
@@ -478,22 +480,52 @@ TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
   for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, 1);
 }
 
-// Of a disc as faint as the noise, chance matches are few.
+// Of a model on a picture of a pad at kPad.
+HomographySupport support_in(const Picture& picture, const PadModel& model) {
+  EdgeSearch search;
+  search.sample(model, image_from_pad(kPad), picture.view());
+  search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
+  return support_of(
+      search.samples(), HomographyChange::Zero(), 1.5, static_cast<int>(model.circles.size()));
+}
+
 // A shadow leaves .3 of the light, and of the contrast.
 TEST(EdgeSearch, SeesEdgesInShadow) {
   Picture picture = rendered(scene_of(Pattern::kRing), kPad);
-  PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
-  EXPECT_GT(model.bright_level, model.circles.front().contrast);
+  const PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
+  const HomographySupport lit = support_in(picture, model);
+  EXPECT_NEAR(lit.gain / lit.relative_gain, plain_ring().ground.level, 5.0);
   for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(0.3 * level);
   const double noise = pixel_noise(picture.view());
   for (const bool knows_light : {true, false}) {
     EdgeSearch search;
     search.sample(model, image_from_pad(kPad), picture.view());
-    search.search(picture.view(), {1.0, noise, knows_light ? model.bright_level : 0.0}, 5.0);
+    search.search(picture.view(), {1.0, noise, knows_light ? lit.relative_gain : 0.0}, 5.0);
     for (const EdgeSample& sample : search.samples()) EXPECT_EQ(sample.count, knows_light ? 1 : 0);
   }
 }
 
+// Blur also reduces the contrast, but the picture is as bright as before beside the edge.
+TEST(EdgeSearch, DoesNotTakeBlurForShadow) {
+  constexpr int kBlurPx = 12;
+  Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  const PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
+  const double relative_gain = support_in(picture, model).relative_gain;
+  cv::Mat pixels(picture.height, picture.width, CV_8UC1, picture.pixels.data());
+  cv::blur(pixels, pixels, {kBlurPx, 1});
+  EdgeSearch search;
+  search.sample(model, image_from_pad(kPad), picture.view());
+  search.search(picture.view(), {1.0, pixel_noise(picture.view()), relative_gain}, kBlurPx);
+  int at_sides = 0;
+  for (const EdgeSample& sample : search.samples()) {
+    if (std::abs(sample.view.normal.x()) < 0.9) continue;
+    ++at_sides;
+    EXPECT_EQ(sample.count, 0) << sample.view.point.transpose();
+  }
+  EXPECT_GT(at_sides, 10);
+}
+
+// Of a disc as faint as the noise, chance matches are few.
 TEST(EdgeSearch, IgnoresNoise) {
   Scene flat = scene_of(Pattern::kDisc);
   flat.pad.paint_level = flat.ground.level;
@@ -705,12 +737,7 @@ TEST(Support, DecreasesWithTheErrorOfTheView) {
 
 // Of a model on a picture of a pad at kPad.
 HomographySupport support_on(Pattern pattern, const PadModel& model) {
-  const Picture picture = rendered(scene_of(pattern), kPad);
-  EdgeSearch search;
-  search.sample(model, image_from_pad(kPad), picture.view());
-  search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
-  return support_of(
-      search.samples(), HomographyChange::Zero(), 1.5, static_cast<int>(model.circles.size()));
+  return support_in(rendered(scene_of(pattern), kPad), model);
 }
 
 // Two matches on each circle: one as expected, one .8 px farther out.
@@ -726,7 +753,7 @@ TEST(ModelUpdates, MoveInnerRadiiTowardsTheirMatches) {
       sample.feature = feature;
       const float sign =
           model.circles[static_cast<std::size_t>(feature)].is_bright_outside ? 1.0F : -1.0F;
-      sample.candidates[0] = {sign * beside_px, 100.0F};
+      sample.candidates[0] = {sign * beside_px, 100.0F, 200.0F};
       sample.count = 1;
     }
   }
@@ -747,7 +774,7 @@ TEST(ModelUpdates, DropLinesThatAreMostlyUnmatched) {
       sample.view.row.setZero();
       sample.feature = feature;
       sample.is_visible = true;
-      sample.candidates[0] = {feature == 1 ? 5.0F : 0.5F, 100.0F};
+      sample.candidates[0] = {feature == 1 ? 5.0F : 0.5F, 100.0F, 200.0F};
       sample.count = 1;
     }
   }
