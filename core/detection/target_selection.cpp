@@ -40,8 +40,8 @@ struct ConcentricSet {
   }
 };
 
-// Whether the outer ellipse contains the inner one. Misses some that the circle inside the outer
-// one does not contain.
+// Whether the circle inside the outer ellipse contains the circle around the inner one: then the
+// outer ellipse contains the inner one.
 bool encloses(const Ellipse& outer, const Ellipse& inner) {
   return (inner.center() - outer.center()).norm() + inner.semi_major < outer.semi_minor;
 }

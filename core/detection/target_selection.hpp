@@ -36,7 +36,7 @@ struct KnownTarget {
 /// the same target, or to a better set of concentric ellipses elsewhere. A set with two edges
 /// replaces a single edge that is not more probable; a single edge never replaces two. Between
 /// equals the sum of scores must be 1.5 times as large; one that encloses `followed`, which may be
-/// a detail of it, needs only be better, as without tracking.
+/// a detail of it, need only be better, as without tracking.
 ///
 /// @param detections  Of the frame that shows both. A search that ends at a reduced size may miss
 ///                    edges of `followed`.
