@@ -179,6 +179,31 @@ Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose) {
   return camera.matrix() * camera_from_plane(pose);
 }
 
+// A Lorentz boost of the pad's plane maps the unit circle to itself, and the origin to a point in
+// it.
+Matrix3d with_nearer_pose(const Camera& camera, const Matrix3d& image_from_pad) {
+  const auto outer = project_circle(image_from_pad, 1.0);
+  const auto poses = outer ? circle_poses(camera, *outer) : std::nullopt;
+  if (!poses) return image_from_pad;
+  const Matrix3d pad_from_image = image_from_pad.inverse();
+  Vector2d nearest = Vector2d::Constant(1.0);
+  for (const CirclePose& pose : *poses) {
+    const Vector2d centre =
+        (pad_from_image * projected_centre(camera, pose).homogeneous()).hnormalized();
+    if (centre.norm() < nearest.norm()) nearest = centre;
+  }
+  const double slack = 1.0 - nearest.squaredNorm();
+  if (!(slack > 0.0)) return image_from_pad;
+  const double factor = 1.0 / std::sqrt(slack);
+  Matrix3d boost = Matrix3d::Identity();
+  boost.topLeftCorner<2, 2>() += factor * factor / (1.0 + factor) * nearest * nearest.transpose();
+  boost.topRightCorner<2, 1>() = factor * nearest;
+  boost.bottomLeftCorner<1, 2>() = factor * nearest.transpose();
+  boost(2, 2) = factor;
+  const Matrix3d view = image_from_pad * boost;
+  return view / view(2, 2);
+}
+
 // Five pose parameters move the edge: a shift, and rotations about two axes in the plane.
 Matrix3d position_covariance(const Camera& camera,
                              const CirclePose& pose,

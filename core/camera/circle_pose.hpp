@@ -34,6 +34,11 @@ struct CirclePose {
 /// Homography from the circle's plane to the ideal plane; unit: the circle's radius.
 [[nodiscard]] Eigen::Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose);
 
+/// The view of the same outer circle, tilted to the nearer of the circle's two poses; the view
+/// itself if there is none. Thread-safe, allocates nothing.
+[[nodiscard]] Eigen::Matrix3d with_nearer_pose(const Camera& camera,
+                                               const Eigen::Matrix3d& image_from_pad);
+
 /// Covariance of a circle's position [radii^2], from the uncertainty of its image. Wider near a
 /// frontal view, where the ellipse determines the tilt to second order only.
 ///

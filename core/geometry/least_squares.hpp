@@ -30,6 +30,13 @@ class LeastSquares {
     ++samples_;
   }
 
+  /// Adds all samples of other equations without a prior, with `factor` times their weights.
+  void add(const LeastSquares& other, double factor) {
+    normal_ += factor * other.normal_;
+    right_side_ += factor * other.right_side_;
+    samples_ += other.samples_;
+  }
+
   [[nodiscard]] int samples() const { return samples_; }
 
   /// Inverse covariance of the solution, if each weight is 1 over the variance of its value.

@@ -72,6 +72,12 @@ double ResidualSums::of_few_samples(int parameters, double independent) const {
   return k * k;
 }
 
+double ResidualSums::independent_precision(double min_sigma) const {
+  if (!(slopes_ > 0.0)) return 0.0;
+  const double squares = std::max(squares_, squared_weights_ * min_sigma * min_sigma);
+  return slopes_ * slopes_ / (weights_ * squares);
+}
+
 double ResidualSums::information_factor(int parameters, double min_sigma) const {
   if (!(slopes_ > 0.0)) return 0.0;
   const double independent = samples() / samples_per_independent(parameters);

@@ -53,6 +53,10 @@ class ResidualSums {
   /// @param min_sigma   Min standard deviation of a residual.
   [[nodiscard]] double information_factor(int parameters, double min_sigma) const;
 
+  /// The same for independent samples of precision 1 that outnumber the parameters by far. At most
+  /// 1 / min_sigma^2; near 0 if the residuals are spread evenly over the reach.
+  [[nodiscard]] double independent_precision(double min_sigma) const;
+
  private:
   // Number of samples per independent one.
   [[nodiscard]] double samples_per_independent(int parameters) const;

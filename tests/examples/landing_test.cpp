@@ -292,6 +292,7 @@ Flight short_flight() {
   Flight flight;
   flight.seed = 3;
   flight.speed = 1.5;
+  flight.rig.camera = flight.rig.camera.resized(320, 180);
   return flight;
 }
 
@@ -311,7 +312,6 @@ TEST(Landing, EndsOnTheMovingPadAndIsDeterministic) {
 
 TEST(Landing, AbortsAndRetriesWhenThePadIsHidden) {
   Flight flight = short_flight();
-  flight.rig.camera = flight.rig.camera.resized(320, 180);
   flight.hidden_below = 2.5;
   flight.hidden_s = 3.0;
   const Outcome outcome = landing::fly(flight);

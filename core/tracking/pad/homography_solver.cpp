@@ -44,24 +44,31 @@ const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicte
 
 std::optional<HomographyEstimate> solve_homography(std::span<const EdgeSample> samples,
                                                    const HomographyPrior& prior,
-                                                   double first_reach_px,
-                                                   double reach_px,
-                                                   double sigma_px) {
+                                                   const MatchLimits& limits) {
+  const double max_precision = std::pow(limits.min_sigma_px, -2);
   HomographyEstimate estimate;
   for (int step = 0; step < 2 * kIterations; ++step) {
-    const double reach = step < kIterations ? first_reach_px : reach_px;
-    LeastSquares<8> equations(prior.mean, prior.information);
-    for (const EdgeSample& sample : samples) {
-      const double predicted = sample.predicted_px(estimate.change);
-      const EdgeCandidate* edge = nearest_candidate(sample, predicted);
+    const double reach_px = step < kIterations ? limits.first_reach_px : limits.reach_px;
+    // Before the change has converged, the residuals contain its error.
+    const bool is_scaled = limits.uses_scatter && step == 2 * kIterations - 1;
+    LeastSquares<8> matches;
+    ResidualSums residuals;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double predicted_px = samples[i].predicted_px(estimate.change);
+      const EdgeCandidate* edge = nearest_candidate(samples[i], predicted_px);
       if (edge == nullptr) continue;
-      const double weight =
-          tukey_weight(edge->distance_px - predicted, reach) / (sigma_px * sigma_px);
-      if (weight > 0.0) equations.add(sample.view.row, edge->distance_px, weight);
+      const double residual_px = edge->distance_px - predicted_px;
+      const double weight = tukey_weight(residual_px, reach_px);
+      if (weight > 0.0) matches.add(samples[i].view.row, edge->distance_px, weight);
+      if (is_scaled) residuals.add(static_cast<int>(i), residual_px, reach_px, 1.0);
     }
+    const double precision =
+        is_scaled ? residuals.independent_precision(limits.min_sigma_px) : max_precision;
+    LeastSquares<8> equations(prior.mean, prior.information);
+    equations.add(matches, precision);
     const auto change = equations.solve();
     if (!change) return std::nullopt;
-    estimate = {*change, equations.information()};
+    estimate = {*change, equations.information(), precision};
   }
   return estimate;
 }

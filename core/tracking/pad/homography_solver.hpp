@@ -17,6 +17,8 @@ struct HomographyPrior {
 struct HomographyEstimate {
   HomographyChange change = HomographyChange::Zero();
   HomographyCovariance information = HomographyCovariance::Zero();
+  /// Weight of a match before Tukey's [1 / px^2]: the inverse variance of its position.
+  double precision = 0.0;
 };
 
 /// Whether an edge is unmatched significantly more often than not.
@@ -36,20 +38,22 @@ struct HomographySupport {
   bool has_circles = false;
 };
 
+/// Which matches solve_homography() accepts, and their weight over the prior's.
+struct MatchLimits {
+  double first_reach_px = 0.0;  ///< Residual from which weights are 0, in the first iterations.
+  double reach_px = 0.0;        ///< The same in the last iterations.
+  double min_sigma_px = 1.0;    ///< Min standard deviation of a match.
+  /// Whether the standard deviation follows from the scatter of all matches, see
+  /// ResidualSums::independent_precision(): matches by chance have little weight.
+  bool uses_scatter = false;
+};
+
 /// Solves for the maximum a posteriori change that moves all edges to their matches: iteratively
 /// reweighted least squares with Tukey's weights, on each sample's candidate nearest to the
 /// prediction.
-///
-/// @param first_reach_px  Residual from which weights are 0, in the first iterations.
-/// @param reach_px        The same in the last iterations.
-/// @param sigma_px        Standard deviation of an edge's position.
 /// @return nullopt if the system is singular. Allocates nothing.
 [[nodiscard]] std::optional<HomographyEstimate> solve_homography(
-    std::span<const EdgeSample> samples,
-    const HomographyPrior& prior,
-    double first_reach_px,
-    double reach_px,
-    double sigma_px);
+    std::span<const EdgeSample> samples, const HomographyPrior& prior, const MatchLimits& limits);
 
 /// The candidate nearest to the predicted edge; nullptr if there is none.
 [[nodiscard]] const EdgeCandidate* nearest_candidate(const EdgeSample& sample, double predicted_px);

@@ -36,8 +36,8 @@ void propagate_model_errors(PadModel& model,
     const double predicted_px = sample.predicted_px(correction.change);
     const EdgeCandidate* edge = nearest_candidate(sample, predicted_px);
     if (sensitivity == nullptr || edge == nullptr) continue;
-    const double weight = tukey_weight(edge->distance_px - predicted_px, correction.reach_px) /
-                          (correction.sigma_px * correction.sigma_px);
+    const double weight =
+        correction.precision * tukey_weight(edge->distance_px - predicted_px, correction.reach_px);
     *sensitivity += weight * sample.view.px_per_unit * sample.view.row;
   }
   multiply_sensitivities(model, correction.covariance);

@@ -18,7 +18,7 @@ struct ViewCorrection {
   const HomographyCovariance& covariance;
   const HomographyCovariance& prior_information;  ///< 0 = the prior does not depend on the model.
   double reach_px = 0.0;                          ///< Of Tukey's weights.
-  double sigma_px = 0.0;                          ///< Of an edge's position.
+  double precision = 0.0;                         ///< See HomographyEstimate.
 };
 
 /// Updates the sensitivities of the model's edges: the prior carries the effect of their errors

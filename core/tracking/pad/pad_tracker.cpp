@@ -22,7 +22,7 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kUnknownMotion = 400.0;   // variance of an unknown motion over that of the noise
 constexpr double kAdaptation_s = 0.116;    // time constant of motion noise, contrast and radii
-constexpr double kEdgeSigmaPx = 0.6;       // of one edge candidate
+constexpr double kEdgeSigmaPx = 0.6;       // min, of one matched edge
 constexpr double kDeformation = 0.012;     // distance of deformed edges from the model [radii]
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
 constexpr double kMaxReach = 0.14;         // max search range beyond kReachPx [radii]
@@ -163,7 +163,7 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   motion_.velocity = velocity;
   motion_.covariance = inverse_of(attempt.estimate.information);
   motion_.velocity_covariance = kFrame_s * kUnknownMotion * camera_noise(view_, camera_);
-  propagate_errors(attempt.last, HomographyCovariance::Zero());
+  propagate_errors(attempt, HomographyCovariance::Zero());
 }
 
 HomographyFilter PadTracker::predicted(double elapsed_s, double looseness) const {
@@ -192,6 +192,10 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
   // A single edge in shadow cannot be told from an edge of the object that casts it.
   const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
   const ImageLevels levels{gain_, pixel_noise(window.luma), relative_gain};
+  // Lines match texture by chance. Circles alone scatter by their deformation, to which the prior
+  // must not yield.
+  MatchLimits limits{
+      .reach_px = kReachPx, .min_sigma_px = kEdgeSigmaPx, .uses_scatter = !model_.lines.empty()};
   std::optional<Attempt> attempt;
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
@@ -203,12 +207,12 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
       search_.search(window.luma, levels, kReachPx);
     }
     const HomographyPrior prior{-change, information};
-    const double first_reach_px = step == 0 ? max_reach_px : kReachPx;
-    const auto estimate =
-        solve_homography(search_.samples(), prior, first_reach_px, kReachPx, kEdgeSigmaPx);
+    limits.first_reach_px = step == 0 ? max_reach_px : kReachPx;
+    const auto estimate = solve_homography(search_.samples(), prior, limits);
     if (!estimate) return std::nullopt;
     change += estimate->change;
-    attempt = attempt_of(view, {change, estimate->information}, estimate->change);
+    attempt =
+        attempt_of(view, {change, estimate->information, estimate->precision}, estimate->change);
     if (rms_px(search_.samples(), estimate->change) <= tolerance_px(radius_px())) break;
   }
   return attempt;
@@ -287,7 +291,7 @@ void PadTracker::accept(const Attempt& attempt,
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
   relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);
-  propagate_errors(attempt.last, inverse_of(before.covariance));
+  propagate_errors(attempt, inverse_of(before.covariance));
   drop_refuted_lines(model_, search_.samples(), attempt.last, tolerance_px(radius_px()));
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
@@ -296,11 +300,12 @@ void PadTracker::accept(const Attempt& attempt,
   unmatched_s_ = 0.0;
 }
 
-void PadTracker::propagate_errors(const HomographyChange& change,
+void PadTracker::propagate_errors(const Attempt& attempt,
                                   const HomographyCovariance& prior_information) {
-  propagate_model_errors(model_,
-                         search_.samples(),
-                         {change, motion_.covariance, prior_information, kReachPx, kEdgeSigmaPx});
+  propagate_model_errors(
+      model_,
+      search_.samples(),
+      {attempt.last, motion_.covariance, prior_information, kReachPx, attempt.estimate.precision});
 }
 
 // Of the filter's view, and of the model's errors.
@@ -310,6 +315,9 @@ HomographyCovariance PadTracker::covariance() const {
 
 void PadTracker::measure_edges(const LumaWindow& window, double visible) {
   refine(window, visible);
+  // Rings alone hardly determine the tilt: it would drift, and lines would be learned in a wrong
+  // view.
+  if (window.camera && model_.lines.empty()) view_ = with_nearer_pose(camera_, view_);
   if (window.camera) measure_inner_edges(window);
   matched_view_ = view_;
 }

@@ -115,8 +115,7 @@ class PadTracker {
               const HomographyFilter& before,
               double looseness,
               double elapsed_s);
-  void propagate_errors(const HomographyChange& change,
-                        const HomographyCovariance& prior_information);
+  void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
   [[nodiscard]] HomographyCovariance covariance() const;
   [[nodiscard]] HomographyCovariance detected_covariance() const;
   [[nodiscard]] static bool has_circle(const Eigen::Matrix3d& view,

@@ -88,6 +88,44 @@ TEST(CirclePoses, CentreDiffersFromTheEllipseCentre) {
             1e-5);
 }
 
+TEST(NearerPose, TiltsTheViewAndKeepsTheOutline) {
+  const CirclePose truth = circle_at({400.0, 120.0}, 4.0, 0.5, 0.7);
+  const Matrix3d view = image_from_pad(camera_640(), truth);
+  const Ellipse outline = project_circle(view, 1.0).value();
+  for (const double drift : {-0.3, -0.15, 0.0, 0.05}) {
+    HomographyChange tilt = HomographyChange::Zero();
+    tilt.tail<2>() = Vector2d(drift, 0.5 * drift);
+    const Matrix3d corrected = with_nearer_pose(camera_640(), moved(view, tilt));
+    EXPECT_LT(max_difference_px(project_circle(corrected, 1.0).value(), outline), 1e-3) << drift;
+    const Vector2d centre = corrected.col(2).hnormalized();
+    EXPECT_LT((centre - Vector2d(400.0, 120.0)).norm(), 1e-3) << drift;
+    // No rotation: all points of the pad are where they were.
+    for (const Vector2d& point : {Vector2d(0.5, 0.0), Vector2d(0.0, -0.8)}) {
+      const Vector2d moved_px = (corrected * point.homogeneous()).hnormalized();
+      EXPECT_LT((moved_px - (view * point.homogeneous()).hnormalized()).norm(), 0.01) << drift;
+    }
+  }
+}
+
+TEST(NearerPose, TakesTheNearerOne) {
+  const CirclePose truth = circle_at({320.0, 180.0}, 3.0, 0.8, 0.0);
+  const Matrix3d view = image_from_pad(camera_640(), truth);
+  const auto poses = circle_poses(camera_640(), project_circle(view, 1.0).value()).value();
+  for (const CirclePose& pose : poses) {
+    const Vector2d centre = projected_centre(camera_640(), pose);
+    const Vector2d on_pad = (view.inverse() * centre.homogeneous()).hnormalized();
+    HomographyChange tilt = HomographyChange::Zero();
+    tilt.tail<2>() = 0.9 * on_pad;
+    const Vector2d found = with_nearer_pose(camera_640(), moved(view, tilt)).col(2).hnormalized();
+    EXPECT_LT((found - centre).norm(), 0.01);
+  }
+}
+
+TEST(NearerPose, KeepsAViewWithoutPose) {
+  const Matrix3d view = Vector3d(1.0, 0.0, 1.0).asDiagonal();  // the pad edge-on
+  EXPECT_EQ(with_nearer_pose(camera_640(), view), view);
+}
+
 TEST(CirclePoses, AreFiniteForTheThinnestEllipses) {
   for (const double minor : {1e-3, 1e-8, 1e-200}) {
     const auto poses = circle_poses(camera_640(), {320.0, 180.0, 100.0, minor, 0.3});

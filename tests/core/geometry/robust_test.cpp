@@ -144,5 +144,19 @@ TEST(ResidualSums, HaveAMinimumOfTheSigma) {
   EXPECT_EQ(ResidualSums().information_factor(5, 0.1), 0.0);
 }
 
+TEST(ResidualSums, GiveManySamplesThePrecisionOfTheirScatter) {
+  ResidualSums close;
+  ResidualSums uniform;
+  for (int i = 0; i < 48; ++i) {
+    const double share = (i + 0.5) / 24.0 - 1.0;
+    close.add(i, 0.1 * share, 1.0, 1.0);
+    uniform.add(i, share, 1.0, 1.0);
+  }
+  EXPECT_NEAR(close.independent_precision(1e-6), 300.0, 10.0);  // 1 / (.1^2 / 3)
+  EXPECT_NEAR(close.independent_precision(1.0), 1.0, 0.05);
+  EXPECT_NEAR(uniform.independent_precision(1e-6), 0.0, 1e-3);
+  EXPECT_EQ(ResidualSums().independent_precision(0.1), 0.0);
+}
+
 }  // namespace
 }  // namespace ellipse

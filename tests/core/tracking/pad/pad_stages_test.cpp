@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <random>
+#include <span>
 #include <vector>
 
 #include "core/edges/noise.hpp"
@@ -657,7 +659,7 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
     for (const double size : {-0.06, 0.06}) {
       const SearchedRing searched(size * HomographyChange::Unit(i));
       const auto estimate =
-          solve_homography(searched.search.samples(), weak_prior(), 12.0, 12.0, 0.6);
+          solve_homography(searched.search.samples(), weak_prior(), {12.0, 12.0, 0.6});
       ASSERT_TRUE(estimate);
       EXPECT_GT(searched.error_px(HomographyChange::Zero()), 1.0) << i;
       // The rows are linearised: a few hundredths of the change remain.
@@ -670,7 +672,7 @@ TEST(SolvePose, FindsShiftGrowthAndStretch) {
 TEST(SolvePose, ReportsItsInformation) {
   const SearchedRing searched(HomographyChange::Zero());
   const auto at = [&](double sigma_px) {
-    return solve_homography(searched.search.samples(), weak_prior(), 6.0, 6.0, sigma_px)
+    return solve_homography(searched.search.samples(), weak_prior(), {6.0, 6.0, sigma_px})
         ->information;
   };
   const HomographyCovariance fine = at(0.5) - weak_prior().information;
@@ -685,7 +687,7 @@ TEST(SolvePose, RespectsAStrongPrior) {
   HomographyPrior prior = weak_prior();
   prior.information(0, 0) = 1e12;
   prior.mean(0) = 0.01;
-  const auto estimate = solve_homography(searched.search.samples(), prior, 12.0, 12.0, 0.6);
+  const auto estimate = solve_homography(searched.search.samples(), prior, {12.0, 12.0, 0.6});
   ASSERT_TRUE(estimate);
   EXPECT_NEAR(estimate->change(0), 0.01, 1e-4);
   EXPECT_NEAR(estimate->change(1), 0.04, 0.005);
@@ -693,17 +695,46 @@ TEST(SolvePose, RespectsAStrongPrior) {
 
 TEST(SolvePose, IgnoresEdgesOutOfReach) {
   const SearchedRing searched(0.06 * HomographyChange::Unit(2));  // all edges are 3 px off or more
-  const auto estimate = solve_homography(searched.search.samples(), weak_prior(), 2.0, 2.0, 0.6);
+  const auto estimate = solve_homography(searched.search.samples(), weak_prior(), {2.0, 2.0, 0.6});
   ASSERT_TRUE(estimate);
   EXPECT_LT(estimate->change.norm(), 1e-6);
 }
 
+TEST(SolvePose, KnowsLittleFromMatchesByChance) {
+  const SearchedRing searched(HomographyChange::Zero());
+  const std::span<const EdgeSample> found = searched.search.samples();
+  HomographyPrior prior;
+  prior.information.diagonal().setConstant(1e4);
+  const MatchLimits with_scatter{4.0, 4.0, 0.6, true};
+  const auto true_view = solve_homography(found, prior, with_scatter);
+  ASSERT_TRUE(true_view);
+  EXPECT_NEAR(true_view->precision, 1.0 / 0.36, 0.1 / 0.36);
+
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> anywhere(-4.0F, 4.0F);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<EdgeSample> samples(found.begin(), found.end());
+    for (EdgeSample& sample : samples) {
+      sample.count = 1;
+      sample.candidates[0] = {.distance_px = anywhere(random), .contrast = sample.contrast};
+    }
+    const auto estimate = solve_homography(samples, prior, with_scatter);
+    ASSERT_TRUE(estimate);
+    EXPECT_LT(estimate->precision, 0.1 / 0.36) << trial;
+    const HomographyCovariance matches = estimate->information - prior.information;
+    const HomographyCovariance of_true_view = true_view->information - prior.information;
+    EXPECT_LT(matches.trace(), 0.1 * of_true_view.trace()) << trial;
+    EXPECT_DOUBLE_EQ(solve_homography(samples, prior, {4.0, 4.0, 0.6})->precision, 1.0 / 0.36)
+        << trial;
+  }
+}
+
 TEST(SolvePose, FailsWithoutInformation) {
-  EXPECT_FALSE(solve_homography({}, {}, 5.0, 5.0, 0.6));
+  EXPECT_FALSE(solve_homography({}, {}, {5.0, 5.0, 0.6}));
   const SearchedRing searched(HomographyChange::Zero());
   HomographyPrior broken = weak_prior();
   broken.mean(3) = std::nan("");
-  EXPECT_FALSE(solve_homography(searched.search.samples(), broken, 5.0, 5.0, 0.6));
+  EXPECT_FALSE(solve_homography(searched.search.samples(), broken, {5.0, 5.0, 0.6}));
 }
 
 TEST(NearestCandidate, IsNearestToThePrediction) {
@@ -841,11 +872,11 @@ TEST(ModelErrors, DoNotFallWithTheNumberOfSamplesOrFrames) {
   prior.information *= 1e-4;
   double sigma = 0.0;
   for (int frame = 0; frame < 20; ++frame) {
-    const auto estimate = solve_homography(inner, prior, 6.0, 6.0, 0.6);
+    const auto estimate = solve_homography(inner, prior, {6.0, 6.0, 0.6});
     ASSERT_TRUE(estimate);
     const HomographyCovariance covariance = inverse_of(estimate->information);
     propagate_model_errors(
-        model, inner, {estimate->change, covariance, prior.information, 6.0, 0.6});
+        model, inner, {estimate->change, covariance, prior.information, 6.0, estimate->precision});
     const double now = std::sqrt(model_error_covariance(model)(2, 2));
     if (frame > 0) {
       EXPECT_NEAR(now, sigma, 0.01 * sigma) << frame;
