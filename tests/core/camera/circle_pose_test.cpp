@@ -91,18 +91,17 @@ TEST(CirclePoses, CentreDiffersFromTheEllipseCentre) {
 TEST(NearerPose, TiltsTheViewAndKeepsTheOutline) {
   const CirclePose truth = circle_at({400.0, 120.0}, 4.0, 0.5, 0.7);
   const Matrix3d view = image_from_pad(camera_640(), truth);
-  const Ellipse outline = project_circle(view, 1.0).value();
   for (const double drift : {-0.3, -0.15, 0.0, 0.05}) {
     HomographyChange tilt = HomographyChange::Zero();
     tilt.tail<2>() = Vector2d(drift, 0.5 * drift);
-    const Matrix3d corrected = with_nearer_pose(camera_640(), moved(view, tilt));
-    EXPECT_LT(max_difference_px(project_circle(corrected, 1.0).value(), outline), 1e-3) << drift;
-    const Vector2d centre = corrected.col(2).hnormalized();
-    EXPECT_LT((centre - Vector2d(400.0, 120.0)).norm(), 1e-3) << drift;
+    const Matrix3d drifted = moved(view, tilt);
+    const Matrix3d corrected = with_nearer_pose(camera_640(), drifted);
+    const Ellipse outline = project_circle(drifted, 1.0).value();
+    EXPECT_LT(max_difference_px(project_circle(corrected, 1.0).value(), outline), 1e-6) << drift;
     // No rotation: all points of the pad are where they were.
-    for (const Vector2d& point : {Vector2d(0.5, 0.0), Vector2d(0.0, -0.8)}) {
+    for (const Vector2d& point : {Vector2d(0.0, 0.0), Vector2d(0.5, 0.0), Vector2d(0.0, -0.8)}) {
       const Vector2d moved_px = (corrected * point.homogeneous()).hnormalized();
-      EXPECT_LT((moved_px - (view * point.homogeneous()).hnormalized()).norm(), 0.01) << drift;
+      EXPECT_LT((moved_px - (view * point.homogeneous()).hnormalized()).norm(), 0.05) << drift;
     }
   }
 }
