@@ -179,8 +179,8 @@ Matrix3d image_from_pad(const Camera& camera, const CirclePose& pose) {
   return camera.matrix() * camera_from_plane(pose);
 }
 
-// A Lorentz boost of the pad's plane maps the unit circle to itself, and the origin to a point in
-// it.
+// A Lorentz boost of the pad's plane maps the unit circle to itself, and the pad's centre to that
+// of the nearer pose.
 Matrix3d with_nearer_pose(const Camera& camera, const Matrix3d& image_from_pad) {
   const auto outer = project_circle(image_from_pad, 1.0);
   const auto poses = outer ? circle_poses(camera, *outer) : std::nullopt;

@@ -215,6 +215,35 @@ TEST(PadTracker, TracksGrowthAndTilt) {
   }
 }
 
+// A frontal pad that swings and grows. Rings alone hardly determine the tilt of the pad; its lines
+// appear later.
+TEST(PadTracker, LearnsLinesUnderTheTiltOfTheRing) {
+  const Camera camera = Camera::with_hfov(1.4, kWidth, kHeight);
+  const Scene ring = pad_scene();
+  const Scene lines = pad_scene(Pattern::kRingX);
+  const auto truth_at = [](int i) {
+    const double radius = 30.0 * std::pow(1.015, i);
+    return Ellipse{320.0 + 60.0 * std::sin(0.1 * i), 180.0, radius, radius, 0.0};
+  };
+  PadTracker tracker;
+  const auto window_of = [&](const Picture& picture) {
+    LumaWindow window = whole(picture);
+    window.camera = camera;
+    return window;
+  };
+  for (int i = 0; i < 100; ++i) {
+    const Picture picture = frame_of(truth_at(i), i < 80 ? ring : lines, std::uint64_t(i));
+    const bool is_found = i == 0 ? tracker.lock(window_of(picture), truth_at(0))
+                                 : tracker.track(window_of(picture), kFrame_s).has_value();
+    ASSERT_TRUE(is_found) << i;
+  }
+  const auto pattern = tracker.pattern();
+  ASSERT_TRUE(pattern);
+  const Vector2d centre = pattern->image_from_pad.col(2).hnormalized();
+  const Ellipse last = truth_at(99);
+  EXPECT_LT((centre - last.center()).norm(), 0.004 * last.semi_major);
+}
+
 TEST(PadTracker, TracksInFadingLight) {
   Scene scene = pad_scene();
   PadTracker tracker;
