@@ -194,28 +194,66 @@ class PictureSearch {
 
 }  // namespace
 
+void OutlineSharpness::add(const Eigen::Vector2f& normal, float sharpness) {
+  const float m = squared_motion_across(normal);
+  count_ += 1.0F;
+  s_ += sharpness;
+  m_ += m;
+  ss_ += sharpness * sharpness;
+  sm_ += sharpness * m;
+  mm_ += m * m;
+}
+
+void OutlineSharpness::solve() {
+  const float determinant = count_ * mm_ - m_ * m_;
+  if (determinant > 0.0F && count_ > 2.0F) {
+    const float slope = (count_ * sm_ - s_ * m_) / determinant;
+    const float squares = ss_ - (s_ * s_ + slope * slope * determinant) / count_;
+    const float variance = std::max(0.0F, squares) / (count_ - 2.0F) * count_ / determinant;
+    slope_ = std::min(0.0F, slope + float{kAllSigmas} * std::sqrt(variance));
+  }
+  max_ = count_ > 0.0F ? (s_ - slope_ * m_) / count_ : 0.0F;
+}
+
+// The sharpness of a Gaussian edge is the inverse of its variance. Even blur over a length adds a
+// twelfth of the squared length to the variance.
+float OutlineSharpness::loss_at(const Eigen::Vector2f& normal) const {
+  const float m = squared_motion_across(normal);
+  const float largest = 1.0F + max_ * m / 12.0F;
+  const float here = max_ + slope_ * m;
+  return here * largest > max_ ? max_ / here : largest;
+}
+
 double EdgeMeasurer::mean_contrast() const {
   double sum = 0.0;
   for (const EdgeMeasurement& edge : edges()) sum += edge.contrast;
   return count_ == 0 ? 0.0 : sum / static_cast<double>(count_);
 }
 
-// Uses the mean sharpness of the outline, since the sharpness of a single edge is noisy. Limits the
-// variance to that of a uniform distribution over the reach, which chance matches follow.
+// Limits the variance to that of a uniform distribution over the reach, which chance matches
+// follow.
 void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {
   const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
     const float cosine = edge.normal.lpNorm<Eigen::Infinity>();
-    const float variance = vertex_variance(noise, cosine, edge.contrast * mean_sharpness_);
+    const float variance = vertex_variance(noise, cosine, edge.contrast * sharpness_.max());
     edge.sigma_px = std::sqrt(std::min(of_chance, variance + kVertexError * kVertexError));
+  }
+}
+
+// The error of a vertex is inversely proportional to the sharpness.
+void EdgeMeasurer::widen_sigmas_by_blur() {
+  for (std::size_t i = 0; i < count_; ++i) {
+    edges_[i].sigma_px *= sharpness_.loss_at(edges_[i].normal);
   }
 }
 
 template <class Search>
 OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
                                            Polarity polarity,
-                                           const Search& search) {
+                                           const Search& search,
+                                           const Eigen::Vector2f& motion_px) {
   count_ = 0;
   origin_ = outline.origin().cast<double>();
   float total = 0.0F;
@@ -223,7 +261,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
   float inside_turn = 0.0F;
   float matched = 0.0F;
   float matched_turn = 0.0F;
-  float sharpness = 0.0F;  // sum
+  sharpness_ = OutlineSharpness(motion_px);
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const float length = outline.length_px(k);
     total += length;
@@ -237,10 +275,10 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     matched += length;
     matched_turn += outline.turn(k);
     edges_[count_++] = measured(outline, k, *maximum);
-    sharpness += maximum->sharpness;
+    sharpness_.add(normal, maximum->sharpness);
   }
+  sharpness_.solve();
   if (!(inside > 0.0F)) return {};
-  mean_sharpness_ = sharpness / static_cast<float>(std::max<std::size_t>(1, count_));
   return {inside, inside / total, matched / inside, matched_turn / inside_turn};
 }
 
@@ -260,10 +298,13 @@ OutlineSupport EdgeMeasurer::measure(const Picture& picture,
                                      const Ellipse& e,
                                      Polarity polarity,
                                      std::size_t samples,
-                                     double min_gradient) {
+                                     double min_gradient,
+                                     const Eigen::Vector2f& motion_px) {
   const OutlineSamples outline(e, samples, picture.lens);
   const PictureSearch search(picture.luma, outline.origin(), min_gradient);
-  return measure_along(outline, polarity, search);
+  const OutlineSupport support = measure_along(outline, polarity, search, motion_px);
+  widen_sigmas_by_blur();
+  return support;
 }
 
 }  // namespace ellipse

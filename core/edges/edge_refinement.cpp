@@ -53,7 +53,8 @@ std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
                                                 const EdgeLimits& limits,
                                                 std::size_t samples) {
   EdgeMeasurer measurer;
-  const OutlineSupport found = measurer.measure(picture, e, polarity, samples, limits.min_gradient);
+  const OutlineSupport found = measurer.measure(
+      picture, e, polarity, samples, limits.min_gradient, limits.motion_px.cast<float>());
   if (found.support < limits.min_support) return std::nullopt;
   return fitted_to_edges(measurer, picture.lens, e);
 }

@@ -13,10 +13,11 @@ namespace ellipse {
 /// Samples of the outline, as of OutlineSamples.
 inline constexpr std::size_t kRefinementSamples = 96;
 
-/// What an outline's edges must have for a refinement.
+/// What an outline's edges must have for a refinement, and what may have blurred them.
 struct EdgeLimits {
-  double min_gradient = 0.0;  ///< Of each edge [units of Gradient].
-  double min_support = 0.0;   ///< Matched share of the outline inside the picture.
+  double min_gradient = 0.0;            ///< Of each edge [units of Gradient].
+  double min_support = 0.0;             ///< Matched share of the outline inside the picture.
+  Eigen::Vector2d motion_px{0.0, 0.0};  ///< As of OutlineSharpness.
 };
 
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient

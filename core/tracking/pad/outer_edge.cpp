@@ -36,7 +36,7 @@ std::optional<FittedEllipse> on_maxima(const ImageView& luma,
   return refined_on_picture({luma, view.lens},
                             *predicted,
                             polarity_of(circle.is_bright_outside),
-                            {kGradientOfStep * min_contrast, kMajority},
+                            {kGradientOfStep * min_contrast, kMajority, view.motion_px},
                             kRefinementSamples / 2);  // since this runs in each frame
 }
 

@@ -37,10 +37,6 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
-PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
-  return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
-}
-
 // RMS displacement of the edges by a change.
 double rms_px(std::span<const EdgeSample> samples, const HomographyChange& change) {
   double sum = 0.0;
@@ -54,6 +50,12 @@ double tolerance_px(double radius_px) {
 }
 
 }  // namespace
+
+PadView PadTracker::view_in(const LumaWindow& window, const Eigen::Matrix3d& view) const {
+  PadView result(shifted(view, -window.origin_px), window.lens.part(window.origin_px));
+  result.motion_px = motion_px_;
+  return result;
+}
 
 double PadTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
@@ -92,6 +94,7 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
 void PadTracker::begin_frame(const LumaWindow& window) {
   camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
+  motion_px_.setZero();
   refined_.reset();
   inner_count_ = 0;
 }
@@ -296,6 +299,7 @@ void PadTracker::accept(const Attempt& attempt,
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
+  motion_px_ = (attempt.view - view_).topRightCorner<2, 1>();
   view_ = attempt.view;
   unmatched_s_ = 0.0;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/edges/chains.hpp"
+#include "core/edges/outline_samples.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -78,6 +79,51 @@ TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
     EXPECT_NEAR(edge.offset.distance_px, 0.0F, 0.3F);
   }
   EXPECT_GT(measurer.measure(ball.view(), truth, Polarity::kMixed, 64, 10.0).support, 0.8);
+}
+
+// Edges all around an outline, as sharp as `sharpness_of` their normal.
+template <class SharpnessOf>
+OutlineSharpness sharpness_around(const Eigen::Vector2f& motion_px,
+                                  const SharpnessOf& sharpness_of) {
+  OutlineSharpness sharpness(motion_px);
+  for (const Eigen::Vector2f& normal : circle_directions(64)) {
+    sharpness.add(normal, sharpness_of(normal));
+  }
+  sharpness.solve();
+  return sharpness;
+}
+
+TEST(OutlineSharpness, FollowsTheMotionBlur) {
+  const Eigen::Vector2f motion(6.0F, 0.0F);
+  const auto blurred = [](const Eigen::Vector2f& n) { return 0.5F - 0.4F * n.x() * n.x(); };
+  const OutlineSharpness sharpness = sharpness_around(motion, blurred);
+  EXPECT_NEAR(sharpness.max(), 0.5F, 1e-4F);
+  EXPECT_NEAR(sharpness.loss_at({0.0F, 1.0F}), 1.0F, 1e-4F);
+  EXPECT_NEAR(sharpness.loss_at({0.6F, 0.8F}), 0.5F / blurred({0.6F, 0.8F}), 1e-3F);
+  // As blurred as motion during the whole time can make it: a variance of 6^2 / 12 px^2.
+  EXPECT_NEAR(sharpness.loss_at({1.0F, 0.0F}), 1.0F + 0.5F * 36.0F / 12.0F, 1e-3F);
+}
+
+TEST(OutlineSharpness, DoesNotTakeOtherBlurForMotionBlur) {
+  const auto blurred = [](const Eigen::Vector2f& n) { return 0.5F - 0.4F * n.x() * n.x(); };
+  const OutlineSharpness at_rest = sharpness_around({0.0F, 0.0F}, blurred);
+  EXPECT_NEAR(at_rest.max(), 0.3F, 1e-4F);  // the mean
+  EXPECT_EQ(at_rest.loss_at({1.0F, 0.0F}), 1.0F);
+  // Motion of a pixel hardly blurs.
+  const OutlineSharpness slow = sharpness_around({1.0F, 0.0F}, blurred);
+  EXPECT_LT(slow.loss_at({1.0F, 0.0F}), 1.05F);
+  // Motion along y does not blur the edges across x.
+  const OutlineSharpness across = sharpness_around({0.0F, 6.0F}, blurred);
+  EXPECT_EQ(across.loss_at({1.0F, 0.0F}), 1.0F);
+  EXPECT_EQ(across.loss_at({0.0F, 1.0F}), 1.0F);
+  // Scatter that happens to be larger along x.
+  int k = 0;
+  const auto scattered = [&](const Eigen::Vector2f& n) {
+    return 0.5F - 0.05F * n.x() * n.x() + (++k % 3 == 0 ? 0.3F : -0.15F);
+  };
+  EXPECT_EQ(sharpness_around({6.0F, 0.0F}, scattered).loss_at({1.0F, 0.0F}), 1.0F);
+  // Without edges.
+  EXPECT_EQ(OutlineSharpness(Eigen::Vector2f(6.0F, 0.0F)).loss_at({1.0F, 0.0F}), 1.0F);
 }
 
 }  // namespace

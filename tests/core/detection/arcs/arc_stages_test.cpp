@@ -328,5 +328,41 @@ TEST(PictureRefinement, GivesEdgesBesideSaturatedPixelsLittleWeight) {
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.1);
 }
 
+// The mean of pictures of a disc that moves along x, centred on the truth.
+Picture blurred_by_motion(const Ellipse& truth, int length_px, std::uint64_t seed) {
+  Scene scene = disc();
+  scene.sensor.read_noise = 6.0;
+  scene.seed = seed;
+  Picture mean(200, 160);
+  std::vector<int> sums(mean.pixels.size());
+  for (int i = 0; i <= length_px; ++i) {
+    const Ellipse instant = translated(truth, i - 0.5 * length_px, 0.0);
+    const Picture picture = rendered(scene, instant, 200, 160, std::uint64_t(i));
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += picture.pixels[k];
+  }
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    mean.pixels[k] = static_cast<std::uint8_t>(sums[k] / (length_px + 1));
+  }
+  return mean;
+}
+
+// The gradient of the edges across the motion is even over its length.
+TEST(PictureRefinement, GivesEdgesAcrossTheMotionLittleWeight) {
+  const Ellipse truth{100.3, 80.6, 40.0, 36.0, 0.0};
+  double squares_at_rest = 0.0;
+  double squares_in_motion = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Picture picture = blurred_by_motion(truth, 12, seed);
+    const auto error_of = [&](const Eigen::Vector2d& motion_px) {
+      const auto refined =
+          refined_on_picture(picture.view(), truth, Polarity::kDarkInside, {200.0, 0.0, motion_px});
+      return refined ? refined->ellipse.cx - truth.cx : 1e9;
+    };
+    squares_at_rest += std::pow(error_of({0.0, 0.0}), 2);
+    squares_in_motion += std::pow(error_of({36.0, 0.0}), 2);
+  }
+  EXPECT_LT(std::sqrt(squares_in_motion), 0.5 * std::sqrt(squares_at_rest));
+}
+
 }  // namespace
 }  // namespace ellipse
