@@ -353,13 +353,15 @@ TEST(PictureRefinement, GivesEdgesAcrossTheMotionLittleWeight) {
   double squares_in_motion = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Picture picture = blurred_by_motion(truth, 12, seed);
-    const auto error_of = [&](const Eigen::Vector2d& motion_px) {
-      const auto refined =
-          refined_on_picture(picture.view(), truth, Polarity::kDarkInside, {200.0, 0.0, motion_px});
-      return refined ? refined->ellipse.cx - truth.cx : 1e9;
+    const auto refined = [&](const Eigen::Vector2d& motion_px) {
+      return refined_on_picture(
+          picture.view(), truth, Polarity::kDarkInside, {200.0, 0.0, motion_px});
     };
-    squares_at_rest += std::pow(error_of({0.0, 0.0}), 2);
-    squares_in_motion += std::pow(error_of({36.0, 0.0}), 2);
+    const auto at_rest = refined({0.0, 0.0});
+    const auto in_motion = refined({36.0, 0.0});
+    ASSERT_TRUE(at_rest && in_motion) << seed;
+    squares_at_rest += std::pow(at_rest->ellipse.cx - truth.cx, 2);
+    squares_in_motion += std::pow(in_motion->ellipse.cx - truth.cx, 2);
   }
   EXPECT_LT(std::sqrt(squares_in_motion), 0.5 * std::sqrt(squares_at_rest));
 }
