@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/edges/motion_blur.hpp"
 #include "core/edges/noise.hpp"
 
 namespace ellipse {
@@ -65,30 +66,51 @@ float vertex_variance(float noise, float cosine, float curvature) {
   return along * noise * noise * variance / std::max(1e-9F, squared);
 }
 
+// Of the angle between a normal and its row or column, whichever is closer.
+float cosine_along(const Eigen::Vector2f& normal) {
+  return normal.lpNorm<Eigen::Infinity>();
+}
+
+struct EdgePosition {
+  Eigen::Vector2f point;  // from the outline's origin
+  float distance_px;      // from the outline
+};
+
+// @param along_px  From the sample's pixel, along the row or column.
+// @param variance  Of the blur along the edge.
+EdgePosition position_of(const OutlineSamples& outline,
+                         std::size_t k,
+                         float along_px,
+                         float variance) {
+  const Eigen::Vector2f normal = outline.normal(k);
+  Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
+  from_sample[outline.is_flat(k) ? 0 : 1] += along_px;
+  // The outline curves away from its tangent to both sides of the sample.
+  const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
+  const float curvature = outline.curvature(k);
+  return {outline.point(k) + from_sample + inward_shift(variance, curvature) * normal,
+          from_sample.dot(normal) + 0.5F * curvature * (aside * aside + variance)};
+}
+
 EdgeMeasurement measured(const OutlineSamples& outline,
                          std::size_t k,
                          const FoundMaximum& maximum) {
   const Eigen::Vector2f normal = outline.normal(k);
-  Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
-  const int axis = outline.is_flat(k) ? 0 : 1;
-  from_sample[axis] += maximum.along_px;
+  const auto [point, distance_px] = position_of(outline, k, maximum.along_px, kSharpVariance);
   const Eigen::Vector2f& gradient = maximum.gradient;
   const float contrast = gradient.norm();
   const float across = gradient.y() * normal.x() - gradient.x() * normal.y();
   const bool is_bright_inside = gradient.dot(normal) < 0.0F;
   const float sine = (is_bright_inside ? -across : across) / contrast;
-  // The outline curves away from its tangent to both sides of the sample.
-  const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
-  const float curvature = outline.curvature(k);
-  const float distance =
-      from_sample.dot(normal) + curvature * (0.5F * aside * aside + kMaximumShift);
+  const float cosine = cosine_along(normal);
   return {static_cast<int>(k),
-          outline.point(k) + from_sample + kMaximumShift * curvature * normal,
+          point,
           normal,
-          {outline.anomaly(k), outline.px_per_unit(k), distance},
+          {outline.anomaly(k), outline.px_per_unit(k), distance_px},
           maximum.sigma_px,
           sine * (1.0F + sine * sine / 6.0F),  // arc sine, within .003 up to 30 degrees
           contrast,
+          maximum.sharpness / (cosine * cosine),
           outline.length_px(k),
           outline.px_per_ideal(k),
           is_bright_inside};
@@ -192,37 +214,29 @@ class PictureSearch {
   float min_gradient_;
 };
 
-}  // namespace
-
-void OutlineSharpness::add(const Eigen::Vector2f& normal, float sharpness) {
-  const float m = squared_motion_across(normal);
-  count_ += 1.0F;
-  s_ += sharpness;
-  m_ += m;
-  ss_ += sharpness * sharpness;
-  sm_ += sharpness * m;
-  mm_ += m * m;
-}
-
-void OutlineSharpness::solve() {
-  const float determinant = count_ * mm_ - m_ * m_;
-  if (determinant > 0.0F && count_ > 2.0F) {
-    const float slope = (count_ * sm_ - s_ * m_) / determinant;
-    const float squares = ss_ - (s_ * s_ + slope * slope * determinant) / count_;
-    const float variance = std::max(0.0F, squares) / (count_ - 2.0F) * count_ / determinant;
-    slope_ = std::min(0.0F, slope + float{kAllSigmas} * std::sqrt(variance));
+// Centroid of the gradient along a normal, from a pixel on its row or column. nullopt if there is
+// no gradient of the right sign.
+// @param half_px  The line of pixels extends so far to both sides.
+std::optional<float> centroid_along(const ImageView& luma,
+                                    const Eigen::Vector2i& pixel,
+                                    bool is_flat,
+                                    const SignedNormal& normal,
+                                    int half_px) {
+  float sum = 0.0F;
+  float moment = 0.0F;
+  for (int i = -half_px; i <= half_px; ++i) {
+    std::array<Gradient, 1> gradient;
+    const int x = pixel.x() + (is_flat ? i : 0);
+    const int y = pixel.y() + (is_flat ? 0 : i);
+    gradients_along(luma, x, y, is_flat, gradient);
+    const float height = std::max(0.0F, normal.component(gradient[0]));
+    sum += height;
+    moment += height * static_cast<float>(i);
   }
-  max_ = count_ > 0.0F ? (s_ - slope_ * m_) / count_ : 0.0F;
+  return sum > 0.0F ? std::optional(moment / sum) : std::nullopt;
 }
 
-// The sharpness of a Gaussian edge is the inverse of its variance. Even blur over a length adds a
-// twelfth of the squared length to the variance.
-float OutlineSharpness::loss_at(const Eigen::Vector2f& normal) const {
-  const float m = squared_motion_across(normal);
-  const float largest = 1.0F + max_ * m / 12.0F;
-  const float here = max_ + slope_ * m;
-  return here * largest > max_ ? max_ / here : largest;
-}
+}  // namespace
 
 double EdgeMeasurer::mean_contrast() const {
   double sum = 0.0;
@@ -231,29 +245,57 @@ double EdgeMeasurer::mean_contrast() const {
 }
 
 // Limits the variance to that of a uniform distribution over the reach, which chance matches
-// follow.
+// follow. Uses the mean sharpness along the rows and columns, since that of a single edge is noisy.
 void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {
   const float of_chance = (reach_px + 0.5F) * (reach_px + 0.5F) / 3.0F;
+  float sharpness = 0.0F;
+  for (const EdgeMeasurement& edge : edges()) {
+    const float cosine = cosine_along(edge.normal);
+    sharpness += edge.sharpness * cosine * cosine;
+  }
+  sharpness /= static_cast<float>(std::max<std::size_t>(1, count_));
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
-    const float cosine = edge.normal.lpNorm<Eigen::Infinity>();
-    const float variance = vertex_variance(noise, cosine, edge.contrast * sharpness_.max());
+    const float cosine = cosine_along(edge.normal);
+    const float variance = vertex_variance(noise, cosine, edge.contrast * sharpness);
     edge.sigma_px = std::sqrt(std::min(of_chance, variance + kVertexError * kVertexError));
   }
 }
 
-// The error of a vertex is inversely proportional to the sharpness.
-void EdgeMeasurer::widen_sigmas_by_blur() {
+// Even noise of n pixels displaces their centroid by sqrt(sum of squared distances), as n^1.5.
+void EdgeMeasurer::move_to_centroids(const Picture& picture,
+                                     const OutlineSamples& outline,
+                                     Polarity polarity,
+                                     const Eigen::Vector2f& blur_px) {
+  const int sharp_px = kReachOnPicture + 1;
   for (std::size_t i = 0; i < count_; ++i) {
-    edges_[i].sigma_px *= sharpness_.loss_at(edges_[i].normal);
+    EdgeMeasurement& edge = edges_[i];
+    const auto k = static_cast<std::size_t>(edge.sample);
+    const float across_px = std::abs(edge.normal.dot(blur_px));
+    const float blurred_px = across_px / cosine_along(edge.normal);
+    const int half_px = sharp_px + static_cast<int>(std::ceil(0.5F * blurred_px));
+    edge.sigma_px *= std::pow((2.0F * half_px + 1.0F) / (2.0F * sharp_px + 1.0F), 1.5F);
+    const SearchableArea area(
+        picture.luma.width, picture.luma.height, half_px + GradientMap::kBorder, outline.origin());
+    if (!area.has(outline.nearest(k))) continue;
+    const auto along_px = centroid_along(picture.luma,
+                                         outline.nearest(k) + outline.origin(),
+                                         outline.is_flat(k),
+                                         {edge.normal, polarity},
+                                         half_px);
+    if (!along_px) continue;
+    const float squared_along = blur_px.squaredNorm() - across_px * across_px;
+    const auto [point, distance_px] =
+        position_of(outline, k, *along_px, kSharpVariance + even_variance(squared_along));
+    edge.point = point;
+    edge.offset.distance_px = distance_px;
   }
 }
 
 template <class Search>
 OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
                                            Polarity polarity,
-                                           const Search& search,
-                                           const Eigen::Vector2f& motion_px) {
+                                           const Search& search) {
   count_ = 0;
   origin_ = outline.origin().cast<double>();
   float total = 0.0F;
@@ -261,7 +303,6 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
   float inside_turn = 0.0F;
   float matched = 0.0F;
   float matched_turn = 0.0F;
-  sharpness_ = OutlineSharpness(motion_px);
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const float length = outline.length_px(k);
     total += length;
@@ -275,9 +316,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     matched += length;
     matched_turn += outline.turn(k);
     edges_[count_++] = measured(outline, k, *maximum);
-    sharpness_.add(normal, maximum->sharpness);
   }
-  sharpness_.solve();
   if (!(inside > 0.0F)) return {};
   return {inside, inside / total, matched / inside, matched_turn / inside_turn};
 }
@@ -302,8 +341,10 @@ OutlineSupport EdgeMeasurer::measure(const Picture& picture,
                                      const Eigen::Vector2f& motion_px) {
   const OutlineSamples outline(e, samples, picture.lens);
   const PictureSearch search(picture.luma, outline.origin(), min_gradient);
-  const OutlineSupport support = measure_along(outline, polarity, search, motion_px);
-  widen_sigmas_by_blur();
+  const OutlineSupport support = measure_along(outline, polarity, search);
+  if (motion_px.isZero()) return support;
+  const Eigen::Vector2f blur_px = motion_blur(edges(), motion_px);
+  if (!blur_px.isZero()) move_to_centroids(picture, outline, polarity, blur_px);
   return support;
 }
 

@@ -36,6 +36,7 @@ struct EdgeMeasurement {
   float sigma_px = 0.0F;             ///< Standard deviation of the offset.
   float direction_error_rad = 0.0F;  ///< Angle from the normal to the gradient.
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
+  float sharpness = 0.0F;            ///< As of SubpixelMaximum, but across the outline.
   float length_px = 0.0F;            ///< Length of the outline that the sample represents.
   float px_per_ideal = 1.0F;         ///< As OutlineSamples::px_per_ideal().
   bool is_bright_inside = false;     ///< Whether the gradient points inwards.
@@ -47,44 +48,6 @@ struct OutlineSupport {
   double inside_fraction = 0.0;  ///< The same, as a share of the outline.
   double support = 0.0;          ///< Matched share of the inside length.
   double turn_support = 0.0;     ///< Matched share of the outline's turn inside.
-};
-
-/// The sharpness of an outline's edges by the direction of their normals: motion during the
-/// exposure blurs the edges across it. A linear function of the squared motion across the edge,
-/// fitted by least squares, since the sharpness of a single edge is noisy. Changes within three
-/// standard deviations of the slope do not count, nor blur longer than the motion.
-class OutlineSharpness {
- public:
-  /// @param motion_px  Displacement of the outline during the exposure, or longer; zero = unknown.
-  explicit OutlineSharpness(const Eigen::Vector2f& motion_px = {0.0F, 0.0F})
-      : motion_px_(motion_px) {}
-
-  /// @param sharpness  As SubpixelMaximum::sharpness.
-  void add(const Eigen::Vector2f& normal, float sharpness);
-  /// To be called after the last add().
-  void solve();
-
-  /// Of edges along the motion; without motion the mean.
-  [[nodiscard]] float max() const { return max_; }
-  /// The ratio of max() to the sharpness of edges with this normal, at least 1.
-  [[nodiscard]] float loss_at(const Eigen::Vector2f& normal) const;
-
- private:
-  [[nodiscard]] float squared_motion_across(const Eigen::Vector2f& normal) const {
-    const float across_px = normal.dot(motion_px_);
-    return across_px * across_px;
-  }
-
-  Eigen::Vector2f motion_px_;
-  float max_ = 0.0F;
-  float slope_ = 0.0F;  // at most 0
-  // Sums over the edges: of the sharpness s, the squared motion across m, and their products.
-  float count_ = 0.0F;
-  float s_ = 0.0F;
-  float m_ = 0.0F;
-  float ss_ = 0.0F;
-  float sm_ = 0.0F;
-  float mm_ = 0.0F;
 };
 
 /// Matches edges to an ellipse's outline: searches at each sample, along the row or column closest
@@ -105,11 +68,12 @@ class EdgeMeasurer {
                          int reach_px);
 
   /// Matches the highest gradient maxima within two pixels on the picture itself; computes no
-  /// gradient elsewhere. The standard deviations are those without noise, which is unknown:
-  /// kPixelError beside a saturated pixel, since clipping moves the maximum of the gradient; larger
-  /// for edges blurred by motion.
+  /// gradient elsewhere. The gradient of an edge blurred by motion has no clear maximum; the edge
+  /// is at its centroid, the mean position during the exposure. The standard deviations are those
+  /// without noise, which is unknown: kPixelError beside a saturated pixel, since clipping moves
+  /// the maximum of the gradient; larger for centroids of long lines of pixels.
   /// @param min_gradient  Weaker gradient maxima do not count [units of Gradient].
-  /// @param motion_px     As of OutlineSharpness.
+  /// @param motion_px     As of motion_blur(); zero = unknown.
   OutlineSupport measure(const Picture& picture,
                          const Ellipse& e,
                          Polarity polarity,
@@ -126,16 +90,17 @@ class EdgeMeasurer {
 
  private:
   void compute_sigmas(float noise, float reach_px);
-  void widen_sigmas_by_blur();
+  void move_to_centroids(const Picture& picture,
+                         const OutlineSamples& outline,
+                         Polarity polarity,
+                         const Eigen::Vector2f& blur_px);
   template <class Search>
   OutlineSupport measure_along(const OutlineSamples& outline,
                                Polarity polarity,
-                               const Search& search,
-                               const Eigen::Vector2f& motion_px = {0.0F, 0.0F});
+                               const Search& search);
 
   std::array<EdgeMeasurement, OutlineSamples::kMaxSamples> edges_;
   std::size_t count_ = 0;
-  OutlineSharpness sharpness_;  // of the last call
   Eigen::Vector2d origin_{0.0, 0.0};
 };
 

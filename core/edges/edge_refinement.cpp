@@ -14,7 +14,13 @@ namespace {
 
 using Points = std::array<Eigen::Vector2d, OutlineSamples::kMaxSamples>;
 
+// Standard deviation of an edge over that of a sharp one.
+double spread_of(const EdgeMeasurement& edge) {
+  return edge.sigma_px / kVertexError;
+}
+
 // One Gauss-Newton step of the ellipse to the edges, at these points of the ideal plane.
+// Its distances are relative to the spread of each edge.
 std::optional<FittedEllipse> stepped(const Ellipse& e,
                                      std::span<const EdgeMeasurement> edges,
                                      const Points& ideal) {
@@ -25,8 +31,8 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
     offsets[i] = fit.offset_of(ideal[i]);
     offsets[i].distance_px *= edges[i].px_per_ideal;
     offsets[i].px_per_unit *= edges[i].px_per_ideal;
-    const double precision = edges[i].length_px * std::pow(kVertexError / edges[i].sigma_px, 2);
-    distances[i] = {offsets[i].distance_px, precision};
+    const double spread = spread_of(edges[i]);
+    distances[i] = {offsets[i].distance_px / spread, edges[i].length_px / (spread * spread)};
   }
   std::array<WeightedDistance, OutlineSamples::kMaxSamples> sorted = distances;
   const double scatter_px = robust_sigma(std::span(sorted).first(edges.size()));
@@ -36,7 +42,8 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
     const auto& [distance_px, precision] = distances[i];
     const double weight = precision * tukey_weight(distance_px, reach_px);
     if (weight > 0.0) fit.add(offsets[i], weight);
-    residuals.add(edges[i].sample, distance_px, reach_px, precision);
+    const double reach_of_edge = spread_of(edges[i]) * reach_px;
+    residuals.add(edges[i].sample, offsets[i].distance_px, reach_of_edge, precision);
   }
   if (residuals.samples() < kMinEdgesOfEllipse) return std::nullopt;
   const auto better = fit.solve();
@@ -51,10 +58,11 @@ std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
                                                 const Ellipse& e,
                                                 Polarity polarity,
                                                 const EdgeLimits& limits,
-                                                std::size_t samples) {
+                                                std::size_t samples,
+                                                const Eigen::Vector2d& motion_px) {
   EdgeMeasurer measurer;
-  const OutlineSupport found = measurer.measure(
-      picture, e, polarity, samples, limits.min_gradient, limits.motion_px.cast<float>());
+  const OutlineSupport found =
+      measurer.measure(picture, e, polarity, samples, limits.min_gradient, motion_px.cast<float>());
   if (found.support < limits.min_support) return std::nullopt;
   return fitted_to_edges(measurer, picture.lens, e);
 }

@@ -13,19 +13,19 @@ namespace ellipse {
 /// Samples of the outline, as of OutlineSamples.
 inline constexpr std::size_t kRefinementSamples = 96;
 
-/// What an outline's edges must have for a refinement, and what may have blurred them.
+/// What an outline's edges must have for a refinement.
 struct EdgeLimits {
-  double min_gradient = 0.0;            ///< Of each edge [units of Gradient].
-  double min_support = 0.0;             ///< Matched share of the outline inside the picture.
-  Eigen::Vector2d motion_px{0.0, 0.0};  ///< As of OutlineSharpness.
+  double min_gradient = 0.0;  ///< Of each edge [units of Gradient].
+  double min_support = 0.0;   ///< Matched share of the outline inside the picture.
 };
 
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient
 /// maximum across its perimeter at each sample and computes no gradient elsewhere.
 ///
-/// @param picture  Its lens distorts the perimeter for the search; `e` and the result are in the
-///                 ideal plane.
-/// @param samples  As of OutlineSamples. Fewer samples are faster and noisier.
+/// @param picture    Its lens distorts the perimeter for the search; `e` and the result are in the
+///                   ideal plane.
+/// @param samples    As of OutlineSamples. Fewer samples are faster and noisier.
+/// @param motion_px  As of motion_blur(); zero = unknown.
 /// @return nullopt if fewer edges than the limits are near, too few for a fit, or the fit fails.
 ///         Allocates nothing; O(samples).
 [[nodiscard]] std::optional<FittedEllipse> refined_on_picture(
@@ -33,7 +33,8 @@ struct EdgeLimits {
     const Ellipse& e,
     Polarity polarity,
     const EdgeLimits& limits,
-    std::size_t samples = kRefinementSamples);
+    std::size_t samples = kRefinementSamples,
+    const Eigen::Vector2d& motion_px = {0.0, 0.0});
 
 /// Refines an ellipse on the edges that were measured along it: the last step of
 /// refined_on_picture().

@@ -25,11 +25,16 @@ struct SubpixelMaximum {
 /// Variance of the blur of a lens in focus [px^2].
 inline constexpr double kLensVariance = 0.36;
 
-/// Inward shift of a curved edge's gradient maximum [px] per curvature [1/px]: smoothing of
-/// variance v moves the maximum of an edge of curvature k inwards by v k / 2, to first order (own
-/// derivation from the mean of a disc's edge over a Gaussian).
-/// The 5 x 5 kernels have a variance of 1 along the edge.
-inline constexpr auto kMaximumShift = static_cast<float>(0.5 * (1.0 + kLensVariance));
+/// Variance of a sharp edge's blur, along the edge: of the lens and the 5 x 5 kernels [px^2].
+inline constexpr auto kSharpVariance = static_cast<float>(1.0 + kLensVariance);
+
+/// Inward shift of a curved edge by blur along it [px], to first order (own derivation from the
+/// mean of a disc's edge over a Gaussian).
+/// @param variance   [px^2]
+/// @param curvature  [1/px]
+[[nodiscard]] constexpr float inward_shift(float variance, float curvature) {
+  return 0.5F * variance * curvature;
+}
 
 /// Vertex of the parabola through three values at -1, 0 and 1, if it has one.
 template <class Number>

@@ -16,7 +16,7 @@ struct RingEdges {
 /// two standard deviations of the blur apart. Their middle line stays in place, and the width of
 /// the ring is a constant share of its radius, so that one parameter determines both edges. Edges
 /// that are far apart are returned unchanged. Assumes equal contrast on both sides of the ring and
-/// a lens in focus, as for kMaximumShift.
+/// a lens in focus, as for kSharpVariance.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 [[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);

@@ -37,7 +37,7 @@ constexpr Source kSources[] = {
     {"airlab-mbzirc", {631, 0}, {630, 1}},
     {"airlab-deformed", {173, 1}, {174, 0}},
     {"airlab-gascola", {455, 0}, {455, 0}},
-    {"pupil-infrared", {1098, 4}, {1058, 0}},
+    {"pupil-infrared", {1099, 3}, {1058, 0}},
     {"pupil-blinks", {263, 0}, {258, 0}},
     {"pupil-blinks", {221, 0}, {204, 0}, "jpeg"},
     {"calibration-discs", {20, 0}, {20, 0}},

@@ -42,6 +42,22 @@ inline Picture rendered(const ellipse::Scene& scene,
   return picture;
 }
 
+/// The mean of pictures of an outline that moves by a length [px] along x, centred on the truth.
+/// @param render  Renders the outline at the instant k, from 0: picture = render(ellipse, k).
+template <class Render>
+Picture blurred_by_motion(const ellipse::Ellipse& truth, int length_px, const Render& render) {
+  Picture mean = render(truth, 0);
+  std::vector<int> sums(mean.pixels.size());
+  for (int k = 0; k <= length_px; ++k) {
+    const Picture picture = render(ellipse::translated(truth, k - 0.5 * length_px, 0.0), k);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += picture.pixels[i];
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    mean.pixels[i] = static_cast<std::uint8_t>(sums[i] / (length_px + 1));
+  }
+  return mean;
+}
+
 /// A ball lit from above: brighter than its ground above the centre and darker below. `outline` is
 /// a circle.
 inline Picture lit_ball(const ellipse::Ellipse& outline, int width, int height) {

@@ -30,27 +30,30 @@ RingMatrix widened(const RingMatrix& information, double sigma) {
 std::optional<FittedEllipse> on_maxima(const ImageView& luma,
                                        const PadView& view,
                                        const PadCircle& circle,
-                                       double min_contrast) {
+                                       double min_contrast,
+                                       const Eigen::Vector2d& motion_px) {
   const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
   if (!predicted) return std::nullopt;
   return refined_on_picture({luma, view.lens},
                             *predicted,
                             polarity_of(circle.is_bright_outside),
-                            {kGradientOfStep * min_contrast, kMajority, view.motion_px},
-                            kRefinementSamples / 2);  // since this runs in each frame
+                            {kGradientOfStep * min_contrast, kMajority},
+                            kRefinementSamples / 2,  // since this runs in each frame
+                            motion_px);
 }
 
 // Removes the blur bias that separates the gradient maxima of a thin ring's two edges.
 std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
                                              const PadView& view,
                                              const PadModel& model,
-                                             double min_contrast) {
+                                             double min_contrast,
+                                             const Eigen::Vector2d& motion_px) {
   const PadCircle& outer = model.circles.front();
-  auto exact = on_maxima(luma, view, outer, min_contrast);
+  auto exact = on_maxima(luma, view, outer, min_contrast, motion_px);
   const bool is_ring =
       model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
   if (!exact || !is_ring) return exact;
-  const auto inner = on_maxima(luma, view, model.circles[1], min_contrast);
+  const auto inner = on_maxima(luma, view, model.circles[1], min_contrast, motion_px);
   if (!inner) return exact;
   const Ellipse blurred = exact->ellipse;
   exact->ellipse = without_blur_bias({blurred, inner->ellipse}).outer;
@@ -67,7 +70,8 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
                                                 const PadView& view,
                                                 const PadModel& model,
                                                 double gain,
-                                                Refinement refinement) {
+                                                Refinement refinement,
+                                                const Eigen::Vector2d& motion_px) {
   const auto outer = project_circle(view.ideal_from_pad, 1.0);
   if (!outer || refinement == Refinement::kNone) return std::nullopt;
   const PadCircle& circle = model.circles.front();
@@ -80,16 +84,20 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
     exact = refined_photometrically(
         luma, *outer, polarity_of(circle.is_bright_outside), ring_px, min_contrast);
   }
-  if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast);
+  if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast, motion_px);
   if (!exact) return std::nullopt;
-  return is_same(exact->ellipse, *outer, kOuterEdgeTolerance) ? exact : std::nullopt;
+  // Motion blurs the edges over at most its length, so that each may be predicted half of it off.
+  Tolerance tolerance = kOuterEdgeTolerance;
+  tolerance.px += 0.5 * motion_px.norm();
+  return is_same(exact->ellipse, *outer, tolerance) ? exact : std::nullopt;
 }
 
 std::optional<FittedEllipse> refined_circle(const ImageView& luma,
                                             const PadView& view,
                                             const PadCircle& circle,
-                                            double gain) {
-  return on_maxima(luma, view, circle, kMinContrastShare * circle.contrast * gain);
+                                            double gain,
+                                            const Eigen::Vector2d& motion_px) {
+  return on_maxima(luma, view, circle, kMinContrastShare * circle.contrast * gain, motion_px);
 }
 
 }  // namespace ellipse

@@ -37,6 +37,10 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
+PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
+  return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
+}
+
 // RMS displacement of the edges by a change.
 double rms_px(std::span<const EdgeSample> samples, const HomographyChange& change) {
   double sum = 0.0;
@@ -50,12 +54,6 @@ double tolerance_px(double radius_px) {
 }
 
 }  // namespace
-
-PadView PadTracker::view_in(const LumaWindow& window, const Eigen::Matrix3d& view) const {
-  PadView result(shifted(view, -window.origin_px), window.lens.part(window.origin_px));
-  result.motion_px = motion_px_;
-  return result;
-}
 
 double PadTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
@@ -299,9 +297,17 @@ void PadTracker::accept(const Attempt& attempt,
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
-  motion_px_ = (attempt.view - view_).topRightCorner<2, 1>();
+  if (unmatched_s_ == 0.0) motion_px_ = motion_to(attempt.view);
   view_ = attempt.view;
   unmatched_s_ = 0.0;
+}
+
+// Displacement of the pad's centre in the picture; zero if unknown.
+Eigen::Vector2d PadTracker::motion_to(const Eigen::Matrix3d& view) const {
+  const auto before = PadView(view_, lens_).at({0.0, 0.0});
+  const auto after = PadView(view, lens_).at({0.0, 0.0});
+  return before && after ? Eigen::Vector2d(after->point - before->point)
+                         : Eigen::Vector2d(0.0, 0.0);
 }
 
 void PadTracker::propagate_errors(const Attempt& attempt,
@@ -329,8 +335,8 @@ void PadTracker::measure_edges(const LumaWindow& window, double visible) {
 // Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
 void PadTracker::refine(const LumaWindow& window, double visible) {
   if (visible < kEnoughVisible) return;
-  const auto exact =
-      refined_outer_edge(window.luma, view_in(window, view_), model_, gain_, refinement_);
+  const auto exact = refined_outer_edge(
+      window.luma, view_in(window, view_), model_, gain_, refinement_, motion_px_);
   if (!exact) return;
   const auto view =
       with_circle(view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
@@ -344,7 +350,7 @@ void PadTracker::measure_inner_edges(const LumaWindow& window) {
   if (!refined_) return;
   const PadView view = view_in(window, view_);
   for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
-    const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_);
+    const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_, motion_px_);
     if (!edge) continue;
     inner_edges_[inner_count_++] = {
         translated(edge->ellipse, window.origin_px.x(), window.origin_px.y()),

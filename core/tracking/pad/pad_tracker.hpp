@@ -101,7 +101,6 @@ class PadTracker {
   };
 
   void begin_frame(const LumaWindow& window);
-  [[nodiscard]] PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) const;
   [[nodiscard]] HomographyFilter predicted(double elapsed_s, double looseness) const;
   [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
                                                    const Eigen::Matrix3d& start,
@@ -116,6 +115,7 @@ class PadTracker {
               const HomographyFilter& before,
               double looseness,
               double elapsed_s);
+  [[nodiscard]] Eigen::Vector2d motion_to(const Eigen::Matrix3d& view) const;
   void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
   [[nodiscard]] HomographyCovariance covariance() const;
   [[nodiscard]] HomographyCovariance detected_covariance() const;
@@ -141,7 +141,7 @@ class PadTracker {
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();          // frame from pad
   Eigen::Matrix3d matched_view_ = Eigen::Matrix3d::Identity();  // of the last match
-  Eigen::Vector2d motion_px_{0.0, 0.0};  // since the last frame, in a matched one
+  Eigen::Vector2d motion_px_{0.0, 0.0};  // of its centre in the picture; zero = unknown
   HomographyFilter motion_;
   std::array<FittedEllipse, 2> inner_edges_;
   std::size_t inner_count_ = 0;

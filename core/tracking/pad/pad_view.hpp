@@ -19,7 +19,6 @@ struct PadView {
 
   Eigen::Matrix3d ideal_from_pad;
   LensView lens;
-  Eigen::Vector2d motion_px{0.0, 0.0};  ///< Displacement since the last frame; zero = unknown.
 
   /// Projects a pad point; nullopt if it is behind the camera or outside the lens's range.
   [[nodiscard]] std::optional<ProjectedPoint> at(const Eigen::Vector2d& pad_point) const;

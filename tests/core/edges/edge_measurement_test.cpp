@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/edges/chains.hpp"
-#include "core/edges/outline_samples.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -81,49 +81,53 @@ TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
   EXPECT_GT(measurer.measure(ball.view(), truth, Polarity::kMixed, 64, 10.0).support, 0.8);
 }
 
-// Edges all around an outline, as sharp as `sharpness_of` their normal.
-template <class SharpnessOf>
-OutlineSharpness sharpness_around(const Eigen::Vector2f& motion_px,
-                                  const SharpnessOf& sharpness_of) {
-  OutlineSharpness sharpness(motion_px);
-  for (const Eigen::Vector2f& normal : circle_directions(64)) {
-    sharpness.add(normal, sharpness_of(normal));
+Picture blurred_disc(const Ellipse& e, int length_px) {
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  return support::blurred_by_motion(e, length_px, [&](const Ellipse& at, int k) {
+    return rendered(scene, at, 200, 160, std::uint64_t(k));
+  });
+}
+
+// The centroid is over at least 2 x 9 + 1 pixels instead of 2 x 3 + 1.
+TEST(EdgeMeasurer, IsLessSureOfEdgesBlurredByMotion) {
+  const Ellipse truth{100.0, 80.0, 60.0, 50.0, 0.0};
+  const Picture picture = blurred_disc(truth, 12);
+  EdgeMeasurer measurer;
+  measurer.measure({picture.view(), {}}, truth, Polarity::kMixed, 64, 200.0, {36.0F, 0.0F});
+  int across = 0;
+  for (const EdgeMeasurement& edge : measurer.edges()) {
+    if (std::abs(edge.normal.x()) > 0.99F) {
+      ++across;
+      EXPECT_GE(edge.sigma_px, 0.99 * std::pow(19.0 / 7.0, 1.5) * kVertexError);
+    } else if (std::abs(edge.normal.y()) > 0.999F) {
+      EXPECT_LT(edge.sigma_px, 2.0F * kVertexError);
+    }
   }
-  sharpness.solve();
-  return sharpness;
+  EXPECT_GT(across, 4);
 }
 
-TEST(OutlineSharpness, FollowsTheMotionBlur) {
-  const Eigen::Vector2f motion(6.0F, 0.0F);
-  const auto blurred = [](const Eigen::Vector2f& n) { return 0.5F - 0.4F * n.x() * n.x(); };
-  const OutlineSharpness sharpness = sharpness_around(motion, blurred);
-  EXPECT_NEAR(sharpness.max(), 0.5F, 1e-4F);
-  EXPECT_NEAR(sharpness.loss_at({0.0F, 1.0F}), 1.0F, 1e-4F);
-  EXPECT_NEAR(sharpness.loss_at({0.6F, 0.8F}), 0.5F / blurred({0.6F, 0.8F}), 1e-3F);
-  // As blurred as motion during the whole time can make it: a variance of 6^2 / 12 px^2.
-  EXPECT_NEAR(sharpness.loss_at({1.0F, 0.0F}), 1.0F + 0.5F * 36.0F / 12.0F, 1e-3F);
-}
-
-TEST(OutlineSharpness, DoesNotTakeOtherBlurForMotionBlur) {
-  const auto blurred = [](const Eigen::Vector2f& n) { return 0.5F - 0.4F * n.x() * n.x(); };
-  const OutlineSharpness at_rest = sharpness_around({0.0F, 0.0F}, blurred);
-  EXPECT_NEAR(at_rest.max(), 0.3F, 1e-4F);  // the mean
-  EXPECT_EQ(at_rest.loss_at({1.0F, 0.0F}), 1.0F);
-  // Motion of a pixel hardly blurs.
-  const OutlineSharpness slow = sharpness_around({1.0F, 0.0F}, blurred);
-  EXPECT_LT(slow.loss_at({1.0F, 0.0F}), 1.05F);
-  // Motion along y does not blur the edges across x.
-  const OutlineSharpness across = sharpness_around({0.0F, 6.0F}, blurred);
-  EXPECT_EQ(across.loss_at({1.0F, 0.0F}), 1.0F);
-  EXPECT_EQ(across.loss_at({0.0F, 1.0F}), 1.0F);
-  // Scatter that happens to be larger along x.
-  int k = 0;
-  const auto scattered = [&](const Eigen::Vector2f& n) {
-    return 0.5F - 0.05F * n.x() * n.x() + (++k % 3 == 0 ? 0.3F : -0.15F);
-  };
-  EXPECT_EQ(sharpness_around({6.0F, 0.0F}, scattered).loss_at({1.0F, 0.0F}), 1.0F);
-  // Without edges.
-  EXPECT_EQ(OutlineSharpness(Eigen::Vector2f(6.0F, 0.0F)).loss_at({1.0F, 0.0F}), 1.0F);
+// Of a view into a larger picture.
+TEST(EdgeMeasurer, ReadsNothingOutsideThePictureInMotionBlur) {
+  const Ellipse truth{100.0, 80.0, 92.0, 60.0, 0.0};
+  const Picture inside = blurred_disc(truth, 12);
+  std::vector<Eigen::Vector2f> points[2];
+  for (int i = 0; i < 2; ++i) {
+    Picture around(240, 160);
+    for (int y = 0; y < 160; ++y) {
+      for (int x = 0; x < 240; ++x) {
+        const bool is_inside = x >= 20 && x < 220;
+        around.at(x, y) = is_inside ? inside.pixels[std::size_t(200 * y + x - 20)]
+                                    : static_cast<std::uint8_t>(i * 255 * (x & 1));
+      }
+    }
+    const ImageView view{around.pixels.data() + 20, 200, 160, 240};
+    EdgeMeasurer measurer;
+    measurer.measure({view, {}}, truth, Polarity::kMixed, 64, 200.0, {36.0F, 0.0F});
+    for (const EdgeMeasurement& edge : measurer.edges()) points[i].push_back(edge.point);
+  }
+  EXPECT_GT(points[0].size(), 40U);
+  EXPECT_EQ(points[0], points[1]);
 }
 
 }  // namespace

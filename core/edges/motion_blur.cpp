@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "core/edges/motion_blur.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/edges/noise.hpp"
+#include "core/geometry/robust.hpp"
+
+namespace ellipse {
+namespace {
+
+double squared_across(const Eigen::Vector2f& motion_px, const Eigen::Vector2f& normal) {
+  return std::pow(static_cast<double>(normal.dot(motion_px)), 2);
+}
+
+// The sharpness s / (1 + loss x squared motion across) of an outline's edges, linearized at a loss
+// with the best s for it.
+class LinearFit {
+ public:
+  LinearFit(double loss, std::span<const EdgeMeasurement> edges, const Eigen::Vector2f& motion_px)
+      : loss_(loss), edges_(edges), motion_px_(motion_px) {
+    double sharpness = 0.0;
+    double squares = 0.0;
+    double slopes = 0.0;
+    for (const EdgeMeasurement& edge : edges_) {
+      const double across = squared_across(motion_px_, edge.normal);
+      const double share = 1.0 / (1.0 + loss_ * across);
+      sharpness += edge.sharpness * share;
+      squares += share * share;
+      slopes += across * share * share * share;
+    }
+    sharpest_ = sharpness / squares;
+    mean_slope_ = slopes / squares;
+  }
+
+  // s.
+  [[nodiscard]] double sharpest() const { return sharpest_; }
+
+  // Change of the loss towards the least squares.
+  [[nodiscard]] double change() const {
+    double products = 0.0;
+    double squares = 0.0;
+    for (const EdgeMeasurement& edge : edges_) {
+      const Row row = row_of(edge);
+      products += row.slope * row.residual;
+      squares += row.slope * row.slope;
+    }
+    return squares > 0.0 ? products / squares : 0.0;
+  }
+
+  // Standard deviation of the loss; infinite if the edges do not determine it.
+  [[nodiscard]] double sigma() const {
+    double squares = 0.0;
+    ResidualSums residuals;
+    for (const EdgeMeasurement& edge : edges_) {
+      const Row row = row_of(edge);
+      squares += row.slope * row.slope;
+      residuals.add(edge.sample, row.residual, std::numeric_limits<double>::infinity(), 1.0);
+    }
+    return 1.0 / std::sqrt(squares * residuals.information_factor(2, 0.0));
+  }
+
+ private:
+  struct Row {
+    double slope = 0.0;  // by the loss alone: without the part that a change of s explains
+    double residual = 0.0;
+  };
+
+  [[nodiscard]] Row row_of(const EdgeMeasurement& edge) const {
+    const double across = squared_across(motion_px_, edge.normal);
+    const double share = 1.0 / (1.0 + loss_ * across);
+    return {-sharpest_ * share * (across * share - mean_slope_),
+            edge.sharpness - sharpest_ * share};
+  }
+
+  double loss_;
+  std::span<const EdgeMeasurement> edges_;
+  Eigen::Vector2f motion_px_;
+  double sharpest_ = 0.0;
+  double mean_slope_ = 0.0;
+};
+
+}  // namespace
+
+// The sharpness of a Gaussian edge is the inverse of its variance, to which blur adds. The
+// residuals of neighbours are correlated if the sharpness differs for another reason than motion,
+// such as a lid over a pupil.
+Eigen::Vector2f motion_blur(std::span<const EdgeMeasurement> edges,
+                            const Eigen::Vector2f& motion_px) {
+  const Eigen::Vector2f none(0.0F, 0.0F);
+  if (edges.empty()) return none;
+  double loss = 0.0;
+  LinearFit fit(loss, edges, motion_px);
+  for (int step = 0; step < 3; ++step) {
+    const double max_loss = even_variance(std::max(0.0, fit.sharpest()));
+    loss = std::clamp(loss + fit.change(), 0.0, max_loss);
+    if (loss == 0.0) return none;
+    fit = LinearFit(loss, edges, motion_px);
+  }
+  if (!(loss > kAllSigmas * fit.sigma())) return none;
+  return static_cast<float>(std::sqrt(loss / even_variance(fit.sharpest()))) * motion_px;
+}
+
+}  // namespace ellipse
