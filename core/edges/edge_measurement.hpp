@@ -55,7 +55,7 @@ struct OutlineSupport {
 /// of the right sign, or of either sign if the polarity is mixed. Locates it to sub-pixel accuracy
 /// [Devernay1995] and corrects the shift of curved edges by smoothing.
 ///
-/// One object serves one thread. Allocates nothing; O(samples x reach).
+/// One object serves one thread. Allocates nothing; O(samples x (reach + length of the blur)).
 class EdgeMeasurer {
  public:
   /// Matches the nearest chained gradient maxima of a map; `e` is in its ideal plane.
