@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/edges/motion_blur.hpp"
 #include "core/edges/noise.hpp"
 
 namespace ellipse {
@@ -244,6 +243,47 @@ double EdgeMeasurer::mean_contrast() const {
   return count_ == 0 ? 0.0 : sum / static_cast<double>(count_);
 }
 
+// The sharpness of a Gaussian edge of variance v, by differences of pixels at c to its normal, is
+// 1 / (v + c^2 / 3): to first order, and on average over positions within a pixel.
+float EdgeMeasurer::defocus_variance() const {
+  if (count_ == 0) return 0.0F;
+  float squared_cosines = 0.0F;
+  for (const EdgeMeasurement& edge : edges()) {
+    squared_cosines += std::pow(cosine_along(edge.normal), 2.0F);
+  }
+  const Estimate mean = sharpness();
+  const auto sharpness = static_cast<float>(mean.value);
+  const float variance = 1.0F / sharpness - squared_cosines / (3.0F * static_cast<float>(count_));
+  const float sigma = static_cast<float>(mean.sigma) / (sharpness * sharpness);
+  const float defocus = variance - kSharpVariance;
+  return defocus > static_cast<float>(kAllSigmas) * sigma ? defocus : 0.0F;
+}
+
+Estimate EdgeMeasurer::sharpness() const {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const EdgeMeasurement& edge : edges()) {
+    sum += edge.sharpness;
+    squares += std::pow(double{edge.sharpness}, 2);
+  }
+  const auto n = static_cast<double>(count_);
+  const double mean = sum / n;
+  return {mean, std::sqrt((squares / n - mean * mean) / n)};
+}
+
+// Defocus moves curved edges farther inwards than measured() assumes.
+void EdgeMeasurer::correct_curvature(const OutlineSamples& outline) {
+  const float defocus = defocus_variance();
+  if (defocus == 0.0F) return;
+  for (std::size_t i = 0; i < count_; ++i) {
+    EdgeMeasurement& edge = edges_[i];
+    const auto k = static_cast<std::size_t>(edge.sample);
+    const float shift = inward_shift(defocus, outline.curvature(k));
+    edge.point += shift * edge.normal;
+    edge.offset.distance_px += shift;
+  }
+}
+
 // Limits the variance to that of a uniform distribution over the reach, which chance matches
 // follow. Uses the mean sharpness along the rows and columns, since that of a single edge is noisy.
 void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {
@@ -262,16 +302,16 @@ void EdgeMeasurer::compute_sigmas(float noise, float reach_px) {
   }
 }
 
-// Even noise of n pixels displaces their centroid by sqrt(sum of squared distances), as n^1.5.
+// The standard deviation of the centroid of n pixels of equal noise grows as the root of the sum of
+// their squared distances: as n^1.5.
 void EdgeMeasurer::move_to_centroids(const Picture& picture,
                                      const OutlineSamples& outline,
-                                     Polarity polarity,
-                                     const Eigen::Vector2f& blur_px) {
+                                     Polarity polarity) {
   const int sharp_px = kReachOnPicture + 1;
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
     const auto k = static_cast<std::size_t>(edge.sample);
-    const float across_px = std::abs(edge.normal.dot(blur_px));
+    const float across_px = std::abs(edge.normal.dot(motion_blur_.px));
     const float blurred_px = across_px / cosine_along(edge.normal);
     const int half_px = sharp_px + static_cast<int>(std::ceil(0.5F * blurred_px));
     edge.sigma_px *= std::pow((2.0F * half_px + 1.0F) / (2.0F * sharp_px + 1.0F), 1.5F);
@@ -284,7 +324,7 @@ void EdgeMeasurer::move_to_centroids(const Picture& picture,
                                          {edge.normal, polarity},
                                          half_px);
     if (!along_px) continue;
-    const float squared_along = blur_px.squaredNorm() - across_px * across_px;
+    const float squared_along = motion_blur_.px.squaredNorm() - across_px * across_px;
     const auto [point, distance_px] =
         position_of(outline, k, *along_px, kSharpVariance + even_variance(squared_along));
     edge.point = point;
@@ -342,9 +382,12 @@ OutlineSupport EdgeMeasurer::measure(const Picture& picture,
   const OutlineSamples outline(e, samples, picture.lens);
   const PictureSearch search(picture.luma, outline.origin(), min_gradient);
   const OutlineSupport support = measure_along(outline, polarity, search);
-  if (motion_px.isZero()) return support;
-  const Eigen::Vector2f blur_px = motion_blur(edges(), motion_px);
-  if (!blur_px.isZero()) move_to_centroids(picture, outline, polarity, blur_px);
+  motion_blur_ = ellipse::motion_blur(edges(), motion_px);
+  if (motion_blur_.px.isZero()) {
+    correct_curvature(outline);
+  } else {
+    move_to_centroids(picture, outline, polarity);
+  }
   return support;
 }
 

@@ -7,10 +7,12 @@
 
 #include "core/camera/picture.hpp"
 #include "core/edges/gradient_map.hpp"
+#include "core/edges/motion_blur.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/edges/subpixel.hpp"
 #include "core/geometry/ellipse.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 
@@ -53,7 +55,8 @@ struct OutlineSupport {
 /// Matches edges to an ellipse's outline: searches at each sample, along the row or column closest
 /// to the normal, for the nearest or highest gradient maximum within 30 degrees of the normal and
 /// of the right sign, or of either sign if the polarity is mixed. Locates it to sub-pixel accuracy
-/// [Devernay1995] and corrects the shift of curved edges by smoothing.
+/// [Devernay1995] and corrects the shift of curved edges by smoothing and, on the picture, by
+/// defocus.
 ///
 /// One object serves one thread. Allocates nothing; O(samples x (reach + length of the blur)).
 class EdgeMeasurer {
@@ -85,15 +88,20 @@ class EdgeMeasurer {
   [[nodiscard]] std::span<const EdgeMeasurement> edges() const { return {edges_.data(), count_}; }
   /// Of the last call: the mean contrast of its edges; 0 without edges [units of Gradient].
   [[nodiscard]] double mean_contrast() const;
+  /// Of the last call: variance of the blur of its edges beyond that of a lens in focus, from their
+  /// mean sharpness [px^2]. 0 unless they show it by three standard deviations.
+  [[nodiscard]] float defocus_variance() const;
+  /// Of the last call: the mean sharpness of its edges; needs an edge.
+  [[nodiscard]] Estimate sharpness() const;
+  /// Of the last call.
+  [[nodiscard]] const MotionBlur& motion_blur() const { return motion_blur_; }
   /// Of the last call: the origin of EdgeMeasurement::point [px of the picture].
   [[nodiscard]] Eigen::Vector2d origin() const { return origin_; }
 
  private:
   void compute_sigmas(float noise, float reach_px);
-  void move_to_centroids(const Picture& picture,
-                         const OutlineSamples& outline,
-                         Polarity polarity,
-                         const Eigen::Vector2f& blur_px);
+  void correct_curvature(const OutlineSamples& outline);
+  void move_to_centroids(const Picture& picture, const OutlineSamples& outline, Polarity polarity);
   template <class Search>
   OutlineSupport measure_along(const OutlineSamples& outline,
                                Polarity polarity,
@@ -101,6 +109,7 @@ class EdgeMeasurer {
 
   std::array<EdgeMeasurement, OutlineSamples::kMaxSamples> edges_;
   std::size_t count_ = 0;
+  MotionBlur motion_blur_;
   Eigen::Vector2d origin_{0.0, 0.0};
 };
 

@@ -3,9 +3,19 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "core/edges/edge_measurement.hpp"
-
 namespace ellipse {
+
+struct EdgeMeasurement;
+
+/// Blur of an outline by its motion.
+struct MotionBlur {
+  /// Length and direction [px]. Zero unless the edges show it by three standard deviations and it
+  /// halves the sharpness of those across it.
+  Eigen::Vector2f px{0.0F, 0.0F};
+  /// Squared length in any direction [px^2]; 0 unless the edges show it by three standard
+  /// deviations.
+  double squared_length = 0.0;
+};
 
 /// Variance of even blur over a length, such as that of steady motion.
 template <class Number>
@@ -13,14 +23,13 @@ template <class Number>
   return squared_length / Number(12);
 }
 
-/// Length and direction of the blur of an outline by its motion during the exposure, fitted to the
-/// sharpness of its edges by least squares: edges across the motion are less sharp. Zero if the
-/// edges do not show such a blur by three standard deviations. Allocates nothing; O(edges).
+/// Fits the blur of an outline by its motion during the exposure to the sharpness of its edges, by
+/// least squares: edges across the motion are less sharp. Allocates nothing; O(edges).
 ///
 /// @param edges      In order around the outline.
-/// @param motion_px  Displacement of the outline during the exposure, or longer [px of the
-///                   picture]. The blur is at most as long.
-[[nodiscard]] Eigen::Vector2f motion_blur(std::span<const EdgeMeasurement> edges,
-                                          const Eigen::Vector2f& motion_px);
+/// @param motion_px  Displacement of the outline since the last frame [px of the picture]; zero =
+///                   unknown. The blur is at most as long.
+[[nodiscard]] MotionBlur motion_blur(std::span<const EdgeMeasurement> edges,
+                                     const Eigen::Vector2f& motion_px);
 
 }  // namespace ellipse

@@ -4,143 +4,236 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 
-#include "core/edges/subpixel.hpp"
+#include "core/edges/blurred_bar.hpp"
+#include "core/edges/noise.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr double kWidest = 6.0;         // largest corrected gap [px]
 constexpr double kMinRingRatio = 0.25;  // a smaller disc inside is a pattern, not the inner edge
-constexpr std::size_t kSteps = 8;       // of averages: over half a turn, and over a pixel
+constexpr double kBlurBiasShare = 0.2;  // sigma of the correction, share of it
 
-using PerWidth = std::array<double, 31>;  // for widths from 0 to kWidest
+using PerDirection = std::array<double, kBarDirections>;
 
-Eigen::Vector2d direction(std::size_t i) {
-  const double angle = std::numbers::pi * static_cast<double>(i) / kSteps;
-  return {std::cos(angle), std::sin(angle)};
+// Distances of an ellipse's tangents from a point.
+PerDirection tangents(const Ellipse& e, const Eigen::Vector2d& from) {
+  const Eigen::Matrix2d shape = shape_matrix(e);
+  PerDirection distances;
+  for (std::size_t i = 0; i < kBarDirections; ++i) {
+    const Eigen::Vector2d normal = bar_normals()[i];
+    distances[i] = normal.dot(e.center() - from) + std::sqrt(normal.dot(shape * normal));
+  }
+  return distances;
 }
 
-// Brightness of a bar, blurred by the lens, at a distance from its middle.
-double bar_at(double distance, double width) {
-  const double scale = 1.0 / std::sqrt(2.0 * kLensVariance);
-  return 0.5 *
-         (std::erf((0.5 * width + distance) * scale) + std::erf((0.5 * width - distance) * scale));
+// The ellipse with tangents at these distances, by least squares. The n directions are evenly
+// spread, so that their sum of d d^T (d^T Q d) is n / 8 (tr(Q) I + 2 Q).
+std::optional<Ellipse> ellipse_of(const PerDirection& tangents, const Eigen::Vector2d& from) {
+  Eigen::Vector2d center(0.0, 0.0);
+  for (std::size_t i = 0; i < kBarDirections; ++i) {
+    center += 2.0 / kBarDirections * tangents[i] * bar_normals()[i];
+  }
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < kBarDirections; ++i) {
+    const Eigen::Vector2d normal = bar_normals()[i];
+    sum += std::pow(tangents[i] - normal.dot(center), 2) * normal * normal.transpose();
+  }
+  sum *= 4.0 / kBarDirections;
+  return from_shape(from + center, sum - 0.25 * sum.trace() * Eigen::Matrix2d::Identity());
 }
 
-// Response of GradientMap's 5 x 5 kernels to the bar at pixel (x, 0), against its normal.
-double slope_of_bar(const Eigen::Vector2d& normal, double x, double width) {
-  double slope = 0.0;
-  for (std::size_t j = 0; j < 5; ++j) {
-    for (std::size_t i = 0; i < 5; ++i) {
-      const Eigen::Vector2d pixel(x + static_cast<double>(i) - 2.0, static_cast<double>(j) - 2.0);
-      const double along =
-          normal.x() * kDifference[i] * kSmoothing[j] + normal.y() * kSmoothing[i] * kDifference[j];
-      slope += along * bar_at(normal.dot(pixel), width);
+// Zero of a function that falls from one end to the other, or the end nearer to it. False position
+// method; an end that stays counts half [DowellJarratt1971].
+template <class Function>
+double falling_zero(double low, double high, double tolerance, const Function& f) {
+  double at_low = f(low);
+  double at_high = f(high);
+  if (!(at_low > 0.0)) return low;
+  if (!(at_high < 0.0)) return high;
+  double last = low;
+  int side = 0;
+  for (int step = 0; step < 30; ++step) {
+    const double x = std::lerp(low, high, at_low / (at_low - at_high));
+    if (std::abs(x - last) < tolerance) return x;
+    last = x;
+    const double at_x = f(x);
+    const int next = at_x > 0.0 ? 1 : -1;
+    if (next > 0) {
+      low = x;
+      at_low = at_x;
+      if (side == next) at_high *= 0.5;
+    } else {
+      high = x;
+      at_high = at_x;
+      if (side == next) at_low *= 0.5;
+    }
+    side = next;
+  }
+  return last;
+}
+
+double mean_of(const PerDirection& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / kBarDirections;
+}
+
+// The middle line of a ring's gradient maxima, and the gaps between them.
+class MiddleLine {
+ public:
+  explicit MiddleLine(const RingEdges& maxima)
+      : center_(0.5 * (maxima.outer.center() + maxima.inner.center())) {
+    const Eigen::Vector2d apart = maxima.outer.center() - maxima.inner.center();
+    const PerDirection outer = tangents(maxima.outer, center_);
+    const PerDirection inner = tangents(maxima.inner, center_);
+    for (std::size_t i = 0; i < kBarDirections; ++i) {
+      radii_px_[i] = 0.5 * (outer[i] + inner[i]);
+      gaps_px_[i] = outer[i] - inner[i];
+      nearer_px_[i] = apart.dot(bar_normals()[i]);
     }
   }
-  return -slope;
-}
 
-// Distance of the gradient maximum from the bar's middle: vertex of a parabola through the pixel
-// with the largest gradient and its neighbours, averaged over sub-pixel positions of the bar.
-double maximum_of_bar(const Eigen::Vector2d& normal, double width) {
-  double sum = 0.0;
-  for (std::size_t phase = 0; phase < kSteps; ++phase) {
-    double x = (static_cast<double>(phase) + 0.5) / kSteps;
-    std::array<double, 3> slopes = {slope_of_bar(normal, x - 1.0, width),
-                                    slope_of_bar(normal, x, width),
-                                    slope_of_bar(normal, x + 1.0, width)};
-    while (slopes[2] > slopes[1]) {
-      x += 1.0;
-      slopes = {slopes[1], slopes[2], slope_of_bar(normal, x + 1.0, width)};
-    }
-    sum += x + parabola_vertex(slopes[0], slopes[1], slopes[2]);
+  [[nodiscard]] double min_gap_px() const {
+    return *std::min_element(gaps_px_.begin(), gaps_px_.end());
   }
-  return normal.x() * sum / kSteps;
-}
 
-// Distance between a bar's gradient maxima by its width, for normals at 0, 1/16 and 1/8 of a turn
-// from an axis. The kernels are symmetric, so that the other octants follow.
-const std::array<PerWidth, 3>& maxima_distances() {
-  static const auto kTable = [] {
-    std::array<PerWidth, 3> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      for (std::size_t k = 0; k < table[i].size(); ++k) {
-        const double steps = std::max(0.01, static_cast<double>(k));
-        table[i][k] = 2.0 * maximum_of_bar(direction(i), kWidest * steps / (table[i].size() - 1));
+  // Width of the ring over its radius; the predicted gaps grow with it.
+  [[nodiscard]] double width(const BlurredBars& bars) const {
+    if (min_gap_px() > bars.widest_px()) return mean_of(gaps_px_) / mean_of(radii_px_);
+    return width_by(0, 1, bars);
+  }
+
+  // The same in the directions closest to the normal of a motion, which does not blur them.
+  [[nodiscard]] double width_across(const Eigen::Vector2d& motion, const BlurredBars& bars) const {
+    std::size_t across = 0;
+    for (std::size_t i = 1; i < kBarDirections / 2; ++i) {
+      const bool is_closer =
+          std::abs(motion.dot(bar_normals()[i])) < std::abs(motion.dot(bar_normals()[across]));
+      if (is_closer) across = i;
+    }
+    return width_by(across, kBarDirections / 2, bars);
+  }
+
+  // Mean sharpness of the edges of a ring of this width.
+  [[nodiscard]] double sharpness(const BlurredBars& bars, double width) const {
+    PerDirection sharpness;
+    for (std::size_t i = 0; i < kBarDirections; ++i) {
+      sharpness[i] = bars.maxima(width_px(width, i), i).sharpness;
+    }
+    return mean_of(sharpness);
+  }
+
+  // The defocus of a ring with these gaps: the more there is, the less sharp are its edges.
+  [[nodiscard]] double defocus_at(double sharpness) const {
+    return falling_zero(0.0, BlurredBars::max_defocus(), 1e-3, [&](double defocus) {
+      const BlurredBars bars(defocus);
+      return this->sharpness(bars, width(bars)) - sharpness;
+    });
+  }
+
+  // The ring of this width.
+  [[nodiscard]] RingEdges edges(const RingEdges& maxima, double width) const {
+    PerDirection widths_px;
+    for (std::size_t i = 0; i < kBarDirections; ++i) widths_px[i] = width_px(width, i);
+    return edges_at(maxima, widths_px);
+  }
+
+  // The same by the share of each gap that such a ring fills: wide ones stay in place.
+  [[nodiscard]] RingEdges edges(const RingEdges& maxima,
+                                double width,
+                                const BlurredBars& bars) const {
+    PerDirection widths_px;
+    for (std::size_t i = 0; i < kBarDirections; ++i) {
+      const double px = width_px(width, i);
+      widths_px[i] = gaps_px_[i] * px / bars.maxima(px, i).distance_px;
+    }
+    return edges_at(maxima, widths_px);
+  }
+
+ private:
+  [[nodiscard]] double width_by(std::size_t first,
+                                std::size_t step,
+                                const BlurredBars& bars) const {
+    double gaps_px = 0.0;
+    double radii_px = 0.0;
+    for (std::size_t i = first; i < kBarDirections; i += step) {
+      gaps_px += gaps_px_[i];
+      radii_px += radii_px_[i];
+    }
+    return falling_zero(0.0, gaps_px / radii_px, 1e-5, [&](double width) {
+      double predicted_px = 0.0;
+      for (std::size_t i = first; i < kBarDirections; i += step) {
+        predicted_px += bars.maxima(width_px(width, i), i).distance_px;
       }
+      return gaps_px - predicted_px;
+    });
+  }
+
+  // Perspective makes the near side wider than the far side: the centres of the edges are apart.
+  [[nodiscard]] double width_px(double width, std::size_t i) const {
+    return std::max(0.0, width * radii_px_[i] + nearer_px_[i]);
+  }
+
+  [[nodiscard]] RingEdges edges_at(const RingEdges& maxima, const PerDirection& widths_px) const {
+    PerDirection outer;
+    PerDirection inner;
+    for (std::size_t i = 0; i < kBarDirections; ++i) {
+      outer[i] = radii_px_[i] + 0.5 * widths_px[i];
+      inner[i] = radii_px_[i] - 0.5 * widths_px[i];
     }
-    return table;
-  }();
-  return kTable;
-}
+    return {ellipse_of(outer, center_).value_or(maxima.outer),
+            ellipse_of(inner, center_).value_or(maxima.inner)};
+  }
 
-double maxima_distance(double width, std::size_t direction) {
-  const std::size_t from_axis = std::min(direction % 4, 4 - direction % 4);
-  const PerWidth& table = maxima_distances()[from_axis];
-  const double at = width / kWidest * (table.size() - 1);
-  const auto k = static_cast<std::size_t>(at);
-  if (k + 1 >= table.size()) return width;
-  return std::lerp(table[k], table[k + 1], at - static_cast<double>(k));
-}
+  Eigen::Vector2d center_;
+  PerDirection radii_px_;
+  PerDirection gaps_px_;
+  PerDirection nearer_px_;  // difference of the width to that without perspective
+};
 
-// Distance of an ellipse's tangent from its centre: |M normal|.
-double tangent_distance(const Eigen::Matrix2d& stretch, std::size_t i) {
-  return (stretch * direction(i)).norm();
-}
-
-Eigen::Matrix2d stretch_of(const Ellipse& e) {
-  const Eigen::Vector2d axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
-  const Eigen::Vector2d across(-axis.y(), axis.x());
-  return e.semi_major * axis * axis.transpose() + e.semi_minor * across * across.transpose();
+// The width of a ring that may be thinner; thin ones have less contrast. RMS distance from the
+// upper end for a density that is 0 at the lower end and grows linearly.
+Estimate at_most(double width, double thinnest) {
+  return {width, (width - thinnest) / std::sqrt(6.0)};
 }
 
 }  // namespace
 
 double min_maxima_distance() {
-  return maxima_distances()[0][0];
+  return BlurredBars(0.0).maxima(0.0, 0).distance_px;
 }
 
-bool is_thin(const RingEdges& maxima) {
-  const Eigen::Matrix2d outer = stretch_of(maxima.outer);
-  const Eigen::Matrix2d inner = stretch_of(maxima.inner);
-  for (std::size_t i = 0; i < kSteps; ++i) {
-    if (tangent_distance(outer, i) - tangent_distance(inner, i) > kWidest) return false;
-  }
-  return true;
+// The blur's standard deviation is in proportion to the square root of the inverse sharpness.
+bool is_thin(const RingEdges& maxima, double sharpness) {
+  const BlurredBars bars(0.0);
+  const double sharp = bars.maxima(bars.widest_px(), 0).sharpness;
+  return MiddleLine(maxima).min_gap_px() <= bars.widest_px() * std::sqrt(sharp / sharpness);
 }
 
-RingEdges without_blur_bias(const RingEdges& maxima) {
-  if (!is_thin(maxima)) return maxima;
-  const Eigen::Matrix2d outer = stretch_of(maxima.outer);
-  const Eigen::Matrix2d inner = stretch_of(maxima.inner);
-  const Eigen::Matrix2d middle = 0.5 * (outer + inner);
-  std::array<double, kSteps> radii;  // of the ring's middle line [px]
-  double gaps = 0.0;
-  for (std::size_t i = 0; i < kSteps; ++i) {
-    radii[i] = tangent_distance(middle, i);
-    gaps += tangent_distance(outer, i) - tangent_distance(inner, i);
-  }
-  if (!(gaps > 0.0)) return maxima;
+RingEdges without_motion_blur(const RingEdges& maxima, const Eigen::Vector2d& blur_px) {
+  const MiddleLine middle(maxima);
+  const BlurredBars bars(0.0);
+  const double width = middle.width_across(blur_px, bars);
+  const double width_px = width * maxima.outer.semi_minor;
+  return width_px > blur_px.norm() + bars.widest_px() ? maxima : middle.edges(maxima, width);
+}
 
-  // Bisects the ring's width over its middle radius, down to the precision of a float; the
-  // predicted gaps grow with it.
-  float low = 0.0F;
-  float high = 2.0F;
-  for (float share = 1.0F; low < share && share < high; share = 0.5F * (low + high)) {
-    double predicted = 0.0;
-    for (std::size_t i = 0; i < kSteps; ++i) {
-      predicted += maxima_distance(share * radii[i], i);
-    }
-    (predicted < gaps ? low : high) = share;
+UnblurredRing without_blur_bias(const RingEdges& maxima, const Estimate& sharpness) {
+  const MiddleLine middle(maxima);
+  if (!(middle.min_gap_px() > 0.0)) return {maxima, 0.0, {}};
+  BlurredBars bars(0.0);
+  Estimate width{middle.width(bars)};
+  if (sharpness.value + kAllSigmas * sharpness.sigma < middle.sharpness(bars, width.value)) {
+    const double error = kUnlikelySigmas * sharpness.sigma;
+    bars = BlurredBars(middle.defocus_at(sharpness.value + error));
+    const double widest = middle.width(bars);
+    const double thinnest = middle.width(BlurredBars(middle.defocus_at(sharpness.value - error)));
+    // Edges that are less sharp than those of any ring have another edge beside them.
+    width = widest > 0.0 ? at_most(widest, thinnest) : at_most(width.value, 0.0);
   }
-  const Eigen::Matrix2d shape = middle * middle;
-  const auto at = [&](double factor, const Ellipse& maximum) {
-    return from_shape(maximum.center(), factor * factor * shape).value_or(maximum);
-  };
-  return {at(1.0 + 0.5 * low, maxima.outer), at(1.0 - 0.5 * low, maxima.inner)};
+  if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, width};
+  const RingEdges edges = middle.edges(maxima, width.value, bars);
+  return {edges, kBlurBiasShare * max_difference_px(edges.outer, maxima.outer), width};
 }
 
 bool are_partners(const Ellipse& a, const Ellipse& b) {

@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include "core/edges/edge_measurement.hpp"
 #include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
@@ -10,22 +11,38 @@ struct RingEdges {
   Ellipse inner;
 };
 
+/// A ring without blur bias.
+struct UnblurredRing {
+  RingEdges edges;
+  double sigma_px = 0.0;  ///< Of the correction of an edge.
+  Estimate width;         ///< Over the radius of the middle line.
+};
+
 /// Removes the blur bias that separates a thin ring's two gradient maxima.
 ///
 /// Blur separates the gradient maxima of a bar, more so for thinner bars: at zero width they are
 /// two standard deviations of the blur apart. Their middle line stays in place, and the width of
-/// the ring is a constant share of its radius, so that one parameter determines both edges. Edges
-/// that are far apart are returned unchanged. Assumes equal contrast on both sides of the ring and
-/// a lens in focus, as for kSharpVariance.
+/// the ring is a constant share of its radius, so that one parameter determines both edges. The
+/// lens is in focus as of kSharpVariance, unless the edges are less sharp than that. Then distance
+/// and sharpness determine both the blur and the width. For thin rings they hardly do: the largest
+/// possible width counts, and its standard deviation contains the others. Edges that are far apart
+/// stay in place. Assumes equal contrast on both sides of the ring.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
-[[nodiscard]] RingEdges without_blur_bias(const RingEdges& maxima);
+/// @param sharpness  Of the edges.
+[[nodiscard]] UnblurredRing without_blur_bias(const RingEdges& maxima, const Estimate& sharpness);
 
-/// Whether two gradient maxima are so close, all around, that blur displaces them.
-[[nodiscard]] bool is_thin(const RingEdges& maxima);
+/// The same for motion blur, which separates the edges across the motion if the ring is thinner
+/// than the blur: the width is that along the motion.
+/// @param blur_px  As of motion_blur().
+[[nodiscard]] RingEdges without_motion_blur(const RingEdges& maxima,
+                                            const Eigen::Vector2d& blur_px);
+
+/// Whether gradient maxima with this sharpness are so close that blur displaces them.
+[[nodiscard]] bool is_thin(const RingEdges& maxima, double sharpness);
 
 /// Distance of the two gradient maxima of a very thin bar along an axis [px]. The first call of
-/// this or of without_blur_bias() computes a table, which takes a few milliseconds.
+/// this or of without_blur_bias() computes a table, see BlurredBars.
 [[nodiscard]] double min_maxima_distance();
 
 /// Largest ratio of inner to outer radius at which a ring is distinguished from a line.

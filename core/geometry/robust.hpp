@@ -22,6 +22,12 @@ template <typename Value>
   return *middle;
 }
 
+/// A value and its standard deviation.
+struct Estimate {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+
 /// A distance from a model, and its weight.
 struct WeightedDistance {
   double distance = 0.0;

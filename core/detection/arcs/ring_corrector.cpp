@@ -34,14 +34,17 @@ void RingCorrector::correct(const Picture& picture,
     const Ellipse& maximum = maxima_[i];
     if (polarities[i] == Polarity::kMixed) continue;
     const Polarity other = opposite(polarities[i]);
+    measurer_.measure(picture, maximum, polarities[i], kRefinementSamples, min_gradient);
+    if (measurer_.edges().empty()) continue;
+    const Estimate sharpness = measurer_.sharpness();
+    const double contrast = measurer_.mean_contrast();
     const Ellipse* partner = closest_partner(polarities, i);
-    if (partner != nullptr && !is_thin(ordered(maximum, *partner))) continue;
+    if (partner != nullptr && !is_thin(ordered(maximum, *partner), sharpness.value)) continue;
     const auto next = partner != nullptr ? edge_near(picture, *partner, other, min_gradient)
                                          : edge_beside(picture, maximum, other, min_gradient);
     if (!next) continue;
-    measurer_.measure(picture, maximum, polarities[i], kRefinementSamples, min_gradient);
-    if (!are_similar(next->contrast, measurer_.mean_contrast())) continue;
-    const RingEdges edges = without_blur_bias(ordered(maximum, next->ellipse));
+    if (!are_similar(next->contrast, contrast)) continue;
+    const RingEdges edges = without_blur_bias(ordered(maximum, next->ellipse), sharpness).edges;
     detections[i].ellipse =
         maximum.semi_major > next->ellipse.semi_major ? edges.outer : edges.inner;
   }

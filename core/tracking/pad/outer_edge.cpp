@@ -7,84 +7,75 @@
 
 #include "core/edges/edge_refinement.hpp"
 #include "core/edges/photometric_refinement.hpp"
-#include "core/edges/thin_ring.hpp"
 
 namespace ellipse {
 namespace {
-
-// Found by experiment, see docs/provenance.md.
-constexpr double kBlurBiasShare = 0.2;  // sigma of the blur correction, share of it
 
 Polarity polarity_of(bool is_bright_outside) {
   return is_bright_outside ? Polarity::kDarkInside : Polarity::kBrightInside;
 }
 
-// Adds an error common to all samples [radii]; averaging does not reduce it.
-RingMatrix widened(const RingMatrix& information, double sigma) {
+// Adds errors common to all samples, which averaging does not reduce: those of a ring's blur
+// correction, and of its width, which changes the size only [radii].
+RingMatrix widened(const RingMatrix& information, double of_correction, double of_size) {
   RingMatrix covariance = information.inverse();
-  covariance.diagonal().array() += sigma * sigma;
+  covariance.diagonal().array() += of_correction * of_correction;
+  covariance(2, 2) += of_size * of_size;
   return covariance.inverse();
 }
 
-// Fits the gradient maxima near a circle's predicted image.
-std::optional<FittedEllipse> on_maxima(const ImageView& luma,
-                                       const PadView& view,
-                                       const PadCircle& circle,
-                                       double min_contrast,
-                                       const Eigen::Vector2d& motion_px) {
-  const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
-  if (!predicted) return std::nullopt;
-  return refined_on_picture({luma, view.lens},
-                            *predicted,
-                            polarity_of(circle.is_bright_outside),
-                            {kGradientOfStep * min_contrast, kMajority},
-                            kRefinementSamples / 2,  // since this runs in each frame
-                            motion_px);
+// The mean of a value that is measured frame by frame.
+Estimate averaged(const Estimate& mean, const Estimate& now, double adaptation) {
+  return {std::lerp(mean.value, now.value, adaptation),
+          std::hypot((1.0 - adaptation) * mean.sigma, adaptation * now.sigma)};
 }
 
-// Removes the blur bias that separates the gradient maxima of a thin ring's two edges.
-std::optional<FittedEllipse> on_outer_maxima(const ImageView& luma,
-                                             const PadView& view,
-                                             const PadModel& model,
-                                             double min_contrast,
-                                             const Eigen::Vector2d& motion_px) {
-  const PadCircle& outer = model.circles.front();
-  auto exact = on_maxima(luma, view, outer, min_contrast, motion_px);
-  const bool is_ring =
-      model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
-  if (!exact || !is_ring) return exact;
-  const auto inner = on_maxima(luma, view, model.circles[1], min_contrast, motion_px);
-  if (!inner) return exact;
-  const Ellipse blurred = exact->ellipse;
-  exact->ellipse = without_blur_bias({blurred, inner->ellipse}).outer;
-  const double sigma_px = kBlurBiasShare * max_difference_px(exact->ellipse, blurred);
-  const double radius_px = std::sqrt(blurred.semi_major * blurred.semi_minor);
-  exact->uncertainty = {image_from_pad(exact->ellipse),
-                        widened(exact->uncertainty.information, sigma_px / radius_px)};
-  return exact;
+// Fits the gradient maxima near a circle's predicted image.
+std::optional<FittedEllipse> fitted_maxima(EdgeMeasurer& measurer,
+                                           const ImageView& luma,
+                                           const PadView& view,
+                                           const PadCircle& circle,
+                                           double min_contrast,
+                                           const Eigen::Vector2d& motion_px) {
+  const auto predicted = project_circle(view.ideal_from_pad, circle.radius);
+  if (!predicted) return std::nullopt;
+  const OutlineSupport found =
+      measurer.measure({luma, view.lens},
+                       *predicted,
+                       polarity_of(circle.is_bright_outside),
+                       kRefinementSamples / 2,  // since this runs in each frame
+                       kGradientOfStep * min_contrast,
+                       motion_px.cast<float>());
+  if (found.support < kMajority) return std::nullopt;
+  return fitted_to_edges(measurer, view.lens, *predicted);
 }
 
 }  // namespace
 
-std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
-                                                const PadView& view,
-                                                const PadModel& model,
-                                                double gain,
-                                                Refinement refinement,
-                                                const Eigen::Vector2d& motion_px) {
+void OuterEdge::restart() {
+  sharpness_.reset();
+  squared_motions_ = squared_blurs_ = 0.0;
+}
+
+std::optional<FittedEllipse> OuterEdge::refine(const ImageView& luma,
+                                               const PadView& view,
+                                               const PadModel& model,
+                                               double gain,
+                                               const Eigen::Vector2d& motion_px,
+                                               double adaptation) {
   const auto outer = project_circle(view.ideal_from_pad, 1.0);
-  if (!outer || refinement == Refinement::kNone) return std::nullopt;
+  if (!outer || refinement_ == Refinement::kNone) return std::nullopt;
   const PadCircle& circle = model.circles.front();
   const double min_contrast = kMinContrastShare * circle.contrast * gain;
   const double ring_px = model.circles.size() > 1
                              ? (1.0 - model.circles[1].radius) * outer->semi_minor
                              : std::numeric_limits<double>::infinity();
   std::optional<FittedEllipse> exact;
-  if (refinement == Refinement::kPhotometric && !view.lens.is_distorted()) {
+  if (refinement_ == Refinement::kPhotometric && !view.lens.is_distorted()) {
     exact = refined_photometrically(
         luma, *outer, polarity_of(circle.is_bright_outside), ring_px, min_contrast);
   }
-  if (!exact) exact = on_outer_maxima(luma, view, model, min_contrast, motion_px);
+  if (!exact) exact = on_maxima(luma, view, model, min_contrast, motion_px, adaptation);
   if (!exact) return std::nullopt;
   // Motion blurs the edges over at most its length, so that each may be predicted half of it off.
   Tolerance tolerance = kOuterEdgeTolerance;
@@ -92,12 +83,51 @@ std::optional<FittedEllipse> refined_outer_edge(const ImageView& luma,
   return is_same(exact->ellipse, *outer, tolerance) ? exact : std::nullopt;
 }
 
+std::optional<FittedEllipse> OuterEdge::on_maxima(const ImageView& luma,
+                                                  const PadView& view,
+                                                  const PadModel& model,
+                                                  double min_contrast,
+                                                  const Eigen::Vector2d& motion_px,
+                                                  double adaptation) {
+  EdgeMeasurer measurer;
+  const PadCircle& outer = model.circles.front();
+  auto exact = fitted_maxima(measurer, luma, view, outer, min_contrast, motion_px);
+  if (exact) {
+    squared_motions_ += motion_px.squaredNorm();
+    squared_blurs_ += measurer.motion_blur().squared_length;
+  }
+  const bool is_ring =
+      model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
+  if (!exact || !is_ring) return exact;
+  const Eigen::Vector2d blur_px = measurer.motion_blur().px.cast<double>();
+  const Estimate now = measurer.sharpness();
+  const auto inner = fitted_maxima(measurer, luma, view, model.circles[1], min_contrast, motion_px);
+  if (!inner) return exact;
+  const RingEdges maxima{exact->ellipse, inner->ellipse};
+  UnblurredRing ring;
+  if (blur_px.isZero()) {
+    sharpness_ = averaged(sharpness_.value_or(now), now, adaptation);
+    ring = without_blur_bias(maxima, *sharpness_);
+  } else {
+    ring.edges = without_motion_blur(maxima, blur_px);
+  }
+  exact->ellipse = ring.edges.outer;
+  const double radius_px = std::sqrt(exact->ellipse.semi_major * exact->ellipse.semi_minor);
+  exact->uncertainty = {image_from_pad(exact->ellipse),
+                        widened(exact->uncertainty.information,
+                                ring.sigma_px / radius_px,
+                                0.5 * ring.width.sigma / (1.0 + 0.5 * ring.width.value))};
+  return exact;
+}
+
 std::optional<FittedEllipse> refined_circle(const ImageView& luma,
                                             const PadView& view,
                                             const PadCircle& circle,
                                             double gain,
                                             const Eigen::Vector2d& motion_px) {
-  return on_maxima(luma, view, circle, kMinContrastShare * circle.contrast * gain, motion_px);
+  EdgeMeasurer measurer;
+  return fitted_maxima(
+      measurer, luma, view, circle, kMinContrastShare * circle.contrast * gain, motion_px);
 }
 
 }  // namespace ellipse

@@ -48,6 +48,13 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
   return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
+// Adds an error of the centre [radii].
+RingMatrix with_centre_error(const RingMatrix& information, double sigma) {
+  RingMatrix covariance = information.inverse();
+  covariance.diagonal().head<2>().array() += sigma * sigma;
+  return covariance.inverse();
+}
+
 // Distance of a matched edge: its error, and the pad's deformation.
 double tolerance_px(double radius_px) {
   return kUnlikelySigmas * kEdgeSigmaPx + kDeformation * radius_px;
@@ -92,6 +99,7 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
 void PadTracker::begin_frame(const LumaWindow& window) {
   camera_ = window.camera.value_or(default_camera(window.frame_px));
   lens_ = window.lens;
+  last_motion_px_ = motion_px_;
   motion_px_.setZero();
   refined_.reset();
   inner_count_ = 0;
@@ -118,7 +126,8 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   relative_gain_ = attempt->support.relative_gain;
   begin_motion(*attempt, HomographyChange::Zero());
   is_known_ = true;
-  if (window.camera) measure_edges(window, attempt->visible);
+  outer_edge_.restart();
+  if (window.camera) measure_edges(window, attempt->visible, 1.0);
   return true;
 }
 
@@ -133,10 +142,11 @@ std::optional<PadTrack> PadTracker::resume(const LumaWindow& window, const Ellip
     // Two detections determine the shift and the scale; other changes are slower than their errors.
     HomographyChange velocity = HomographyChange::Zero();
     if (is_locked_) {
+      motion_px_ = motion_to(attempt->view);
       velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
     }
     begin_motion(*attempt, velocity);
-    measure_edges(window, attempt->visible);
+    measure_edges(window, attempt->visible, 1.0);
     return make_track(&*attempt);
   }
   return std::nullopt;
@@ -160,6 +170,7 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   is_locked_ = true;
   unmatched_s_ = 0.0;
   innovation_ratio_ = 1.0;
+  squared_acceleration_ = 0.0;
   motion_ = {};
   motion_.velocity = velocity;
   motion_.covariance = inverse_of(attempt.estimate.information);
@@ -243,8 +254,9 @@ std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elaps
   }
   if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
   const Eigen::Matrix3d last_view = view_;
-  accept(*attempt, before, looseness, elapsed_s);
-  measure_edges(window, attempt->visible);
+  const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
+  accept(*attempt, before, looseness, adaptation);
+  measure_edges(window, attempt->visible, adaptation);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
   learn_lines(window, *attempt);
   return make_track(&*attempt);
@@ -275,7 +287,7 @@ void PadTracker::forget_lines(Attempt& attempt) {
 void PadTracker::accept(const Attempt& attempt,
                         const HomographyFilter& before,
                         double looseness,
-                        double elapsed_s) {
+                        double adaptation) {
   motion_ = before.corrected(attempt.estimate);
   if (model_.lines.empty()) motion_.fix_rotation();  // rings have no orientation
   // Squared displacement of the edges over its predicted variance.
@@ -285,7 +297,6 @@ void PadTracker::accept(const Attempt& attempt,
     moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
     expected_px += variance_along(sample.view.row, before.covariance);
   }
-  const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   const double needed = looseness * moved_px / expected_px;
   innovation_ratio_ = std::clamp(
       innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
@@ -297,14 +308,14 @@ void PadTracker::accept(const Attempt& attempt,
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
-  if (unmatched_s_ == 0.0) motion_px_ = motion_to(attempt.view);
+  motion_px_ = motion_to(attempt.view);
   view_ = attempt.view;
   unmatched_s_ = 0.0;
 }
 
-// Displacement of the pad's centre in the picture; zero if unknown.
+// Displacement of the pad's centre in the picture since the last match; zero if unknown.
 Eigen::Vector2d PadTracker::motion_to(const Eigen::Matrix3d& view) const {
-  const auto before = PadView(view_, lens_).at({0.0, 0.0});
+  const auto before = PadView(matched_view_, lens_).at({0.0, 0.0});
   const auto after = PadView(view, lens_).at({0.0, 0.0});
   return before && after ? Eigen::Vector2d(after->point - before->point)
                          : Eigen::Vector2d(0.0, 0.0);
@@ -323,8 +334,8 @@ HomographyCovariance PadTracker::covariance() const {
   return motion_.covariance + model_error_covariance(model_);
 }
 
-void PadTracker::measure_edges(const LumaWindow& window, double visible) {
-  refine(window, visible);
+void PadTracker::measure_edges(const LumaWindow& window, double visible, double adaptation) {
+  refine(window, visible, adaptation);
   // Rings alone hardly determine the tilt: it would drift, and lines would be learned in a wrong
   // view.
   if (window.camera && model_.lines.empty()) view_ = with_nearer_pose(camera_, view_);
@@ -333,17 +344,29 @@ void PadTracker::measure_edges(const LumaWindow& window, double visible) {
 }
 
 // Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
-void PadTracker::refine(const LumaWindow& window, double visible) {
+void PadTracker::refine(const LumaWindow& window, double visible, double adaptation) {
   if (visible < kEnoughVisible) return;
-  const auto exact = refined_outer_edge(
-      window.luma, view_in(window, view_), model_, gain_, refinement_, motion_px_);
+  const auto exact = outer_edge_.refine(
+      window.luma, view_in(window, view_), model_, gain_, motion_px_, adaptation);
   if (!exact) return;
   const auto view =
       with_circle(view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
   if (!view) return;
   view_ = *view;
   clear_ring_errors(model_);
-  refined_ = {shifted(exact->uncertainty.view, window.origin_px), exact->uncertainty.information};
+  refined_ = {shifted(exact->uncertainty.view, window.origin_px),
+              with_centre_error(exact->uncertainty.information,
+                                exposure_error_px(adaptation) / radius_px())};
+}
+
+// Standard deviation of the mean position during the exposure from the position in its middle: for
+// a constant acceleration a, a t^2 / 24. Vibration changes it from frame to frame: its mean counts.
+double PadTracker::exposure_error_px(double adaptation) {
+  if (!motion_px_.isZero() && !last_motion_px_.isZero()) {
+    const double now = (motion_px_ - last_motion_px_).squaredNorm();
+    squared_acceleration_ += adaptation * (now - squared_acceleration_);
+  }
+  return outer_edge_.squared_exposure() / 24.0 * std::sqrt(squared_acceleration_);
 }
 
 void PadTracker::measure_inner_edges(const LumaWindow& window) {

@@ -61,7 +61,7 @@ class PadTracker {
   /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
   void configure(Refinement refinement, double ring_ratio) {
-    refinement_ = refinement;
+    outer_edge_.configure(refinement);
     ring_ratio_ = ring_ratio;
   }
 
@@ -114,7 +114,7 @@ class PadTracker {
   void accept(const Attempt& attempt,
               const HomographyFilter& before,
               double looseness,
-              double elapsed_s);
+              double adaptation);
   [[nodiscard]] Eigen::Vector2d motion_to(const Eigen::Matrix3d& view) const;
   void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
   [[nodiscard]] HomographyCovariance covariance() const;
@@ -123,8 +123,9 @@ class PadTracker {
                                        double radius,
                                        const Ellipse& detected);
   void begin_motion(const Attempt& attempt, const HomographyChange& velocity);
-  void measure_edges(const LumaWindow& window, double visible);
-  void refine(const LumaWindow& window, double visible);
+  void measure_edges(const LumaWindow& window, double visible, double adaptation);
+  void refine(const LumaWindow& window, double visible, double adaptation);
+  [[nodiscard]] double exposure_error_px(double adaptation);
   void measure_inner_edges(const LumaWindow& window);
   [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
   void learn_lines(const LumaWindow& window, const Attempt& attempt);
@@ -133,25 +134,27 @@ class PadTracker {
   [[nodiscard]] double radius_px() const;
 
   std::optional<RingUncertainty> refined_;  // of the last frame
-  Refinement refinement_ = Refinement::kEdges;
   double ring_ratio_ = 0.0;
   PadModel model_;
   EdgeSearch search_;
   LineLearner line_learner_;
+  OuterEdge outer_edge_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();          // frame from pad
   Eigen::Matrix3d matched_view_ = Eigen::Matrix3d::Identity();  // of the last match
-  Eigen::Vector2d motion_px_{0.0, 0.0};  // of its centre in the picture; zero = unknown
+  Eigen::Vector2d motion_px_{0.0, 0.0};       // of its centre in the picture; zero = unknown
+  Eigen::Vector2d last_motion_px_{0.0, 0.0};  // of the frame before
   HomographyFilter motion_;
   std::array<FittedEllipse, 2> inner_edges_;
   std::size_t inner_count_ = 0;
   Camera camera_;
   LensView lens_;
-  double innovation_ratio_ = 1.0;  // adaptive factor of the motion noise
-  double gain_ = 1.0;              // ratio of image contrast to model contrast
-  double relative_gain_ = 0.0;     // the same of relative contrast [1 / grey level]
-  double unmatched_s_ = 0.0;       // since the last match
-  double last_coverage_ = 0.0;     // of the search near the prediction
+  double squared_acceleration_ = 0.0;  // of the centre, adaptive [(px / frame^2)^2]
+  double innovation_ratio_ = 1.0;      // adaptive factor of the motion noise
+  double gain_ = 1.0;                  // ratio of image contrast to model contrast
+  double relative_gain_ = 0.0;         // the same of relative contrast [1 / grey level]
+  double unmatched_s_ = 0.0;           // since the last match
+  double last_coverage_ = 0.0;         // of the search near the prediction
   bool is_locked_ = false;
   bool is_known_ = false;  // the model is that of a pad that was locked
 };

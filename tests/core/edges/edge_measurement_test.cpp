@@ -61,6 +61,34 @@ TEST(EdgeMeasurer, ReportsItsStandardDeviation) {
   }
 }
 
+TEST(EdgeMeasurer, FindsTheVarianceOfDefocus) {
+  EdgeMeasurer measurer;
+  EXPECT_EQ(measurer.defocus_variance(), 0.0F);
+  for (const double blur_px : {0.6, 1.0, 1.6, 2.5}) {
+    const Picture picture = picture_of_disc(blur_px, 1.0, 1);
+    (void)measurer.measure(picture.view(), kTruth, Polarity::kDarkInside, 96, 200.0);
+    const double defocus = blur_px * blur_px - kLensVariance;
+    EXPECT_NEAR(measurer.defocus_variance(), defocus, 0.15 * defocus + 0.05) << blur_px;
+  }
+}
+
+// Blur moves the gradient maxima of a curved edge inwards by half of its variance over the radius.
+TEST(EdgeMeasurer, CorrectsTheShiftOfDefocusedEdges) {
+  const Ellipse truth{60.3, 60.6, 18.0, 18.0, 0.0};
+  Scene scene = plain_ring();
+  scene.pad.pattern = Pattern::kDisc;
+  scene.sensor.blur_px = 2.0;
+  scene.sensor.read_noise = 1.0;
+  const Picture picture = rendered(scene, truth, 120, 120);
+  EdgeMeasurer measurer;
+  (void)measurer.measure(picture.view(), truth, Polarity::kDarkInside, 96, 200.0);
+  double sum_px = 0.0;
+  for (const EdgeMeasurement& edge : measurer.edges()) sum_px += edge.offset.distance_px;
+  const auto count = static_cast<double>(measurer.edges().size());
+  EXPECT_GT(count, 90.0);
+  EXPECT_NEAR(sum_px / count, 0.0, 0.03);
+}
+
 TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
   const Ellipse truth{160.3, 120.6, 50.0, 50.0, 0.0};
   const Picture ball = support::lit_ball(truth, 320, 240);

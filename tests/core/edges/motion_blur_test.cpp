@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/scene/random.hpp"
 
@@ -39,22 +40,41 @@ std::vector<EdgeMeasurement> blurred_over(float length_px) {
 }
 
 TEST(MotionBlur, FindsTheLengthOfTheBlur) {
-  const Eigen::Vector2f blur_px = motion_blur(blurred_over(4.0F), -10.0F * kAlongX);
-  EXPECT_NEAR(blur_px.x(), -4.0F, 1e-3F);
-  EXPECT_EQ(blur_px.y(), 0.0F);
+  const MotionBlur blur = motion_blur(blurred_over(6.0F), -10.0F * kAlongX);
+  EXPECT_NEAR(blur.px.x(), -6.0F, 0.01F);
+  EXPECT_EQ(blur.px.y(), 0.0F);
+  EXPECT_NEAR(blur.squared_length, 36.0, 0.1);
 }
 
 TEST(MotionBlur, IsNoLongerThanTheMotion) {
-  const float length_px = motion_blur(blurred_over(4.0F), 3.9F * kAlongX).norm();
-  EXPECT_LE(length_px, 3.9F);
-  EXPECT_GT(length_px, 3.8F);
+  const float length_px = motion_blur(blurred_over(6.0F), 5.9F * kAlongX).px.norm();
+  EXPECT_LE(length_px, 5.9F);
+  EXPECT_GT(length_px, 5.8F);
   // Most of this blur has another reason.
-  EXPECT_EQ(motion_blur(blurred_over(4.0F), 1.0F * kAlongX), kNone);
-  EXPECT_EQ(motion_blur(blurred_over(4.0F), 0.0F * kAlongX), kNone);
+  EXPECT_EQ(motion_blur(blurred_over(6.0F), 1.0F * kAlongX).px, kNone);
+  EXPECT_EQ(motion_blur(blurred_over(6.0F), 0.0F * kAlongX).px, kNone);
 }
 
 TEST(MotionBlur, IsAlongTheMotion) {
-  EXPECT_EQ(motion_blur(blurred_over(4.0F), 10.0F * kAlongY), kNone);
+  EXPECT_EQ(motion_blur(blurred_over(6.0F), 10.0F * kAlongY).px, kNone);
+}
+
+// Of a Gaussian edge of variance 2 px^2, a blur of 4.9 px halves the sharpness.
+TEST(MotionBlur, CountsIfItHalvesTheSharpness) {
+  EXPECT_EQ(motion_blur(blurred_over(4.5F), 10.0F * kAlongX).px, kNone);
+  EXPECT_NE(motion_blur(blurred_over(5.2F), 10.0F * kAlongX).px, kNone);
+}
+
+// Vibration moves the outline in another direction from frame to frame than during the exposure.
+TEST(MotionBlur, HasALengthInAnyDirection) {
+  for (const float length_px : {1.0F, 2.0F}) {
+    const auto edges = blurred_over(length_px);
+    const double squared_length = length_px * length_px;
+    for (const Eigen::Vector2f& motion : {kAlongX, kAlongY, Eigen::Vector2f(kAlongX + kAlongY)}) {
+      EXPECT_NEAR(
+          motion_blur(edges, 10.0F * motion).squared_length, squared_length, 0.15 * squared_length);
+    }
+  }
 }
 
 TEST(MotionBlur, IgnoresDifferencesWithinTheScatter) {
@@ -63,22 +83,27 @@ TEST(MotionBlur, IgnoresDifferencesWithinTheScatter) {
     const float scatter = 0.4F * static_cast<float>(random.unit() - 0.5);
     return kSharpest - 0.05F * normal.x() * normal.x() + scatter;
   });
-  EXPECT_EQ(motion_blur(edges, 10.0F * kAlongX), kNone);
+  const MotionBlur blur = motion_blur(edges, 10.0F * kAlongX);
+  EXPECT_EQ(blur.px, kNone);
+  EXPECT_EQ(blur.squared_length, 0.0);
 }
 
 // A sharp lid covers the upper quarter of a soft pupil.
 TEST(MotionBlur, IgnoresAPartThatIsSharper) {
   const auto edges = edges_with(
       [](const Eigen::Vector2f& normal) { return normal.y() < -0.7F ? kSharpest : 0.3F; });
-  EXPECT_EQ(motion_blur(edges, 10.0F * kAlongX), kNone);
+  EXPECT_EQ(motion_blur(edges, 10.0F * kAlongX).px, kNone);
 }
 
 TEST(MotionBlur, SurvivesTooFewEdges) {
-  EXPECT_EQ(motion_blur({}, 10.0F * kAlongX), kNone);
-  const auto edges = blurred_over(4.0F);
-  EXPECT_EQ(motion_blur(std::span(edges).first(1), 10.0F * kAlongX), kNone);
+  EXPECT_EQ(motion_blur({}, 10.0F * kAlongX).px, kNone);
+  const auto edges = blurred_over(6.0F);
+  const MotionBlur of_few = motion_blur(std::span(edges).first(1), 10.0F * kAlongX);
+  EXPECT_EQ(of_few.px, kNone);
+  EXPECT_EQ(of_few.squared_length, 0.0);
   const auto alike = edges_with([](const Eigen::Vector2f& /*normal*/) { return kSharpest; });
-  EXPECT_EQ(motion_blur(alike, 10.0F * kAlongX), kNone);
+  EXPECT_EQ(motion_blur(alike, 10.0F * kAlongX).px, kNone);
+  EXPECT_NEAR(motion_blur(alike, 10.0F * kAlongX).squared_length, 0.0, 1e-9);
 }
 
 }  // namespace

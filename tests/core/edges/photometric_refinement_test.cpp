@@ -6,10 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
-#include "core/tracking/pad/outer_edge.hpp"
-#include "core/tracking/pad/pad_model.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -179,63 +176,6 @@ TEST(PhotometricRefinement, AcceptsEllipsesOfAnySize) {
     EXPECT_FALSE(refined_photometrically(picture.view(), e, Polarity::kDarkInside, 9.0, 20.0))
         << e.semi_major;
   }
-}
-
-// -- refined_outer_edge
-
-const Eigen::Vector2d kAtRest(0.0, 0.0);
-
-TEST(OuterEdge, IsExactForThickAndThinRings) {
-  for (const double ring_width : {0.205, 0.1, 0.055}) {
-    Scene scene = plain_ring();
-    scene.pad.ring_width = ring_width;
-    const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
-    const Picture picture = rendered(scene, truth, 260, 260);
-    const Eigen::Matrix3d view = image_from_pad(truth);
-    const auto model = learn_circles(picture.view(), view);
-    ASSERT_TRUE(model) << ring_width;
-    Eigen::Matrix3d nudge = Eigen::Matrix3d::Identity();
-    nudge(0, 2) = 0.2;
-    const Eigen::Matrix3d start = nudge * view;
-    const auto error = [&](Refinement refinement) {
-      const auto exact =
-          refined_outer_edge(picture.view(), start, *model, 1.0, refinement, kAtRest);
-      return exact ? max_difference_px(exact->ellipse, truth) : 9.0;
-    };
-    EXPECT_LT(error(Refinement::kEdges), 0.08) << ring_width;
-    EXPECT_LT(error(Refinement::kPhotometric), 0.08) << ring_width;
-    EXPECT_FALSE(
-        refined_outer_edge(picture.view(), start, *model, 1.0, Refinement::kNone, kAtRest));
-  }
-}
-
-TEST(OuterEdge, IsNotFoundFarFromThePad) {
-  const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
-  const Picture picture = rendered(plain_ring(), truth, 260, 260);
-  const auto model = learn_circles(picture.view(), image_from_pad(truth));
-  ASSERT_TRUE(model);
-  const Eigen::Matrix3d far_off = image_from_pad(translated(truth, 30.0, 0.0));
-  EXPECT_FALSE(
-      refined_outer_edge(picture.view(), far_off, *model, 1.0, Refinement::kPhotometric, kAtRest));
-}
-
-// Blurred edges may be matched anywhere over the length of the blur, so that the view is off.
-TEST(OuterEdge, MayBeFartherFromThePredictedOneInMotion) {
-  const Scene scene = disc(0.6, 1.0);
-  const Ellipse truth{160.0, 120.0, 40.0, 36.0, 0.0};
-  const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
-    return rendered(scene, e, 320, 240, std::uint64_t(k));
-  });
-  Ellipse predicted = truth;
-  predicted.semi_major += 3.0;
-  const PadView view(image_from_pad(predicted), {});
-  const auto model = learn_circles(picture.view(), view, 0.0, 0.1);
-  ASSERT_TRUE(model);
-  const auto exact =
-      refined_outer_edge(picture.view(), view, *model, 1.0, Refinement::kEdges, {24.0, 0.0});
-  ASSERT_TRUE(exact);
-  EXPECT_LT((exact->ellipse.center() - truth.center()).norm(), 0.1);
-  EXPECT_NEAR(exact->ellipse.semi_major, truth.semi_major, 0.3);
 }
 
 }  // namespace

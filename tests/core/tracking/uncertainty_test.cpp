@@ -37,8 +37,8 @@ double squared_error(const Target& target, const Ellipse& truth) {
 }
 
 // Counts the frames in which the target is tracked.
-Shares shares_in(const char* name, int frames) {
-  SceneRenderer renderer(scene_by_name(name, 31));
+Shares shares_in(const Scene& scene, int frames) {
+  SceneRenderer renderer(scene);
   support::Picture picture(640, 360);
   Tracker tracker;
   Shares shares;
@@ -57,9 +57,30 @@ Shares shares_in(const char* name, int frames) {
 // correlated.
 TEST(Uncertainty, ContainsTheTruthInMostFrames) {
   for (const char* name : {"approach", "glare", "noise", "thin"}) {
-    const Shares shares = shares_in(name, 150);
+    const Shares shares = shares_in(scene_by_name(name, 31), 150);
     EXPECT_GT(shares.frames, 140) << name;
     EXPECT_GT(shares.inside, 0.88 * shares.frames) << name;
+  }
+}
+
+TEST(Uncertainty, ContainsTheTruthInDefocus) {
+  for (const char* name : {"approach", "oblique", "disc", "hover"}) {
+    for (const double blur_px : {1.0, 1.6, 2.5}) {
+      Scene scene = scene_by_name(name, 31);
+      scene.sensor.blur_px = blur_px;
+      const Shares shares = shares_in(scene, 100);
+      EXPECT_GT(shares.frames, 90) << name << ' ' << blur_px;
+      EXPECT_GT(shares.inside, 0.85 * shares.frames) << name << ' ' << blur_px;
+    }
+  }
+}
+
+// The mean position during an exposure is not that in its middle.
+TEST(Uncertainty, ContainsTheTruthInAcceleratedMotion) {
+  for (const char* name : {"dash", "shake"}) {
+    const Shares shares = shares_in(scene_by_name(name, 31), 150);
+    EXPECT_GT(shares.frames, 140) << name;
+    EXPECT_GT(shares.inside, 0.82 * shares.frames) << name;
   }
 }
 
