@@ -12,7 +12,7 @@
 namespace ellipse {
 namespace {
 
-constexpr double kWidest = 6.0;  // in focus [px]
+constexpr double kWidest = 6.0;  // width beyond which blur in focus does not move the maxima [px]
 
 double lens_variance(double defocus) {
   return kLensVariance * std::pow(4.0, defocus);

@@ -23,7 +23,7 @@ inline constexpr std::size_t kBarDirections = 16;
 class BlurredBars {
  public:
   /// The first object computes a table in about 20 ms. Allocates nothing.
-  /// @param defocus  Doublings of the standard deviation of the lens's blur, from 0, in focus, to
+  /// @param defocus  Doublings of the standard deviation of the lens's blur: 0 is in focus. At most
   ///                 max_defocus().
   explicit BlurredBars(double defocus);
 

@@ -246,7 +246,7 @@ double EdgeMeasurer::mean_contrast() const {
 // The sharpness of a Gaussian edge of variance v, by differences of pixels at c to its normal, is
 // 1 / (v + c^2 / 3): to first order, and on average over positions within a pixel.
 float EdgeMeasurer::defocus_variance() const {
-  if (count_ == 0) return 0.0F;
+  if (count_ < kMinEdgesOfEllipse) return 0.0F;
   float squared_cosines = 0.0F;
   for (const EdgeMeasurement& edge : edges()) {
     squared_cosines += std::pow(cosine_along(edge.normal), 2.0F);
@@ -268,7 +268,7 @@ Estimate EdgeMeasurer::sharpness() const {
   }
   const auto n = static_cast<double>(count_);
   const double mean = sum / n;
-  return {mean, std::sqrt((squares / n - mean * mean) / n)};
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n)};
 }
 
 // Defocus moves curved edges farther inwards than measured() assumes.
@@ -278,7 +278,8 @@ void EdgeMeasurer::correct_curvature(const OutlineSamples& outline) {
   for (std::size_t i = 0; i < count_; ++i) {
     EdgeMeasurement& edge = edges_[i];
     const auto k = static_cast<std::size_t>(edge.sample);
-    const float shift = inward_shift(defocus, outline.curvature(k));
+    const float shift =
+        std::min(float{kReachOnPicture}, inward_shift(defocus, outline.curvature(k)));
     edge.point += shift * edge.normal;
     edge.offset.distance_px += shift;
   }
@@ -337,6 +338,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
                                            Polarity polarity,
                                            const Search& search) {
   count_ = 0;
+  motion_blur_ = {};
   origin_ = outline.origin().cast<double>();
   float total = 0.0F;
   float inside = 0.0F;

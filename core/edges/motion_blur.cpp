@@ -122,7 +122,10 @@ MotionBlur motion_blur(std::span<const EdgeMeasurement> edges, const Eigen::Vect
     fit = LinearFit(loss, edges, motion_px);
   }
   const Eigen::Vector2f none(0.0F, 0.0F);
-  if (!(loss > kAllSigmas * fit.sigma())) return {none, squared_length(edges)};
+  if (!(loss > kAllSigmas * fit.sigma())) {
+    const double squared_motion = motion_px.squaredNorm();
+    return {none, std::min(squared_motion, squared_length(edges))};
+  }
   const double share = std::sqrt(loss / even_variance(fit.sharpest()));
   const Eigen::Vector2f px = static_cast<float>(share) * motion_px;
   // Blur that leaves the edges more than half of their sharpness does not hide their maxima.

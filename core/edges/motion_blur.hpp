@@ -27,7 +27,7 @@ template <class Number>
 /// least squares: edges across the motion are less sharp. Allocates nothing; O(edges).
 ///
 /// @param edges      In order around the outline.
-/// @param motion_px  Displacement of the outline since the last frame [px of the picture]; zero =
+/// @param motion_px  Displacement of the outline since the last match [px of the picture]; zero =
 ///                   unknown. The blur is at most as long.
 [[nodiscard]] MotionBlur motion_blur(std::span<const EdgeMeasurement> edges,
                                      const Eigen::Vector2f& motion_px);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/edges/blurred_bar.hpp"
 #include "core/edges/noise.hpp"
@@ -226,10 +227,10 @@ UnblurredRing without_blur_bias(const RingEdges& maxima, const Estimate& sharpne
   if (sharpness.value + kAllSigmas * sharpness.sigma < middle.sharpness(bars, width.value)) {
     const double error = kUnlikelySigmas * sharpness.sigma;
     bars = BlurredBars(middle.defocus_at(sharpness.value + error));
+    const BlurredBars softest(middle.defocus_at(sharpness.value - error));
     const double widest = middle.width(bars);
-    const double thinnest = middle.width(BlurredBars(middle.defocus_at(sharpness.value - error)));
     // Edges that are less sharp than those of any ring have another edge beside them.
-    width = widest > 0.0 ? at_most(widest, thinnest) : at_most(width.value, 0.0);
+    width = widest > 0.0 ? at_most(widest, middle.width(softest)) : at_most(width.value, 0.0);
   }
   if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, width};
   const RingEdges edges = middle.edges(maxima, width.value, bars);

@@ -1,7 +1,9 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include "core/edges/edge_measurement.hpp"
+#include <Eigen/Core>
+
 #include "core/geometry/ellipse.hpp"
+#include "core/geometry/robust.hpp"
 
 namespace ellipse {
 

@@ -35,7 +35,7 @@ void RingCorrector::correct(const Picture& picture,
     if (polarities[i] == Polarity::kMixed) continue;
     const Polarity other = opposite(polarities[i]);
     measurer_.measure(picture, maximum, polarities[i], kRefinementSamples, min_gradient);
-    if (measurer_.edges().empty()) continue;
+    if (measurer_.edges().size() < kMinEdgesOfEllipse) continue;
     const Estimate sharpness = measurer_.sharpness();
     const double contrast = measurer_.mean_contrast();
     const Ellipse* partner = closest_partner(polarities, i);

@@ -106,7 +106,7 @@ std::optional<FittedEllipse> OuterEdge::on_maxima(const ImageView& luma,
   const RingEdges maxima{exact->ellipse, inner->ellipse};
   UnblurredRing ring;
   if (blur_px.isZero()) {
-    sharpness_ = averaged(sharpness_.value_or(now), now, adaptation);
+    sharpness_ = sharpness_ ? averaged(*sharpness_, now, adaptation) : now;
     ring = without_blur_bias(maxima, *sharpness_);
   } else {
     ring.edges = without_motion_blur(maxima, blur_px);

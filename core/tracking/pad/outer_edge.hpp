@@ -55,7 +55,7 @@ class OuterEdge {
                                                        double adaptation);
 
   Refinement refinement_ = Refinement::kEdges;
-  std::optional<Estimate> sharpness_;  // mean over frames without motion blur
+  std::optional<Estimate> sharpness_;  // mean over frames whose motion blur hides no maxima
   double squared_motions_ = 0.0;       // sums over all frames [px^2]
   double squared_blurs_ = 0.0;
 };

@@ -50,6 +50,7 @@ double rms_px(std::span<const EdgeSample> samples, const HomographyChange& chang
 
 // Adds an error of the centre [radii].
 RingMatrix with_centre_error(const RingMatrix& information, double sigma) {
+  if (sigma == 0.0) return information;
   RingMatrix covariance = information.inverse();
   covariance.diagonal().head<2>().array() += sigma * sigma;
   return covariance.inverse();
@@ -170,7 +171,7 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   is_locked_ = true;
   unmatched_s_ = 0.0;
   innovation_ratio_ = 1.0;
-  squared_acceleration_ = 0.0;
+  squared_acceleration_.reset();
   motion_ = {};
   motion_.velocity = velocity;
   motion_.covariance = inverse_of(attempt.estimate.information);
@@ -308,7 +309,7 @@ void PadTracker::accept(const Attempt& attempt,
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
-  motion_px_ = motion_to(attempt.view);
+  if (unmatched_s_ == 0.0) motion_px_ = motion_to(attempt.view);
   view_ = attempt.view;
   unmatched_s_ = 0.0;
 }
@@ -364,9 +365,10 @@ void PadTracker::refine(const LumaWindow& window, double visible, double adaptat
 double PadTracker::exposure_error_px(double adaptation) {
   if (!motion_px_.isZero() && !last_motion_px_.isZero()) {
     const double now = (motion_px_ - last_motion_px_).squaredNorm();
-    squared_acceleration_ += adaptation * (now - squared_acceleration_);
+    const double mean = squared_acceleration_.value_or(now);
+    squared_acceleration_ = mean + adaptation * (now - mean);
   }
-  return outer_edge_.squared_exposure() / 24.0 * std::sqrt(squared_acceleration_);
+  return outer_edge_.squared_exposure() / 24.0 * std::sqrt(squared_acceleration_.value_or(0.0));
 }
 
 void PadTracker::measure_inner_edges(const LumaWindow& window) {

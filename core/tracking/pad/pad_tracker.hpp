@@ -149,12 +149,12 @@ class PadTracker {
   std::size_t inner_count_ = 0;
   Camera camera_;
   LensView lens_;
-  double squared_acceleration_ = 0.0;  // of the centre, adaptive [(px / frame^2)^2]
-  double innovation_ratio_ = 1.0;      // adaptive factor of the motion noise
-  double gain_ = 1.0;                  // ratio of image contrast to model contrast
-  double relative_gain_ = 0.0;         // the same of relative contrast [1 / grey level]
-  double unmatched_s_ = 0.0;           // since the last match
-  double last_coverage_ = 0.0;         // of the search near the prediction
+  std::optional<double> squared_acceleration_;  // of the centre, adaptive [(px / frame^2)^2]
+  double innovation_ratio_ = 1.0;               // adaptive factor of the motion noise
+  double gain_ = 1.0;                           // ratio of image contrast to model contrast
+  double relative_gain_ = 0.0;                  // the same of relative contrast [1 / grey level]
+  double unmatched_s_ = 0.0;                    // since the last match
+  double last_coverage_ = 0.0;                  // of the search near the prediction
   bool is_locked_ = false;
   bool is_known_ = false;  // the model is that of a pad that was locked
 };

@@ -101,6 +101,10 @@ TEST(MotionBlur, SurvivesTooFewEdges) {
   const MotionBlur of_few = motion_blur(std::span(edges).first(1), 10.0F * kAlongX);
   EXPECT_EQ(of_few.px, kNone);
   EXPECT_EQ(of_few.squared_length, 0.0);
+  std::vector<EdgeMeasurement> one_normal(edges.begin(), edges.begin() + 8);
+  for (EdgeMeasurement& edge : one_normal) edge.normal = kAlongX;
+  EXPECT_EQ(motion_blur(one_normal, 10.0F * kAlongX).px, kNone);
+  EXPECT_EQ(motion_blur(one_normal, 10.0F * kAlongX).squared_length, 0.0);
   const auto alike = edges_with([](const Eigen::Vector2f& /*normal*/) { return kSharpest; });
   EXPECT_EQ(motion_blur(alike, 10.0F * kAlongX).px, kNone);
   EXPECT_NEAR(motion_blur(alike, 10.0F * kAlongX).squared_length, 0.0, 1e-9);
