@@ -70,6 +70,7 @@ std::optional<FittedEllipse> OuterEdge::refine(const ImageView& luma,
   const double ring_px = model.circles.size() > 1
                              ? (1.0 - model.circles[1].radius) * outer->semi_minor
                              : std::numeric_limits<double>::infinity();
+  const OuterEdge before = *this;
   std::optional<FittedEllipse> exact;
   if (refinement_ == Refinement::kPhotometric && !view.lens.is_distorted()) {
     exact = refined_photometrically(
@@ -80,7 +81,9 @@ std::optional<FittedEllipse> OuterEdge::refine(const ImageView& luma,
   // Motion blurs the edges over at most its length, so that each may be predicted half of it off.
   Tolerance tolerance = kOuterEdgeTolerance;
   tolerance.px += 0.5 * motion_px.norm();
-  return is_same(exact->ellipse, *outer, tolerance) ? exact : std::nullopt;
+  if (is_same(exact->ellipse, *outer, tolerance)) return exact;
+  *this = before;  // forgets the sharpness and the blur of an edge that may be another one
+  return std::nullopt;
 }
 
 std::optional<FittedEllipse> OuterEdge::on_maxima(const ImageView& luma,

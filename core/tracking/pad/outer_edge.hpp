@@ -31,6 +31,8 @@ class OuterEdge {
   /// @param gain        Ratio of image contrast to model contrast.
   /// @param motion_px   As of motion_blur(); zero = unknown.
   /// @param adaptation  Share of this frame in the mean sharpness.
+  /// Learns nothing if it returns nullopt.
+  ///
   /// @return The edge in the image's ideal plane; nullopt with Refinement::kNone, if too little of
   ///         it is visible, or if it is too far from the predicted edge.
   [[nodiscard]] std::optional<FittedEllipse> refine(const ImageView& luma,
@@ -56,7 +58,7 @@ class OuterEdge {
 
   Refinement refinement_ = Refinement::kEdges;
   std::optional<Estimate> sharpness_;  // mean over frames whose motion blur hides no maxima
-  double squared_motions_ = 0.0;       // sums over all frames [px^2]
+  double squared_motions_ = 0.0;       // sums over frames whose edge was accepted [px^2]
   double squared_blurs_ = 0.0;
 };
 

@@ -150,6 +150,32 @@ TEST(OuterEdge, LearnsTheExposureFromTheBlur) {
   EXPECT_EQ(edge.squared_exposure(), 0.0);
 }
 
+TEST(OuterEdge, LearnsNothingFromAnEdgeThatIsTooFarAway) {
+  Scene scene = plain_ring();
+  const Ellipse truth{130.3, 129.6, 20.0, 19.0, 0.4};
+  const Picture sharp = rendered(scene, truth, 260, 260);
+  scene.sensor.blur_px = 1.6;
+  const Picture defocused = rendered(scene, truth, 260, 260);
+  const PadView view(image_from_pad(truth), {});
+  const auto model = learn_circles(sharp.view(), view);
+  ASSERT_TRUE(model);
+  OuterEdge edge;
+  const auto refine = [&](const Picture& picture, const Ellipse& predicted, double adaptation) {
+    const PadView at(image_from_pad(predicted), {});
+    return edge.refine(picture.view(), at, *model, 1.0, kAtRest, adaptation);
+  };
+  const auto exact = refine(sharp, truth, 1.0);
+  ASSERT_TRUE(exact);
+  ASSERT_FALSE(refine(defocused, {130.3, 129.6, 22.0, 21.0, 0.4}, 1.0));
+  const auto again = refine(sharp, truth, 0.0);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->ellipse, exact->ellipse);
+  ASSERT_TRUE(refine(defocused, truth, 1.0));
+  const auto softer = refine(sharp, truth, 0.0);
+  ASSERT_TRUE(softer);
+  EXPECT_NE(softer->ellipse, exact->ellipse);
+}
+
 // Blurred edges may be matched anywhere over the length of the blur, so that the view is off.
 TEST(OuterEdge, MayBeFartherFromThePredictedOneInMotion) {
   const Scene scene = disc();
