@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<FeatureInfo, kFeatures> kInfos = {{
     {"turn-support", "share of the outline's turn that has edges"},
     {"direction-error", "median angle between gradient and normal"},
-    {"coverage", "turn support, reduced by the longest gap"},
+    {"coverage", "turn support, reduced by gaps and by the part outside"},
     {"length", "length inside the picture"},
     {"deviation", "distance of the edges from the ellipse"},
     {"changes", "changes of polarity per edge"},

@@ -32,12 +32,14 @@ inline constexpr double kCertainLogOdds = 3.0;
 enum class Feature : std::size_t {
   kTurnSupport,     ///< Share of the outline's turn inside the picture matched by edges, 0 to 1.
   kDirectionError,  ///< ln of the median angle between the gradient and the normal [rad].
-  kCoverage,        ///< ln of turn support x (1 - longest gap between edges, as a share).
-  kLength,          ///< ln(1 + length of the outline inside the picture) [px].
-  kDeviation,       ///< ln of the RMS distance of the edges from the outline [radii].
-  kChanges,         ///< Number of changes of polarity around the outline, per edge.
-  kContrast,        ///< ln of the mean gradient over GradientMap::texture().
-  kCorners,         ///< Share of the outline's turn that is in evenly spaced corners, about 0 to 1.
+  /// ln of turn support x the lesser of 1 - longest gap between edges, as a share of the outline,
+  /// and the share of its turn inside the picture.
+  kCoverage,
+  kLength,     ///< ln(1 + length of the outline inside the picture) [px].
+  kDeviation,  ///< ln of the RMS distance of the edges from the outline [radii].
+  kChanges,    ///< Number of changes of polarity around the outline, per edge.
+  kContrast,   ///< ln of the mean gradient over GradientMap::texture().
+  kCorners,    ///< Share of the outline's turn that is in evenly spaced corners, about 0 to 1.
 };
 inline constexpr std::size_t kFeatures = 8;
 

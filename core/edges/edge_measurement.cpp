@@ -341,6 +341,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
   motion_blur_ = {};
   origin_ = outline.origin().cast<double>();
   float total = 0.0F;
+  float total_turn = 0.0F;
   float inside = 0.0F;
   float inside_turn = 0.0F;
   float matched = 0.0F;
@@ -348,6 +349,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const float length = outline.length_px(k);
     total += length;
+    total_turn += outline.turn(k);
     const Eigen::Vector2i pixel = outline.nearest(k);
     if (!search.area.has(pixel)) continue;
     inside += length;
@@ -360,7 +362,11 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     edges_[count_++] = measured(outline, k, *maximum);
   }
   if (!(inside > 0.0F)) return {};
-  return {inside, inside / total, matched / inside, matched_turn / inside_turn};
+  return {inside,
+          inside / total,
+          matched / inside,
+          inside_turn / total_turn,
+          matched_turn / inside_turn};
 }
 
 OutlineSupport EdgeMeasurer::measure(const GradientMap& map,

@@ -46,10 +46,11 @@ struct EdgeMeasurement {
 
 /// Share of an outline that is matched by edges.
 struct OutlineSupport {
-  double inside_px = 0.0;        ///< Length of the outline inside the picture.
-  double inside_fraction = 0.0;  ///< The same, as a share of the outline.
-  double support = 0.0;          ///< Matched share of the inside length.
-  double turn_support = 0.0;     ///< Matched share of the outline's turn inside.
+  double inside_px = 0.0;             ///< Length of the outline inside the picture.
+  double inside_fraction = 0.0;       ///< The same, as a share of the outline.
+  double support = 0.0;               ///< Matched share of the inside length.
+  double inside_turn_fraction = 0.0;  ///< Share of the outline's turn that is inside the picture.
+  double turn_support = 0.0;          ///< Matched share of the turn inside.
 };
 
 /// Matches edges to an ellipse's outline: searches at each sample, along the row or column closest

@@ -57,8 +57,9 @@ class OutlineSamples {
   [[nodiscard]] float curvature(std::size_t k) const {
     return px_per_unit(k) / (speed_[k] * speed_[k]);
   }
-  /// Turn of the normal that the sample represents, up to a factor common to all samples.
-  [[nodiscard]] float turn(std::size_t k) const { return 1.0F / (speed_[k] * speed_[k]); }
+  /// Turn of the normal in the ideal plane that the sample represents, up to a factor common to all
+  /// samples.
+  [[nodiscard]] float turn(std::size_t k) const { return 1.0F / (ideal_speed(k) * ideal_speed(k)); }
 
  private:
   using PerSample = std::array<float, kMaxSamples>;

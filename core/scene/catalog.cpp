@@ -213,7 +213,8 @@ constexpr std::array kGroundNicks = {"plain",
                                      "field",
                                      "page",
                                      "skin",
-                                     "polygons"};
+                                     "polygons",
+                                     "blades"};
 
 }  // namespace
 

@@ -244,6 +244,9 @@ cv::Mat draw_ground(GroundKind kind, std::uint64_t seed) {
     case GroundKind::kPolygons:
       polygons(painter, 30);
       break;
+    case GroundKind::kBlades:
+      blades(painter);
+      break;
     case GroundKind::kSkin:
       add_noise(tile, 6, 14.0F, seed + 2);
       add_noise(tile, 24, 8.0F, seed + 3);

@@ -25,6 +25,7 @@ enum class GroundKind {
   kPage,      ///< Lines of straight strokes, as of print.
   kSkin,      ///< Soft, without edges.
   kPolygons,  ///< A clutter of regular polygons, of five corners and more.
+  kBlades,    ///< Long bent blades over each other, with smooth edges.
   kPicture,   ///< A picture from the caller.
 };
 

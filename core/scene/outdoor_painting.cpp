@@ -111,4 +111,29 @@ void page(Painter& painter) {
   }
 }
 
+// A blade has two nearly parallel edges, a straight root and a pointed tip, so that no ellipse fits
+// both ends.
+void blades(Painter& painter) {
+  Random& random = painter.random();
+  const double upwards = random.between(0.0, kTwoPi);
+  constexpr int kSteps = 32;
+  for (int i = 0; i < 60; ++i) {
+    cv::Point2d middle = painter.somewhere();
+    double angle = upwards + random.between(-0.4, 0.4);
+    const double bend = random.between(-1.2, 1.2) / kSteps;
+    const double step = random.between(500.0, 1000.0) / kSteps;
+    const double half_at_root = random.between(20.0, 140.0);
+    std::vector<cv::Point2d> outline;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double share = static_cast<double>(k) / kSteps;
+      const double half_width = half_at_root * (1.0 - share * share);
+      outline.insert(outline.begin(), towards(middle, angle - 0.25 * kTwoPi, half_width));
+      outline.push_back(towards(middle, angle + 0.25 * kTwoPi, half_width));
+      middle = towards(middle, angle, step);
+      angle += bend;
+    }
+    painter.polygon(outline, random.between(-70.0, 70.0));
+  }
+}
+
 }  // namespace ellipse

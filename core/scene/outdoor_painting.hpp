@@ -13,5 +13,6 @@ void pavement(cv::Mat& tile, Painter& painter);
 void foliage(Painter& painter);
 void field(cv::Mat& tile, Painter& painter, std::uint64_t seed);
 void page(Painter& painter);
+void blades(Painter& painter);
 
 }  // namespace ellipse

@@ -34,7 +34,7 @@ struct Limits {
 
 constexpr Limits kLimits[] = {
     {"contours", 38, 24},
-    {"arcs", 59, 0},
+    {"arcs", 58, 0},
 };
 
 void PrintTo(const Limits& limits, std::ostream* out) {

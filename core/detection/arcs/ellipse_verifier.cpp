@@ -227,7 +227,9 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   const double largest_error = std::acos(std::sqrt(kMinSquaredCosine));
   const double error =
       direction_errors_.empty() ? largest_error : median(std::span(direction_errors_));
-  const double coverage = turn_support * (1.0 - longest_gap(edges, samples));
+  // A long ellipse whose ends are outside has short gaps, but shows little of its turn.
+  const double coverage =
+      turn_support * std::min(1.0 - longest_gap(edges, samples), found.inside_turn_fraction);
   const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
   const double signal_to_noise =
       std::clamp(measured.gradient / texture, kSignalToNoise.min, kSignalToNoise.max);

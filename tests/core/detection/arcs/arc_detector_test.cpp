@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -255,6 +256,18 @@ TEST(ArcDetector, FindsPartlyOccludedRings) {
 TEST(ArcDetector, FindsRingsCutByTheFrame) {
   const Ellipse truth{20.0, 119.7, 80.0, 60.0, 0.2};
   EXPECT_GT(best_iou(rendered(plain_ring(), truth), truth, detecting()), 0.95);
+}
+
+// Its nearly parallel sides may as well be those of a blade of grass.
+TEST(ArcDetector, IsLessSureOfALongEllipseWhoseEndsAreOutside) {
+  const auto log_odds = [](double cy) {
+    const Ellipse e{160.3, cy, 240.0, 80.0, 0.5 * std::numbers::pi};
+    const Picture picture = rendered(disc(), e);
+    ArcDetector detector;
+    EXPECT_GT(best_iou(picture, e, detecting()), 0.97) << cy;
+    return detector.log_odds_of({picture.view()}, e, detecting()).value_or(-9.0);
+  };
+  EXPECT_LT(log_odds(119.6), log_odds(229.6) - 2.0);
 }
 
 TEST(ArcDetector, FindsCrumpledRings) {

@@ -13,8 +13,10 @@
 #include "core/edges/edge_measurement.hpp"
 #include "core/edges/edge_refinement.hpp"
 #include "core/edges/gradient_map.hpp"
+#include "core/edges/outline_samples.hpp"
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/scene/random.hpp"
+#include "tests/support/cameras.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
@@ -287,6 +289,7 @@ TEST(EdgeMeasurer, CountsEdgesOfTheRightPolarity) {
   EXPECT_GT(found.support, 0.99);
   EXPECT_GT(found.turn_support, 0.99);
   EXPECT_EQ(found.inside_fraction, 1.0);
+  EXPECT_EQ(found.inside_turn_fraction, 1.0);
   EXPECT_EQ(measurer.measure(traced.map, e, Polarity::kBrightInside, 128, 2).support, 0.0);
   const Ellipse other = translated(e, 0.0, 9.0);
   EXPECT_LT(measurer.measure(traced.map, other, Polarity::kDarkInside, 128, 2).support, 0.3);
@@ -298,7 +301,27 @@ TEST(EdgeMeasurer, CountsInsideThePictureOnly) {
   EdgeMeasurer measurer;
   const OutlineSupport found = measurer.measure(traced.map, e, Polarity::kDarkInside, 128, 2);
   EXPECT_NEAR(found.inside_fraction, 0.46, 0.05);
+  EXPECT_NEAR(found.inside_turn_fraction, 0.5, 0.03);
   EXPECT_GT(found.support, 0.95);
+  // Above and below the picture are the ends of a long ellipse, and with them most of its turn: the
+  // normals inside are within atan(b / a tan(t)) of a row, where sin(t) = 80 / a.
+  const Ellipse upright{100.0, 79.5, 120.0, 40.0, 0.5 * std::numbers::pi};
+  const double shown = std::atan(40.0 / 120.0 * std::tan(std::asin(80.0 / 120.0)));
+  const OutlineSupport sides = measurer.measure(traced.map, upright, Polarity::kDarkInside, 256, 2);
+  // The outermost pixels have no gradient.
+  EXPECT_NEAR(sides.inside_turn_fraction, shown / (0.5 * std::numbers::pi), 0.02);
+}
+
+// A lens compresses the margin of the picture, but does not change the ellipse's turn.
+TEST(OutlineSamples, TurnInTheIdealPlane) {
+  const Lens lens(support::fisheye());
+  const Ellipse e{300.0, 170.0, 240.0, 90.0, 0.3};
+  const OutlineSamples distorted(e, 64, lens);
+  const OutlineSamples ideal(e, 64, {});
+  ASSERT_GT((distorted.point(0) - ideal.point(0)).norm(), 10.0);
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    EXPECT_NEAR(distorted.turn(k) / ideal.turn(k), 1.0, 1e-4) << k;
+  }
 }
 
 TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
