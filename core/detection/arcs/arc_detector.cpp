@@ -38,6 +38,11 @@ bool is_likely(const MeasuredEllipse& measured) {
   return log_odds(measured.probability) >= 0.0;
 }
 
+// Whether a picture reduced by a scale would show corners of the outline.
+bool is_large_enough(const Ellipse& e, int scale) {
+  return scale == 1 || e.semi_minor >= scale * kMinReducedPx;
+}
+
 // The finer scales decide about an ellipse of a reduced picture, unless it is ruled out. A minimum
 // of 1 accepts none.
 double required_when_reduced(const Thresholds& thresholds) {
@@ -77,7 +82,7 @@ std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
   pyramid_.reduce(picture);
   std::optional<FoundEllipse> best;
   for (int scale = pyramid_.coarsest_scale(); scale >= 1; scale /= 2) {
-    if (scale > 1 && e.semi_minor < scale * kMinReducedPx) continue;
+    if (!is_large_enough(e, scale)) continue;
     find_edges(scale, limits);
     const auto measured = judged_at(scale, e, limits);
     if (!measured) continue;
@@ -115,7 +120,7 @@ std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
 void ArcDetector::search_scales(const Thresholds& thresholds) {
   const auto finds_certain_target = [&](int scale, const Rect& region) {
     search(scale, region, thresholds);
-    return !thresholds.wants_all && has_certain_target(thresholds);
+    return !thresholds.wants_all && has_certain_target(scale, thresholds);
   };
   for (int scale = pyramid_.coarsest_scale(); scale >= 1; scale /= 2) {
     const Rect region = thresholds.wants_all ? Rect{} : region_of_found(scale);
@@ -283,11 +288,12 @@ void ArcDetector::use_arcs_on(const Ellipse& e, Polarity polarity) {
   }
 }
 
-// Whether the best target is certain enough to skip the remaining scales.
-bool ArcDetector::has_certain_target(const Thresholds& thresholds) {
+// Whether the best target is certain enough to skip the remaining scales. Reduction to fewer pixels
+// hides corners and, near the border, a larger edge around it.
+bool ArcDetector::has_certain_target(int scale, const Thresholds& thresholds) {
   report(thresholds.min_probability);
   const auto target = select_target(detections_);
-  return target && is_certain(target->probability);
+  return target && is_certain(target->probability) && is_large_enough(target->ellipse, scale);
 }
 
 // Averages the log odds at the ellipse's scale with those at the finer scales, each weighted with

@@ -71,7 +71,7 @@ class ArcDetector final : public Detector {
   [[nodiscard]] Verdict check_duplicate(const Guess& guess) const;
   void add(const MeasuredEllipse& measured);
   void use_arcs_on(const Ellipse& e, Polarity polarity);
-  [[nodiscard]] bool has_certain_target(const Thresholds& thresholds);
+  [[nodiscard]] bool has_certain_target(int scale, const Thresholds& thresholds);
   void find_edges(int scale, const Thresholds& thresholds);
   [[nodiscard]] std::optional<MeasuredEllipse> judged_at(int scale,
                                                          const Ellipse& e,
