@@ -270,6 +270,16 @@ TEST(ArcDetector, IsLessSureOfALongEllipseWhoseEndsAreOutside) {
   EXPECT_LT(log_odds(119.6), log_odds(229.6) - 2.0);
 }
 
+// At a quarter of the size the border hides the outer edge.
+TEST(ArcDetector, FindsTheOuterEdgeInASmallPicture) {
+  const Ellipse truth{45.0, 45.0, 31.5, 25.2, 0.3};
+  ArcDetector detector;
+  const Picture picture = rendered(plain_ring(), truth, 90, 90);
+  const auto target = select_target(detector.detect(picture.view(), detecting()));
+  ASSERT_TRUE(target);
+  EXPECT_NEAR(target->ellipse.semi_major, truth.semi_major, 0.3);
+}
+
 TEST(ArcDetector, FindsCrumpledRings) {
   const Ellipse truth{160.0, 120.0, 90.0, 70.0, 0.2};
   for (const double deviation : {0.01, 0.02, 0.03}) {
