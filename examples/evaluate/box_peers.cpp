@@ -34,7 +34,7 @@ void colour(const cv::Mat& grey, cv::Mat& colour) {
   cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
 }
 
-constexpr std::array kNames = {"kcf", "csrt"};
+constexpr std::array kBoxPeerNames = {"kcf", "csrt"};
 
 }  // namespace
 
@@ -91,7 +91,7 @@ ellipse::Ellipse BoxPeer::carried_to(const cv::Rect& box) const {
 }
 
 std::span<const char* const> box_peer_names() {
-  return kNames;
+  return kBoxPeerNames;
 }
 
 BoxPeer make_box_peer(std::string_view name) {

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace evaluate {
 namespace {
 
 double ratio(int part, int whole) {
-  return whole > 0 ? static_cast<double>(part) / whole : std::numeric_limits<double>::quiet_NaN();
+  return whole > 0 ? static_cast<double>(part) / whole : kNaN;
 }
 
 void append(std::vector<double>& to, const std::vector<double>& from) {
@@ -168,7 +167,7 @@ std::vector<double> Measures::all_centre_errors_px() const {
 }
 
 double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return kNaN;
   const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];

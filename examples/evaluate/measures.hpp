@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,9 @@ enum class Rule {
 
 /// Minimum intersection over union of a match [Rule::kIou].
 inline constexpr double kMinIou = 0.8;
+
+/// The value of a measure that has none, e.g. a share of no frames.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A target with less of its perimeter inside the frame may be missed.
 inline constexpr double kMinVisible = 0.3;

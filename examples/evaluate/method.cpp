@@ -2,7 +2,6 @@
 #include "examples/evaluate/method.hpp"
 
 #include <chrono>
-#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -117,7 +116,7 @@ class BoxMethod : public Method {
       answer.processing_ms = step.ms;
       return answer;
     }
-    answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
+    answer.processing_ms = kNaN;
     const bool is_enough = frame.truth.is_labelled &&
                            visible_part(frame.truth, {picture.cols, picture.rows}) >= kMinToStart;
     if (!is_enough) return answer;
@@ -144,7 +143,7 @@ class CommandMethod : public Method {
   Answer find(const Frame& frame, const cv::Mat& /*picture*/, std::int64_t /*pts_ns*/) override {
     const auto found = answers_.find(frame.image.string());
     Answer answer;
-    answer.processing_ms = std::numeric_limits<double>::quiet_NaN();
+    answer.processing_ms = kNaN;
     detections_.clear();
     if (found == answers_.end()) return answer;
     answer.processing_ms = found->second.ms;

@@ -211,12 +211,13 @@ class RandomizedHoughPeer final : public Peer {
   RandomizedHough hough_;
 };
 
-constexpr std::array kNames = {"edge-drawing", "hough-circles", "canny-fit", "randomized-hough"};
+constexpr std::array kPeerNames = {
+    "edge-drawing", "hough-circles", "canny-fit", "randomized-hough"};
 
 }  // namespace
 
 std::span<const char* const> peer_names() {
-  return kNames;
+  return kPeerNames;
 }
 
 std::unique_ptr<ellipse::Detector> make_peer(std::string_view name) {

@@ -14,7 +14,7 @@
 namespace evaluate {
 namespace {
 
-constexpr GstClockTime kTimeout = 3 * GST_SECOND;
+constexpr GstClockTime kPictureTimeout = 3 * GST_SECOND;
 
 [[noreturn]] void fail(const std::filesystem::path& file) {
   throw std::runtime_error(file.string() + ": not a readable picture");
@@ -74,7 +74,7 @@ class PictureReader::JpegPipeline {
     GST_BUFFER_PTS(buffer) = time_;
     time_ += GST_SECOND / 30;
     gst_app_src_push_buffer(in_, buffer);
-    GstSample* sample = gst_app_sink_try_pull_sample(out_, kTimeout);
+    GstSample* sample = gst_app_sink_try_pull_sample(out_, kPictureTimeout);
     if (sample == nullptr) return {};
     cv::Mat picture = luma_of(sample);
     gst_sample_unref(sample);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kPanelWidth = 560;
 constexpr int kPanelHeight = 300;
-constexpr int kColumns = 2;
+constexpr int kPanelColumns = 2;
 
 template <class Type>
 using Object = std::unique_ptr<Type, decltype(&g_object_unref)>;
@@ -80,8 +80,8 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t number) {
 std::string script_of(const std::vector<Panel>& panels, PlotFormat format) {
   std::ostringstream script;
   script.precision(10);
-  const std::size_t rows = (panels.size() + kColumns - 1) / kColumns;
-  const int columns = panels.size() > 1 ? kColumns : 1;
+  const std::size_t rows = (panels.size() + kPanelColumns - 1) / kPanelColumns;
+  const int columns = panels.size() > 1 ? kPanelColumns : 1;
   script << "set terminal " << (format == PlotFormat::kSvg ? "svg" : "pngcairo") << " size "
          << columns * kPanelWidth << ',' << static_cast<int>(rows) * kPanelHeight
          << " font \"sans,11\" noenhanced background \"white\"\n"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 #include "core/scene/random.hpp"
@@ -16,7 +15,6 @@ namespace {
 constexpr int kResamples = 2000;
 constexpr std::size_t kMinBlocks = 5;
 constexpr double kBlockSeconds = 1.0;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Prefix sums: the sum over any range of frames in O(1).
 class Sums {

@@ -6,22 +6,12 @@
 #include <cmath>
 #include <fstream>
 
+#include "examples/evaluate/text.hpp"
+
 namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> fields(1);
-  for (const char c : text) {
-    if (c == separator) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
 
 }  // namespace
 

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <limits>
 #include <ostream>
 
+#include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/text.hpp"
 
 namespace evaluate {
 namespace {
 
 constexpr const char* kNoDifference = "=";
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // The grade with its mark; a blank keeps the digits aligned.
 std::string marked(const SourceGrade& grade) {

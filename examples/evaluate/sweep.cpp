@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxValues = 200;
 
-[[noreturn]] void fail(const std::string& text, const std::string& what) {
+[[noreturn]] void refuse_sweep(const std::string& text, const std::string& what) {
   throw std::invalid_argument("--sweep " + text + ": " + what);
 }
 
@@ -29,28 +29,18 @@ std::optional<double> number_in(const std::string& text) {
   return is_number && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 std::vector<std::string> range(const std::vector<std::string>& parts, const std::string& all) {
-  if (parts.size() != 3) fail(all, "expected PROPERTY=FROM:TO:STEP");
+  if (parts.size() != 3) refuse_sweep(all, "expected PROPERTY=FROM:TO:STEP");
   std::array<double, 3> numbers{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = number_in(parts[i]);
-    if (!value) fail(all, "\"" + parts[i] + "\" is not a number");
+    if (!value) refuse_sweep(all, "\"" + parts[i] + "\" is not a number");
     numbers[i] = *value;
   }
   const auto [from, to, step] = numbers;
-  if (!(step > 0.0) || !(to >= from)) fail(all, "expected from <= to and a step above 0");
+  if (!(step > 0.0) || !(to >= from)) refuse_sweep(all, "expected from <= to and a step above 0");
   const double steps = std::floor((to - from) / step + 1e-9);
-  if (steps >= static_cast<double>(kMaxValues)) fail(all, "more than 200 values");
+  if (steps >= static_cast<double>(kMaxValues)) refuse_sweep(all, "more than 200 values");
   std::vector<std::string> values;
   // Rounds to nine digits, so that 0.3 + 5 x 0.05 is printed as 0.55.
   for (int i = 0; i <= static_cast<int>(steps); ++i) {
@@ -79,7 +69,7 @@ double count_of(const Measures& m) {
   return m.count(kOutcome);
 }
 
-constexpr Column kColumns[] = {
+constexpr Column kSweepColumns[] = {
     {"accuracy", 4, [](const Measures& m) { return m.accuracy(); }},
     {"precision", 4, [](const Measures& m) { return m.precision(); }},
     {"recall", 4, [](const Measures& m) { return m.recall(); }},
@@ -108,7 +98,7 @@ Panel panel_of(const Sweep& sweep,
   }
   if (panel.x.size() < sweep.values.size())
     panel.ranges = sweep.values;  // non-numeric values: grouped bars
-  for (const Column& column : kColumns) {
+  for (const Column& column : kSweepColumns) {
     if (std::find(names.begin(), names.end(), column.name) == names.end()) continue;
     Curve curve{column.name, {}};
     for (std::size_t i = 0; i < sweep.values.size(); ++i) {
@@ -123,7 +113,8 @@ Panel panel_of(const Sweep& sweep,
 
 Sweep parse_sweep(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) fail(text, "expected PROPERTY=FROM:TO:STEP");
+  if (equals == std::string::npos || equals == 0)
+    refuse_sweep(text, "expected PROPERTY=FROM:TO:STEP");
   const std::string values = text.substr(equals + 1);
   Sweep sweep{text.substr(0, equals), {}};
   sweep.values =
@@ -145,11 +136,11 @@ std::vector<std::unique_ptr<Method>> methods_of(const Sweep& sweep,
 
 Table sweep_table(const Sweep& sweep, const Evaluation& evaluation) {
   Table table{"Sweep of " + sweep.property, {sweep.property}, {}, ""};
-  for (const Column& column : kColumns) table.header.emplace_back(column.name);
+  for (const Column& column : kSweepColumns) table.header.emplace_back(column.name);
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
     const Measures measures = measures_at(evaluation, i);
     std::vector<std::string> row{sweep.values[i]};
-    for (const Column& column : kColumns) {
+    for (const Column& column : kSweepColumns) {
       row.push_back(number(column.get(measures), column.digits));
     }
     table.rows.push_back(std::move(row));

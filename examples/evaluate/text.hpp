@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace evaluate {
 
@@ -14,6 +15,19 @@ template <class... Values>
   std::snprintf(text.data(), text.size(), pattern, values...);
   text.pop_back();
   return text;
+}
+
+/// The parts of a text between separators; one empty part for an empty text.
+[[nodiscard]] inline std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
 }
 
 /// null for NaN, which JSON cannot represent.

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ostream>
 
+#include "examples/evaluate/measures.hpp"
 #include "examples/evaluate/text.hpp"
 
 namespace evaluate {
@@ -14,11 +14,10 @@ namespace {
 constexpr double kSoon = 2.0;  // frames
 
 double share_of(std::ptrdiff_t part, std::size_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole)
-                   : std::numeric_limits<double>::quiet_NaN();
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : kNaN;
 }
 
-std::string share(int part, int whole) {
+std::string share_text(int part, int whole) {
   return number(share_of(part, static_cast<std::size_t>(whole)), 4);
 }
 
@@ -46,11 +45,11 @@ std::vector<std::string> visibility_row(const std::string& visible,
   return {visible,
           method,
           std::to_string(counts.frames),
-          share(counts.right, counts.frames),
-          share(counts.centre_5, counts.frames),
-          share(counts.centre_2, counts.frames),
-          share(counts.wrong, counts.frames),
-          share(counts.none, counts.frames)};
+          share_text(counts.right, counts.frames),
+          share_text(counts.centre_5, counts.frames),
+          share_text(counts.centre_2, counts.frames),
+          share_text(counts.wrong, counts.frames),
+          share_text(counts.none, counts.frames)};
 }
 
 void write_json_range(std::ostream& out, const RangeCounts& counts) {
@@ -104,7 +103,7 @@ Table following_table(const Evaluation& evaluation, const std::string& dataset) 
     const TrackingMeasures& m = all[i];
     table.rows.push_back({evaluation.methods[i].name,
                           std::to_string(m.empty_frames),
-                          share(m.locks_on_nothing, m.empty_frames),
+                          share_text(m.locks_on_nothing, m.empty_frames),
                           std::to_string(m.wrong()),
                           std::to_string(m.given),
                           std::to_string(m.returns.size()),

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr GstClockTime kTimeout = 20 * GST_SECOND;
+constexpr GstClockTime kStallTimeout = 20 * GST_SECOND;
 constexpr GstClockTime kErrorInterval =
     GST_SECOND / 10;  // between checks for errors, which do not end the wait
 
@@ -63,7 +63,7 @@ class VideoReader::Pipeline {
 
   /// Owned by the caller; nullptr after the last frame.
   GstSample* next() {
-    for (GstClockTime waited = 0; waited < kTimeout; waited += kErrorInterval) {
+    for (GstClockTime waited = 0; waited < kStallTimeout; waited += kErrorInterval) {
       GstSample* sample = gst_app_sink_try_pull_sample(out_, kErrorInterval);
       if (sample != nullptr) return sample;
       throw_error();

@@ -10,10 +10,51 @@
 #include "core/scene/wild_shapes.hpp"
 
 namespace landing {
+
+// Zeroth to second moments of pixels, and their mean brightness.
+class Blob {
+ public:
+  void add(const Eigen::Vector2d& pixel, double level) {
+    if (count_ == 0.0) origin_ = pixel;  // relative coordinates preserve precision
+    const Eigen::Vector2d p = pixel - origin_;
+    count_ += 1.0;
+    sum_ += p;
+    squares_ += p * p.transpose();
+    levels_ += level;
+  }
+
+  [[nodiscard]] double area() const { return count_; }
+  [[nodiscard]] double level() const { return levels_ / count_; }
+
+  Blob& operator+=(const Blob& other) {
+    const Eigen::Vector2d shift = other.origin_ - origin_;
+    squares_ += other.squares_ + shift * other.sum_.transpose() + other.sum_ * shift.transpose() +
+                other.count_ * shift * shift.transpose();
+    sum_ += other.sum_ + other.count_ * shift;
+    levels_ += other.levels_;
+    count_ += other.count_;
+    return *this;
+  }
+
+  // The filled ellipse with these moments: its shape matrix is 4 times the covariance. Each pixel
+  // is a square, which adds a variance of 1/12.
+  [[nodiscard]] std::optional<ellipse::Ellipse> filled_ellipse() const {
+    const Eigen::Vector2d mean = sum_ / count_;
+    const Eigen::Matrix2d covariance =
+        squares_ / count_ - mean * mean.transpose() + Eigen::Matrix2d::Identity() / 12.0;
+    return ellipse::from_shape(origin_ + mean, 4.0 * covariance);
+  }
+
+ private:
+  double count_ = 0.0;
+  double levels_ = 0.0;
+  Eigen::Vector2d origin_{0.0, 0.0};
+  Eigen::Vector2d sum_{0.0, 0.0};
+  Eigen::Matrix2d squares_ = Eigen::Matrix2d::Zero();
+};
+
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
 using ellipse::Ellipse;
 
 // Edge error of a segment: half a pixel each from sampling and blur.
@@ -28,48 +69,6 @@ double bisection(unsigned index) {
   for (double digit = 0.5; index != 0; index /= 2, digit /= 2.0) value += digit * (index % 2);
   return value;
 }
-
-// Zeroth to second moments of pixels, and their mean brightness.
-class Blob {
- public:
-  void add(const Vector2d& pixel, double level) {
-    if (count_ == 0.0) origin_ = pixel;  // relative coordinates preserve precision
-    const Vector2d p = pixel - origin_;
-    count_ += 1.0;
-    sum_ += p;
-    squares_ += p * p.transpose();
-    levels_ += level;
-  }
-
-  [[nodiscard]] double area() const { return count_; }
-  [[nodiscard]] double level() const { return levels_ / count_; }
-
-  Blob& operator+=(const Blob& other) {
-    const Vector2d shift = other.origin_ - origin_;
-    squares_ += other.squares_ + shift * other.sum_.transpose() + other.sum_ * shift.transpose() +
-                other.count_ * shift * shift.transpose();
-    sum_ += other.sum_ + other.count_ * shift;
-    levels_ += other.levels_;
-    count_ += other.count_;
-    return *this;
-  }
-
-  // The filled ellipse with these moments: its shape matrix is 4 times the covariance. Each pixel
-  // is a square, which adds a variance of 1/12.
-  [[nodiscard]] std::optional<Ellipse> filled_ellipse() const {
-    const Vector2d mean = sum_ / count_;
-    const Matrix2d covariance =
-        squares_ / count_ - mean * mean.transpose() + Matrix2d::Identity() / 12.0;
-    return ellipse::from_shape(origin_ + mean, 4.0 * covariance);
-  }
-
- private:
-  double count_ = 0.0;
-  double levels_ = 0.0;
-  Vector2d origin_{0.0, 0.0};
-  Vector2d sum_{0.0, 0.0};
-  Matrix2d squares_ = Matrix2d::Zero();
-};
 
 double area_of(const Ellipse& e) {
   return std::numbers::pi * e.semi_major * e.semi_minor;

@@ -74,6 +74,10 @@ void JsonWriter::append_quoted(std::string_view text) {
   g_free(valid);
 }
 
+std::string json_number(double value) {
+  return JsonWriter().value(value).text();
+}
+
 std::string error_json(std::string_view message) {
   return JsonWriter().begin_object().member("error", message).end_object().text() + "\n";
 }

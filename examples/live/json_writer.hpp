@@ -47,6 +47,9 @@ class JsonWriter {
   bool needs_comma_ = false;
 };
 
+/// A number as JSON text.
+[[nodiscard]] std::string json_number(double value);
+
 /// The object {"error": message}.
 [[nodiscard]] std::string error_json(std::string_view message);
 

@@ -82,7 +82,7 @@ void reduce(State& state, const Frames& frames, int scale) {
 }
 
 void render(State& state, const Frames& frames) {
-  support::Picture picture = frames.front().picture;
+  support::GrayPicture picture = frames.front().picture;
   bench::compare(state, frames, [&]() -> Work {
     auto renderer = std::make_shared<ellipse::SceneRenderer>(bench::scene());
     return [&, renderer](std::size_t i) {

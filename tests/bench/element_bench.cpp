@@ -37,7 +37,7 @@ constexpr const char* kFormats[] = {"GRAY8", "I420", "BGR"};
 std::vector<Owned<GstBuffer>> buffers_of(const Frames& frames, const std::string& format) {
   std::vector<Owned<GstBuffer>> buffers;
   for (const Frame& frame : frames) {
-    const support::Picture& picture = frame.picture;
+    const support::GrayPicture& picture = frame.picture;
     buffers.push_back(
         support::buffer_of(picture, support::info_of(format, picture.width, picture.height)));
   }
@@ -56,7 +56,7 @@ void run_element(State& state,
                  const std::string& element,
                  const std::string& format) {
   const std::vector<Owned<GstBuffer>> buffers = buffers_of(frames, format);
-  const support::Picture& picture = frames.front().picture;
+  const support::GrayPicture& picture = frames.front().picture;
   const std::string caps = support::caps_of(format, picture.width, picture.height);
   bench::FoundShare found;
   bench::compare(state, frames, [&]() -> Work {
@@ -209,7 +209,7 @@ class OverlayLoop {
  public:
   OverlayLoop(const std::string& format, const bench::Size& size, bool is_composed)
       : harness_(gst_harness_new("ellipseoverlay")),
-        buffer_(support::buffer_of(support::Picture(size.width, size.height, 90),
+        buffer_(support::buffer_of(support::GrayPicture(size.width, size.height, 90),
                                    support::info_of(format, size.width, size.height))) {
     if (is_composed) support::offer_composition(harness_.get());
     gst_harness_set_src_caps_str(harness_.get(),

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       argv[1] == std::string("none") ? ellipse::TrackingMode::kNone : ellipse::TrackingMode::kEdges;
   ellipse::Tracker tracker(settings);
   const support::IntegerDisc disc{width / 2, height / 2, width / 8, height / 6};
-  const support::Picture picture = disc.draw(width, height, 6);
+  const support::GrayPicture picture = disc.draw(width, height, 6);
   int found = 0;
   for (int i = 0; i < frames; ++i) {
     found += tracker.process(picture.view(), i * 1'000'000'000LL / 30) ? 1 : 0;

@@ -88,13 +88,13 @@ ellipse::Scene scene() {
 const std::vector<Frame>& frames_of(const Size& size) {
   static std::deque<std::vector<Frame>> known;
   for (const std::vector<Frame>& frames : known) {
-    const support::Picture& picture = frames.front().picture;
+    const support::GrayPicture& picture = frames.front().picture;
     if (picture.width == size.width && picture.height == size.height) return frames;
   }
   return known.emplace_back(render(size));
 }
 
-cv::Mat mat_of(const support::Picture& picture) {
+cv::Mat mat_of(const support::GrayPicture& picture) {
   return {picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data())};
 }
 

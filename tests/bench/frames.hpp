@@ -33,7 +33,7 @@ inline constexpr double kFrameInterval_s = 1.0 / 30.0;
 
 /// One frame of the scene "approach" with the inputs of the measurements.
 struct Frame {
-  support::Picture picture;
+  support::GrayPicture picture;
   double time_s = 0.0;
   ellipse::Truth truth = {};
   cv::Mat smooth = {};                             ///< The reference's input.
@@ -46,7 +46,7 @@ struct Frame {
 [[nodiscard]] ellipse::Scene scene();
 
 /// A view of the picture's pixels for OpenCV.
-[[nodiscard]] cv::Mat mat_of(const support::Picture& picture);
+[[nodiscard]] cv::Mat mat_of(const support::GrayPicture& picture);
 
 /// The cost of any contour-based method: cv::Canny and cv::findContours on a smoothed picture.
 class Reference {

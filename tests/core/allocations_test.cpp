@@ -28,7 +28,7 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
 const Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
 
@@ -46,12 +46,12 @@ std::int64_t steady_allocations_of(const Call& call) {
   return allocations_of(call);
 }
 
-Picture ring_picture() {
+GrayPicture ring_picture() {
   return support::rendered(support::plain_ring(), kRing);
 }
 
-Picture noisy_picture() {
-  Picture picture(320, 240);
+GrayPicture noisy_picture() {
+  GrayPicture picture(320, 240);
   SceneRenderer(scene_by_name("noise")).render(5.0, 0, picture.writable());
   return picture;
 }
@@ -98,7 +98,7 @@ TEST_F(Allocations, NoneInOverlaps) {
   walk_perimeter(kRing, [&](const PerimeterStep& step) {
     contour.emplace_back(cvRound(step.point.x()), cvRound(step.point.y()));
   });
-  const Picture edges(320, 240, 255);
+  const GrayPicture edges(320, 240, 255);
   double overlaps = 0.0;
   const auto overlap = [&] {
     overlaps =
@@ -129,13 +129,13 @@ TEST_F(Allocations, NoneInLumaOfARegionThatMoves) {
 TEST_F(Allocations, NoneInScaler) {
   Scaler scaler;
   for (int scale = 1; scale <= 128; scale *= 2) {
-    const Picture picture(3840, 2 * scale);
+    const GrayPicture picture(3840, 2 * scale);
     EXPECT_EQ(steady_allocations_of([&] { return scaler.reduce(picture.view(), scale).width; }), 0);
   }
 }
 
 TEST_F(Allocations, NoneInArcDetector) {
-  for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
+  for (const GrayPicture& picture : {ring_picture(), noisy_picture(), GrayPicture(320, 240, 90)}) {
     ArcDetector detector;
     for (const int min_contour : {50, 20}) {  // the default, and shorter
       Thresholds thresholds;
@@ -147,7 +147,7 @@ TEST_F(Allocations, NoneInArcDetector) {
 }
 
 TEST_F(Allocations, NoneInRendererOfAnyScene) {
-  Picture picture(160, 120);
+  GrayPicture picture(160, 120);
   for (const NamedScene& named : scene_catalog()) {
     SceneRenderer renderer(named.make(1));
     double time_s = 2.0;
@@ -159,7 +159,7 @@ TEST_F(Allocations, NoneInRendererOfAnyScene) {
 // The OpenCV calls of [Keipour2021] Algorithm 1 as the detector makes them, without the rest.
 class OpenCvCalls {
  public:
-  void run(const Picture& picture, const EdgeThresholds& edges) {
+  void run(const GrayPicture& picture, const EdgeThresholds& edges) {
     const cv::Mat mat(
         picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data()));
     cv::GaussianBlur(mat, smooth_, {5, 5}, 1.0, 1.0, cv::BORDER_REPLICATE);
@@ -180,7 +180,7 @@ class OpenCvCalls {
 };
 
 TEST_F(Allocations, OfContourDetectorEqualThoseOfOpenCv) {
-  for (const Picture& picture : {ring_picture(), noisy_picture(), Picture(320, 240, 90)}) {
+  for (const GrayPicture& picture : {ring_picture(), noisy_picture(), GrayPicture(320, 240, 90)}) {
     ContourDetector detector;
     const auto of_detector =
         steady_allocations_of([&] { return detector.detect(picture.view(), {}).size(); });
@@ -229,7 +229,7 @@ constexpr int kFilmFrames = 50;
 template <class Use>
 void show(const Film& film, const Use& use) {
   SceneRenderer renderer(scene_by_name(film.scene, 201));
-  Picture picture(320, 180);
+  GrayPicture picture(320, 180);
   for (int i = 0; i < kFilmFrames; ++i) {
     const Truth truth =
         renderer.render(film.from_s + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
@@ -255,8 +255,8 @@ TEST_F(Allocations, NoneInPadTrackerOnceItIsLocked) {
 }
 
 TEST_F(Allocations, NoneWhereEdgesAreNotMatched) {
-  const Picture ring = ring_picture();
-  const Picture ground(320, 240, 90);
+  const GrayPicture ring = ring_picture();
+  const GrayPicture ground(320, 240, 90);
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock({ring.view(), {0.0, 0.0}, {320.0, 240.0}}, kRing));
   for (int i = 0; i < 20; ++i) {
@@ -312,7 +312,7 @@ TEST_F(Allocations, NoneThroughALens) {
 }
 
 TEST_F(Allocations, OfTrackerDoNotAccumulate) {
-  const Picture picture = ring_picture();
+  const GrayPicture picture = ring_picture();
   Tracker tracker;
   const bench::HeapMeter meter;
   std::int64_t pts_ns = 0;

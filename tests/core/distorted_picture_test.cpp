@@ -22,13 +22,12 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
-
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
+using support::GrayPicture;
+using support::kHeight;
+using support::kWidth;
 
 struct Shot {
-  Picture picture{kWidth, kHeight};
+  GrayPicture picture{kWidth, kHeight};
   Truth truth;
 };
 
@@ -123,7 +122,7 @@ TEST_P(DistortedPicture, IsTrackedWhileItFillsTheView) {
   settings.camera = camera_of(scene_, kWidth, kHeight);
   Tracker tracker(settings);
   SceneRenderer renderer(scene_);
-  Picture picture(kWidth, kHeight);
+  GrayPicture picture(kWidth, kHeight);
   double min_visible = 1.0;
   int right = 0;
   int shown = 0;

@@ -16,13 +16,13 @@
 namespace ellipse {
 namespace {
 
+using support::GrayPicture;
 using support::IntegerDisc;
-using support::Picture;
 
 constexpr std::array<IntegerDisc, 3> kDiscs = {
     {{160, 120, 70, 40}, {90, 100, 25, 60}, {250, 180, 12, 9}}};
 
-Picture picture_of(const IntegerDisc& disc) {
+GrayPicture picture_of(const IntegerDisc& disc) {
   return disc.draw(320, 240, 6);
 }
 
@@ -36,7 +36,7 @@ class Digest {
   std::uint64_t digest_ = 0xcbf29ce484222325u;
 };
 
-std::uint64_t digest_of_stages(const Picture& picture, Simd simd) {
+std::uint64_t digest_of_stages(const GrayPicture& picture, Simd simd) {
   Digest digest;
   Scaler scaler;
   for (const int scale : {1, 2, 4}) {
@@ -62,7 +62,7 @@ TEST(Machines, IntegerStagesAreBitEqual) {
   constexpr std::array<std::uint64_t, 3> kDigests = {
       69581730297642070U, 7268294265261161847U, 7064622963298312029U};
   for (std::size_t i = 0; i < kDiscs.size(); ++i) {
-    const Picture picture = picture_of(kDiscs[i]);
+    const GrayPicture picture = picture_of(kDiscs[i]);
     EXPECT_EQ(digest_of_stages(picture, Simd::kBaseline), kDigests[i]) << "disc " << i;
     EXPECT_EQ(digest_of_stages(picture, best_simd()), kDigests[i]) << "disc " << i;
   }
@@ -76,7 +76,7 @@ TEST(Machines, EllipsesAreEqualToATenThousandthOfAPixel) {
   }};
   ArcDetector detector;
   for (std::size_t i = 0; i < kDiscs.size(); ++i) {
-    const Picture picture = picture_of(kDiscs[i]);
+    const GrayPicture picture = picture_of(kDiscs[i]);
     const auto found = detector.detect(picture.view(), Thresholds{});
     ASSERT_EQ(found.size(), 1U) << "disc " << i;
     const Ellipse& e = found[0].ellipse;

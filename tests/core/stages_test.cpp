@@ -32,7 +32,7 @@ std::string message_of(const Call& call) {
 }
 
 TEST(ImageView, RegionIsClipped) {
-  const support::Picture picture(10, 8);
+  const support::GrayPicture picture(10, 8);
   const ImageView part = picture.view().region({6, -2, 20, 5});
   EXPECT_EQ(part.width, 4);
   EXPECT_EQ(part.height, 3);
@@ -49,7 +49,7 @@ TEST(ContourOverlap, IsShareOfPixelsNearTheEllipse) {
 }
 
 TEST(EllipseOverlap, CountsThePerimeterInsideThePictureOnly) {
-  support::Picture edges(100, 100);
+  support::GrayPicture edges(100, 100);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 50; ++x) edges.at(x, y) = 255;
   }
@@ -173,7 +173,7 @@ TEST(TrackerSettings, RejectInvertedPairs) {
 }
 
 TEST(Scaler, AveragesBlocksAndDropsTheRemainder) {
-  support::Picture picture(5, 4, 10);
+  support::GrayPicture picture(5, 4, 10);
   picture.at(0, 0) = 50;
   Scaler scaler;
   const ImageView half = scaler.reduce(picture.view(), 2);

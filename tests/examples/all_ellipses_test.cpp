@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "examples/evaluate/matching.hpp"
+#include "tests/examples/judged_frame.hpp"
 
 namespace evaluate {
 namespace {
 
-constexpr FrameSize kFrame{320, 240};
 const ellipse::Ellipse kLeft{80.0, 120.0, 40.0, 30.0, 0.3};
 const ellipse::Ellipse kRight{240.0, 120.0, 40.0, 30.0, 0.3};
 const ellipse::Ellipse kElsewhere{160.0, 30.0, 20.0, 20.0, 0.0};

@@ -33,17 +33,17 @@ class EachBoxPeer : public testing::TestWithParam<const char*> {
   EachBoxPeer() : method_(make_method(GetParam(), {})) { method_->start(nullptr); }
 
   Answer see(const ellipse::Ellipse& pad) {
-    support::Picture picture = support::rendered(marked_pad(), pad);
+    support::GrayPicture picture = support::rendered(marked_pad(), pad);
     return see(picture, {pad, std::nullopt, true});
   }
-  Answer see(support::Picture& picture, const Truth& truth) {
+  Answer see(support::GrayPicture& picture, const Truth& truth) {
     Frame frame;
     frame.truth = truth;
     const cv::Mat grey(picture.height, picture.width, CV_8UC1, picture.pixels.data());
     return method_->find(frame, grey, 0);
   }
   Answer see_noise() {
-    support::Picture noise(kSize.width, kSize.height);
+    support::GrayPicture noise(kSize.width, kSize.height);
     for (std::uint8_t& pixel : noise.pixels) {
       pixel = static_cast<std::uint8_t>(random_.below(256));
     }
@@ -77,7 +77,7 @@ TEST_P(EachBoxPeer, IsNotInitializedWithHardlyVisibleTargets) {
   leaving.cx = -10.0;
   EXPECT_LT(ellipse::visible_fraction(leaving, kSize.width, kSize.height), kMinToStart);
   EXPECT_FALSE(see(leaving).target);
-  support::Picture picture = support::rendered(marked_pad(), kStart);
+  support::GrayPicture picture = support::rendered(marked_pad(), kStart);
   EXPECT_FALSE(see(picture, {kStart, std::nullopt, false}).target);  // not labelled
   EXPECT_FALSE(see({160.0, 120.0, 3.0, 2.0, 0.0}).target);           // too small a box
   EXPECT_TRUE(see(kStart).is_given);
@@ -133,7 +133,7 @@ TEST(BoxPeers, CsrtScalesTheEllipseWithItsBox) {
   ellipse::Ellipse pad{160.0, 120.0, 40.0, 30.0, 0.4};
   std::optional<ellipse::Ellipse> last;
   for (int i = 0; i < 12; ++i) {
-    support::Picture picture = support::rendered(marked_pad(), pad);
+    support::GrayPicture picture = support::rendered(marked_pad(), pad);
     Frame frame;
     frame.truth = {pad, std::nullopt, true};
     const cv::Mat grey(picture.height, picture.width, CV_8UC1, picture.pixels.data());

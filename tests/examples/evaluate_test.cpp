@@ -24,15 +24,13 @@
 #include "examples/evaluate/sweep.hpp"
 #include "examples/evaluate/tables.hpp"
 #include "examples/evaluate/twin.hpp"
+#include "tests/examples/judged_frame.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace evaluate {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr FrameSize kFrame{320, 240};
-const ellipse::Ellipse kTarget{160.0, 120.0, 50.0, 40.0, 0.3};
 
 Truth truth_of(const std::optional<ellipse::Ellipse>& target, double visible = 1.0) {
   return {target, visible, true};

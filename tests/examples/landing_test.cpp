@@ -28,7 +28,6 @@ using landing::Course;
 using landing::Flight;
 using landing::Motion;
 using landing::Observation;
-using landing::Outcome;
 using landing::Phase;
 using landing::Platform;
 using landing::Rig;
@@ -180,9 +179,9 @@ TEST(TargetFilter, DampsTheVerticalVelocityAfterALoss) {
 }
 
 // A vehicle that follows its commands without delay, over a static pad.
-class Hover {
+class Hovering {
  public:
-  explicit Hover(const Vector3d& position) {
+  explicit Hovering(const Vector3d& position) {
     own_.position = position;
     controller_.emplace(ControllerSettings{},
                         TargetFilter(0.0, Vector3d::Zero(), Vector2d::Zero(), 1.0, 0.1));
@@ -224,7 +223,7 @@ class Hover {
 };
 
 TEST(Controller, PassesThroughAllPhasesToTouchDown) {
-  Hover hover({4.0, -3.0, 8.0});
+  Hovering hover({4.0, -3.0, 8.0});
   EXPECT_EQ(hover.phase(), Phase::kSearch);
   hover.fly_for(0.5, true);
   EXPECT_EQ(hover.phase(), Phase::kApproach);
@@ -237,7 +236,7 @@ TEST(Controller, PassesThroughAllPhasesToTouchDown) {
 }
 
 TEST(Controller, StartsOnlyOnSufficientlyVisibleTargets) {
-  Hover hover({4.0, -3.0, 8.0});
+  Hovering hover({4.0, -3.0, 8.0});
   hover.fly_for(0.5, true, 0.4);
   EXPECT_EQ(hover.phase(), Phase::kSearch);
   hover.fly_for(0.5, true, 0.8);
@@ -248,7 +247,7 @@ TEST(Controller, StartsOnlyOnSufficientlyVisibleTargets) {
 
 // The first positions were of another object, such as the ring's inner edge, which is farther away.
 TEST(Controller, RecoversFromAWrongHeight) {
-  Hover hover({1.0, 0.0, 8.0});
+  Hovering hover({1.0, 0.0, 8.0});
   hover.see_aside({0.0, 0.0, -2.4}, 0.0);
   hover.fly_for(0.1, true);
   EXPECT_EQ(hover.phase(), Phase::kSearch);
@@ -259,7 +258,7 @@ TEST(Controller, RecoversFromAWrongHeight) {
 
 // Lateral motion caused by a position that is off by 0.1 m and states this error [m].
 double led_astray(double error) {
-  Hover hover({0.2, 0.0, 8.0});
+  Hovering hover({0.2, 0.0, 8.0});
   for (int i = 0; i < 100 && hover.position().z() > 1.5; ++i) hover.fly_for(0.1, true);
   EXPECT_EQ(hover.phase(), Phase::kDescend);
   const double before = hover.position().x();
@@ -274,7 +273,7 @@ TEST(Controller, WeighsPositionsByTheirStatedError) {
 }
 
 TEST(Controller, ClimbsAfterLosingTheTargetInDescent) {
-  Hover hover({0.2, 0.0, 8.0});
+  Hovering hover({0.2, 0.0, 8.0});
   for (int i = 0; i < 100 && hover.position().z() > 3.0; ++i) hover.fly_for(0.1, true);
   ASSERT_EQ(hover.phase(), Phase::kDescend);
   hover.fly_for(0.4, false);
@@ -297,14 +296,14 @@ Flight short_flight() {
 }
 
 TEST(Landing, EndsOnTheMovingPadAndIsDeterministic) {
-  const Outcome outcome = landing::fly(short_flight());
+  const landing::Outcome outcome = landing::fly(short_flight());
   ASSERT_TRUE(outcome.has_touched_down);
   EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
   EXPECT_LE(outcome.drift, 1.0);
   EXPECT_LE(outcome.sink, 1.2);
   EXPECT_GT(outcome.frames[static_cast<std::size_t>(Phase::kDescend)], 30);
 
-  const Outcome again = landing::fly(short_flight());
+  const landing::Outcome again = landing::fly(short_flight());
   EXPECT_EQ(again.off, outcome.off);  // bit for bit
   EXPECT_EQ(again.time_s, outcome.time_s);
   EXPECT_EQ(again.moments.size(), outcome.moments.size());
@@ -314,7 +313,7 @@ TEST(Landing, AbortsAndRetriesWhenThePadIsHidden) {
   Flight flight = short_flight();
   flight.hidden_below = 2.5;
   flight.hidden_s = 3.0;
-  const Outcome outcome = landing::fly(flight);
+  const landing::Outcome outcome = landing::fly(flight);
   EXPECT_GE(outcome.climbs, 1);
   ASSERT_TRUE(outcome.has_touched_down);
   EXPECT_LE(outcome.off.norm(), landing::kMaxOff);
@@ -338,10 +337,10 @@ TEST(Landing, UnknownMethodsAreRejected) {
 
 TEST(Report, CountsLandingsByMethodAndSpeed) {
   Flight flight;
-  Outcome right;
+  landing::Outcome right;
   right.has_touched_down = true;
   right.off = {0.1, 0.0};
-  Outcome wide = right;
+  landing::Outcome wide = right;
   wide.off = {0.4, 0.0};
   const auto table = landing::outcome_table({{flight, right}, {flight, wide}, {flight, {}}});
   ASSERT_EQ(table.rows.size(), 1U);

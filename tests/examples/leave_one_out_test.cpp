@@ -17,7 +17,7 @@
 namespace evaluate {
 namespace {
 
-bool go_on(const Frame& /*frame*/) {
+bool never_stop(const Frame& /*frame*/) {
   return true;
 }
 
@@ -49,7 +49,8 @@ class Watched : public Chooser {
 TEST(LeaveOneOut, HidesTheJudgedGroupFromTheChooser) {
   const auto sequences = sources({"airlab-a", "airlab-b", "eye"});
   Watched chooser;
-  const auto results = leave_one_out(sequences, SourceGroups(), chooser, {}, Rule::kIou, go_on);
+  const auto results =
+      leave_one_out(sequences, SourceGroups(), chooser, {}, Rule::kIou, never_stop);
   using Names = std::vector<std::string>;
   const Names all = {"airlab-a", "airlab-b", "eye"};
   EXPECT_EQ(chooser.shown,
@@ -63,7 +64,7 @@ TEST(LeaveOneOut, HidesTheJudgedGroupFromTheChooser) {
 TEST(LeaveOneOut, JudgesLeftOutAndInSampleChoicesAndTheDefaults) {
   Watched chooser;
   const auto results =
-      leave_one_out(sources({"a", "b", "c"}), SourceGroups(), chooser, {}, Rule::kIou, go_on);
+      leave_one_out(sources({"a", "b", "c"}), SourceGroups(), chooser, {}, Rule::kIou, never_stop);
   EXPECT_EQ(results.at(0).left_out.grade.grade, 0.0);
   EXPECT_EQ(results[0].in_sample.grade.grade, 1.0);
   EXPECT_EQ(results[0].unchosen, 1.0);
@@ -75,7 +76,7 @@ TEST(LeaveOneOut, RejectsSourcesOfASingleGroup) {
   Watched chooser;
   EXPECT_THROW(
       (void)leave_one_out(
-          sources({"airlab-a", "airlab-b"}), SourceGroups(), chooser, {}, Rule::kIou, go_on),
+          sources({"airlab-a", "airlab-b"}), SourceGroups(), chooser, {}, Rule::kIou, never_stop),
       std::invalid_argument);
 }
 
@@ -85,11 +86,11 @@ TEST(LeaveOneOut, GridChoosesTheBestPointOnTheGivenSources) {
                       {},
                       sequences,
                       Rule::kIou,
-                      go_on);
+                      never_stop);
   const Choice choice = chooser.choose({"a"});
   EXPECT_EQ(choice.name, "min-axis=5 max-axis-ratio=5");  // the first of equal ones
   EXPECT_EQ(choice.settings.limits.min_axis_px, 5.0);
-  EXPECT_THROW(GridChooser({{"no-such", {"1"}}}, {}, sequences, Rule::kIou, go_on),
+  EXPECT_THROW(GridChooser({{"no-such", {"1"}}}, {}, sequences, Rule::kIou, never_stop),
                std::invalid_argument);
 }
 
@@ -100,7 +101,7 @@ TEST(LeaveOneOut, GridNamesTheFramesThatCannotBeRead) {
   };
   auto sequences = sources({"a"});
   sequences[0].pictures = std::make_shared<Broken>();
-  const GridChooser chooser({{"min-axis", {"5"}}}, {}, sequences, Rule::kIou, go_on);
+  const GridChooser chooser({{"min-axis", {"5"}}}, {}, sequences, Rule::kIou, never_stop);
   ASSERT_EQ(chooser.problems().size(), 3U);
   EXPECT_EQ(chooser.problems()[0], sequences[0].frames[0].name);
 }

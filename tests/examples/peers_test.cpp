@@ -64,7 +64,7 @@ class EachPeer : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(EachPeer, FindsADisc) {
-  const support::Picture picture = support::rendered(disc(), target());
+  const support::GrayPicture picture = support::rendered(disc(), target());
   const auto target_found = ellipse::select_target(found_by(GetParam(), picture.view()));
   ASSERT_TRUE(target_found);
   EXPECT_LE(ellipse::max_difference_px(target_found->ellipse, target()), 3.0);
@@ -74,9 +74,9 @@ TEST_P(EachPeer, FindsADisc) {
 
 TEST_P(EachPeer, KeepsNoStateBetweenPictures) {
   const auto detector = make_peer(GetParam());
-  const support::Picture with = support::rendered(disc(), target());
+  const support::GrayPicture with = support::rendered(disc(), target());
   ASSERT_FALSE(detector->detect(with.view(), kLimits).empty());
-  const support::Picture without(with.width, with.height, 128);
+  const support::GrayPicture without(with.width, with.height, 128);
   EXPECT_TRUE(detector->detect(without.view(), kLimits).empty());
 }
 
@@ -84,14 +84,14 @@ TEST_P(EachPeer, WorksAsTheTrackersDetector) {
   ellipse::TrackerSettings settings;
   settings.tracking = ellipse::TrackingMode::kNone;
   ellipse::Tracker tracker(settings, make_peer(GetParam()));
-  const support::Picture picture = support::rendered(disc(), target());
+  const support::GrayPicture picture = support::rendered(disc(), target());
   const auto found = tracker.process(picture.view(), 0);
   ASSERT_TRUE(found);
   EXPECT_LE(ellipse::max_difference_px(found->ellipse, target()), 3.0);
 }
 
 TEST_P(EachPeer, GivesTheSameAnswerForAnyStride) {
-  const support::Picture picture = support::rendered(disc(), target());
+  const support::GrayPicture picture = support::rendered(disc(), target());
   std::vector<std::uint8_t> wide(400 * 240, 255);
   std::vector<std::uint8_t> upside_down(320 * 240);
   for (int y = 0; y < 240; ++y) {
@@ -113,17 +113,17 @@ TEST_P(EachPeer, GivesTheSameAnswerForAnyStride) {
 TEST_P(EachPeer, FindsNothingInSmallAndFlatPictures) {
   EXPECT_TRUE(found_by(GetParam(), {}).empty());
   for (int size = 1; size <= 24; ++size) {
-    const support::Picture small(size, 50 - 2 * size, 90);
+    const support::GrayPicture small(size, 50 - 2 * size, 90);
     EXPECT_TRUE(found_by(GetParam(), small.view()).empty()) << size;
   }
-  EXPECT_TRUE(found_by(GetParam(), support::Picture(640, 360, 255).view()).empty());
+  EXPECT_TRUE(found_by(GetParam(), support::GrayPicture(640, 360, 255).view()).empty());
 }
 
 TEST_P(EachPeer, ReturnsValidEllipsesFromNoiseWithinTheLimits) {
   std::mt19937 random(7);
   const auto detector = make_peer(GetParam());
   for (int i = 0; i < 12; ++i) {
-    support::Picture noise(16 + 17 * i, 150 - 11 * i);
+    support::GrayPicture noise(16 + 17 * i, 150 - 11 * i);
     for (std::uint8_t& pixel : noise.pixels) pixel = static_cast<std::uint8_t>(random() >> 24U);
     for (const ellipse::Detection& d : detector->detect(noise.view(), kLimits)) {
       EXPECT_TRUE(is_valid(d.ellipse));
@@ -134,7 +134,7 @@ TEST_P(EachPeer, ReturnsValidEllipsesFromNoiseWithinTheLimits) {
 }
 
 TEST_P(EachPeer, HonoursTheLimitsOfTheAxes) {
-  const support::Picture picture = support::rendered(disc(), target());
+  const support::GrayPicture picture = support::rendered(disc(), target());
   const auto detector = make_peer(GetParam());
   const auto finds_target = [&](const ellipse::Thresholds& limits) {
     const auto found = detector->detect(picture.view(), limits);
@@ -164,7 +164,7 @@ TEST(Peers, AgreeOnTheDirectionOfTheMajorAxis) {
   for (const double angle_rad : {-1.2, -0.6, 0.1, 0.6, 1.2}) {
     ellipse::Ellipse tilted = kEllipse;
     tilted.angle_rad = angle_rad;
-    const support::Picture picture = support::rendered(disc(), tilted);
+    const support::GrayPicture picture = support::rendered(disc(), tilted);
     for (const char* peer : {"edge-drawing", "canny-fit", "randomized-hough"}) {
       const auto found = ellipse::select_target(found_by(peer, picture.view()));
       ASSERT_TRUE(found) << peer << " " << angle_rad;
@@ -185,7 +185,7 @@ TEST(Peers, ErrorNamesUnknownPeers) {
 // It returns circles and ellipses in separate forms; that of circles has no axes.
 TEST(EdgeDrawing, FindsCirclesAndEllipses) {
   for (const ellipse::Ellipse& target : {kCircle, kEllipse}) {
-    const support::Picture picture = support::rendered(support::plain_ring(), target);
+    const support::GrayPicture picture = support::rendered(support::plain_ring(), target);
     const auto found = ellipse::select_target(found_by("edge-drawing", picture.view()));
     ASSERT_TRUE(found);
     EXPECT_LE(ellipse::max_difference_px(found->ellipse, target), 2.0);
@@ -195,7 +195,7 @@ TEST(EdgeDrawing, FindsCirclesAndEllipses) {
 TEST(EdgeDrawing, AdaptsToChangesOfTheFrameSize) {
   const auto detector = make_peer("edge-drawing");
   for (const int width : {320, 640, 330}) {
-    const support::Picture picture = support::rendered(disc(), kEllipse, width);
+    const support::GrayPicture picture = support::rendered(disc(), kEllipse, width);
     EXPECT_FALSE(detector->detect(picture.view(), kLimits).empty()) << width;
   }
 }

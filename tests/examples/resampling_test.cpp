@@ -13,21 +13,21 @@
 namespace evaluate {
 namespace {
 
-constexpr FrameCounts kRight{1, 1, 0, 0};
+constexpr FrameCounts kOneRight{1, 1, 0, 0};
 constexpr FrameCounts kMissed{1, 0, 0, 1};
 
 const SourceFrames kVideo{{600}, 30.0};
 
 // Misses every n-th frame.
 std::vector<FrameCounts> missing_each(std::size_t nth, std::size_t frames = 600) {
-  std::vector<FrameCounts> counts(frames, kRight);
+  std::vector<FrameCounts> counts(frames, kOneRight);
   for (std::size_t i = 0; i < frames; i += nth) counts[i] = kMissed;
   return counts;
 }
 
 // Misses the first frames of a video.
 std::vector<FrameCounts> missing_first(std::size_t missed, std::size_t frames = 600) {
-  std::vector<FrameCounts> counts(frames, kRight);
+  std::vector<FrameCounts> counts(frames, kOneRight);
   std::fill_n(counts.begin(), missed, kMissed);
   return counts;
 }
@@ -65,7 +65,7 @@ TEST(Resampling, IntervalsAreWiderForClusteredErrors) {
 }
 
 TEST(Resampling, ThereIsNoIntervalWithoutErrors) {
-  const std::vector<FrameCounts> perfect(600, kRight);
+  const std::vector<FrameCounts> perfect(600, kOneRight);
   EXPECT_TRUE(std::isnan(grade_interval(kVideo, scheme_for(kVideo, perfect), perfect).low));
 }
 
@@ -80,7 +80,7 @@ TEST(Resampling, IntervalsContainTheTruthInNinetyFivePercent) {
     for (int s = 0; s < 30; ++s) {
       const double share = 0.4 * random.unit();
       source.sequence_lengths.push_back(20);
-      for (int i = 0; i < 20; ++i) counts.push_back(random.unit() < share ? kMissed : kRight);
+      for (int i = 0; i < 20; ++i) counts.push_back(random.unit() < share ? kMissed : kOneRight);
     }
     const double truth = 2.0 * 0.8 / (2.0 * 0.8 + 0.2);
     const Interval interval = grade_interval(source, scheme_for(source, counts), counts);
@@ -91,7 +91,7 @@ TEST(Resampling, IntervalsContainTheTruthInNinetyFivePercent) {
 }
 
 TEST(Resampling, FindsLastingDifferencesOnly) {
-  const std::vector<FrameCounts> perfect(600, kRight);
+  const std::vector<FrameCounts> perfect(600, kOneRight);
   const auto claims = [&](const std::vector<FrameCounts>& other) {
     const Scheme scheme = scheme_for(kVideo, other);
     return is_difference(difference_interval(kVideo, scheme, perfect, other));

@@ -13,12 +13,11 @@
 #include <vector>
 
 #include "examples/evaluate/tracking_tables.hpp"
+#include "tests/examples/judged_frame.hpp"
 
 namespace evaluate {
 namespace {
 
-constexpr FrameSize kFrame{320, 240};
-const ellipse::Ellipse kTarget{160.0, 120.0, 50.0, 40.0, 0.3};
 const ellipse::Ellipse kAround{160.0, 120.0, 400.0, 350.0, 0.3};  // larger than the frame
 const ellipse::Ellipse kOther{60.0, 60.0, 30.0, 30.0, 0.0};
 constexpr double kOut = -1.0;  // nothing of the target is in view

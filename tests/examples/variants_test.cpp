@@ -16,7 +16,7 @@ namespace evaluate {
 namespace {
 
 const ellipse::Ellipse kBright{110.3, 61.7, 40.0, 22.0, 0.4};
-const ellipse::Ellipse kOther{300.0, 160.0, 18.0, 12.0, -0.7};
+const ellipse::Ellipse kSecond{300.0, 160.0, 18.0, 12.0, -0.7};
 
 // Distance of a pixel from the centre of an ellipse; 1 on its perimeter.
 double radius_in(const ellipse::Ellipse& e, int x, int y) {
@@ -34,7 +34,7 @@ class TwoEllipses : public PictureSource {
     cv::Mat picture(240, 390, CV_8U);
     picture.forEach<std::uint8_t>([](std::uint8_t& level, const int* at) {
       const bool is_bright = radius_in(kBright, at[1], at[0]) <= 1.0;
-      const bool is_other = radius_in(kOther, at[1], at[0]) <= 1.0;
+      const bool is_other = radius_in(kSecond, at[1], at[0]) <= 1.0;
       level = is_bright ? 220 : is_other ? 90 : 0;
     });
     return picture;
@@ -50,7 +50,7 @@ Sequence sequence() {
     frame.name = "frame" + std::to_string(i);
     frame.number = i;
     frame.truth.target = kBright;
-    frame.truth.others = {{kOther, {}}};
+    frame.truth.others = {{kSecond, {}}};
     result.frames.push_back(frame);
   }
   result.pictures = std::make_shared<TwoEllipses>();

@@ -23,8 +23,8 @@ namespace {
 using support::BusTap;
 using support::element_of;
 using support::gray_buffer_of;
+using support::GrayPicture;
 using support::Owned;
-using support::Picture;
 using support::push;
 using support::ring_picture;
 using support::run_pipeline;
@@ -138,7 +138,7 @@ std::optional<Sighting> track_of(GstBuffer* buffer, const Object& object) {
   return sighting;
 }
 
-Owned<GstBuffer> frame_at(const Picture& picture, GstClockTime pts) {
+Owned<GstBuffer> frame_at(const GrayPicture& picture, GstClockTime pts) {
   auto buffer = gray_buffer_of(picture);
   GST_BUFFER_PTS(buffer.get()) = pts;
   return buffer;
@@ -167,7 +167,7 @@ TEST(EllipseTrackAnalytics, TargetsAreTrackedObjects) {
 }
 
 // A drifting pad; a bar hides half of it on request.
-Picture drifting_pad(int frame, bool is_half_hidden) {
+GrayPicture drifting_pad(int frame, bool is_half_hidden) {
   ellipse::Scene scene;
   if (is_half_hidden) {
     scene.bars.push_back(support::bar_px({0.0, 120.0}, {320.0, 120.0}, 40.0, 60.0));
@@ -294,7 +294,7 @@ class PadWatch {
   PadWatch(const PadWatch&) = delete;
   PadWatch& operator=(const PadWatch&) = delete;
 
-  std::vector<Picture> pictures;
+  std::vector<GrayPicture> pictures;
   std::vector<std::vector<Object>> objects;
 
  private:

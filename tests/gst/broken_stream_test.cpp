@@ -15,6 +15,7 @@
 
 namespace {
 
+using support::contents_of;
 using support::run_pipeline;
 using support::TemporaryFolder;
 using support::Verdict;
@@ -23,11 +24,6 @@ using support::Verdicts;
 constexpr int kFrames = 30;
 const std::string kSource = "ellipsetestsrc num-buffers=" + std::to_string(kFrames) +
                             " ! video/x-raw,format=I420,width=320,height=240 ! ";
-
-std::string read(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void write(const std::string& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
@@ -60,7 +56,7 @@ TEST(BrokenStream, CorruptedPicturesPass) {
   for (int i = 0; i < kFrames; ++i) {
     char name[16];
     std::snprintf(name, sizeof name, "%03d.jpg", i);
-    write(folder.file(name), broken(read(folder.file(name)), 1 + i, random));
+    write(folder.file(name), broken(contents_of(folder.file(name)), 1 + i, random));
   }
   // One pipeline per picture: a decoder that fails on one never reads the next.
   std::size_t frames = 0;
@@ -85,7 +81,7 @@ TEST(BrokenStream, CorruptedVideoPasses) {
       folder.file("whole.h264"));
   if (made.starts_with(support::Pipeline::kNotInstalled)) GTEST_SKIP() << made;
   ASSERT_EQ(made, "");
-  const std::string whole = read(folder.file("whole.h264"));
+  const std::string whole = contents_of(folder.file("whole.h264"));
   const std::string decoder =
       "filesrc location=" + folder.file("broken.h264") + " ! h264parse ! avdec_h264 ! videoconvert";
   write(folder.file("broken.h264"), whole);

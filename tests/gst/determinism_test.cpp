@@ -16,8 +16,8 @@
 namespace {
 
 using support::caps_of;
+using support::GrayPicture;
 using support::Owned;
-using support::Picture;
 using support::Verdict;
 
 constexpr int kWidth = 320;
@@ -25,7 +25,7 @@ constexpr int kHeight = 180;
 
 struct Frame {
   int number;
-  Picture picture;
+  GrayPicture picture;
   bool has_time = true;
 };
 
@@ -36,7 +36,7 @@ std::vector<Frame> film(const char* scene, int frames, const IsMissing& is_missi
   std::vector<Frame> film;
   for (int i = 0; i < frames; ++i) {
     if (is_missing(i)) continue;
-    film.push_back({i, Picture(kWidth, kHeight)});
+    film.push_back({i, GrayPicture(kWidth, kHeight)});
     (void)renderer.render(i / 30.0, static_cast<std::uint64_t>(i), film.back().picture.writable());
   }
   return film;

@@ -13,10 +13,10 @@ using support::buffer_of;
 using support::BusTap;
 using support::caps_of;
 using support::element_of;
+using support::GrayPicture;
 using support::info_of;
 using support::kRing;
 using support::Owned;
-using support::Picture;
 using support::push;
 using support::ring_picture;
 using support::target_on;
@@ -32,7 +32,7 @@ Owned<GstBuffer> black(const GstVideoInfo& info) {
       static_cast<GstMemoryFlags>(0), pixels, size, 0, size, pixels, std::free));
 }
 
-void paint(GstBuffer* buffer, const GstVideoInfo& info, const Picture& picture, int x, int y) {
+void paint(GstBuffer* buffer, const GstVideoInfo& info, const GrayPicture& picture, int x, int y) {
   GstVideoFrame frame;
   ASSERT_TRUE(gst_video_frame_map(&frame, &info, buffer, GST_MAP_WRITE));
   const guint components = GST_VIDEO_FORMAT_INFO_IS_RGB(info.finfo) ? 3 : 1;
@@ -70,7 +70,7 @@ TEST_P(EachFormat, PassesInTheSmallestAndTheThinnestFrames) {
 TEST_P(EachFormat, FindsTargetsInTheFarCornerOfTheLargestFrames) {
   const GstVideoInfo info = info_of(GetParam(), kLargest, kLargest);
   auto buffer = black(info);
-  const Picture ring = ring_picture();
+  const GrayPicture ring = ring_picture();
   const int x = kLargest - ring.width;
   const int y = kLargest - ring.height;
   paint(buffer.get(), info, ring, x, y);
@@ -99,7 +99,7 @@ TEST_P(EachFormat, SharedPixelsAreNotCopied) {
 }
 
 TEST_P(EachFormat, AcceptsAnyStridesAndPlaneOffsets) {
-  const Picture ring = ring_picture();
+  const GrayPicture ring = ring_picture();
   const GstVideoInfo plain = info_of(GetParam(), ring.width, ring.height);
   GstVideoInfo info = plain;
   GstVideoAlignment around;
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Formats,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(EllipseTrackFrames, MayBeReadOnly) {
-  const Picture picture = ring_picture();
+  const GrayPicture picture = ring_picture();
   Owned<GstBuffer> buffer(
       gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY,
                                   const_cast<std::uint8_t*>(picture.pixels.data()),

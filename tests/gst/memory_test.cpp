@@ -27,8 +27,8 @@ using support::ring_picture;
 using support::target_on;
 using support::tracker;
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kFrameWidth = 320;
+constexpr int kFrameHeight = 240;
 
 // An allocator of non-system memory, which wraps existing bytes.
 struct DeviceAllocator {
@@ -88,11 +88,11 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  void show(const support::Picture& picture) {
-    for (int y = 0; y < kHeight; ++y) {
+  void show(const support::GrayPicture& picture) {
+    for (int y = 0; y < kFrameHeight; ++y) {
       std::memcpy(pages_.data() + static_cast<std::size_t>(y) * PageWatch::kPage,
                   picture.view().row(y),
-                  kWidth);
+                  kFrameWidth);
     }
   }
 
@@ -101,13 +101,13 @@ class Device {
     gst_buffer_append_memory(buffer,
                              device_memory(allocator_, pages_.data(), kRows * PageWatch::kPage));
     gsize offset[GST_VIDEO_MAX_PLANES] = {
-        0, kHeight * PageWatch::kPage, (kHeight + kHeight / 2) * PageWatch::kPage};
+        0, kFrameHeight * PageWatch::kPage, (kFrameHeight + kFrameHeight / 2) * PageWatch::kPage};
     gint stride[GST_VIDEO_MAX_PLANES] = {PageWatch::kPage, PageWatch::kPage, PageWatch::kPage};
     gst_buffer_add_video_meta_full(buffer,
                                    GST_VIDEO_FRAME_FLAG_NONE,
                                    GST_VIDEO_FORMAT_I420,
-                                   kWidth,
-                                   kHeight,
+                                   kFrameWidth,
+                                   kFrameHeight,
                                    3,
                                    offset,
                                    stride);
@@ -118,13 +118,13 @@ class Device {
   [[nodiscard]] PageWatch& pages() { return pages_; }
 
  private:
-  static constexpr std::size_t kRows = 2UL * kHeight;
+  static constexpr std::size_t kRows = 2UL * kFrameHeight;
   PageWatch pages_{kRows};
   GstAllocator* allocator_;
 };
 
 std::vector<std::size_t> all_rows() {
-  std::vector<std::size_t> rows(kHeight);
+  std::vector<std::size_t> rows(kFrameHeight);
   std::iota(rows.begin(), rows.end(), 0);
   return rows;
 }
@@ -135,16 +135,16 @@ class EachTracking : public testing::TestWithParam<const char*> {};
 // reads the pixels left and right of the tracked region.
 TEST_P(EachTracking, SlowMemoryIsReadOnceAndInOrder) {
   const std::string settings = std::string("tracking=") + GetParam();
-  const auto harness = tracker(settings, caps_of("I420", kWidth, kHeight));
-  const auto reference = tracker(settings, caps_of("I420", kWidth, kHeight));
+  const auto harness = tracker(settings, caps_of("I420", kFrameWidth, kFrameHeight));
+  const auto reference = tracker(settings, caps_of("I420", kFrameWidth, kFrameHeight));
   Device device;
-  const support::Picture picture = ring_picture(kWidth, kHeight);
+  const support::GrayPicture picture = ring_picture(kFrameWidth, kFrameHeight);
   device.show(picture);
   int in_order = 0;
   for (guint i = 0; i < 20; ++i) {
     const GstClockTime pts = i * GST_SECOND / 30;
     auto frame = device.frame(pts);
-    auto plain = support::buffer_of(picture, info_of("I420", kWidth, kHeight));
+    auto plain = support::buffer_of(picture, info_of("I420", kFrameWidth, kFrameHeight));
     GST_BUFFER_PTS(plain.get()) = pts;
     device.pages().start();
     const auto out = push(harness, std::move(frame));
@@ -156,7 +156,7 @@ TEST_P(EachTracking, SlowMemoryIsReadOnceAndInOrder) {
     std::map<std::size_t, int> visits;
     for (const std::size_t row : rows) ++visits[row];
     for (const auto& [row, count] : visits) {
-      EXPECT_LT(row, std::size_t{kHeight}) << "chroma";
+      EXPECT_LT(row, std::size_t{kFrameHeight}) << "chroma";
       EXPECT_LE(count, 3) << row;
     }
     if (i == 0) {

@@ -32,9 +32,9 @@ using support::Server;
 using support::Socket;
 using support::TemporaryFolder;
 
-constexpr std::size_t kFrames = 30;
+constexpr std::size_t kLineCount = 30;
 const std::string kLines =
-    "ellipsetestsrc num-buffers=" + std::to_string(kFrames) + " ! ellipsetrack ! ellipsejson ! ";
+    "ellipsetestsrc num-buffers=" + std::to_string(kLineCount) + " ! ellipsetrack ! ellipsejson ! ";
 
 // Checks that each line is a JSON object, and that the frames are consecutive from the first.
 void expect_frames(const std::string& text, std::size_t first, std::size_t count) {
@@ -51,7 +51,7 @@ void expect_frames(const std::string& text, std::size_t first, std::size_t count
 TEST(NdjsonSinks, FileSink) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_pipeline(kLines + "filesink location=" + folder.file("lines")), "");
-  expect_frames(contents_of(folder.file("lines")), 0, kFrames);
+  expect_frames(contents_of(folder.file("lines")), 0, kLineCount);
 }
 
 TEST(NdjsonSinks, AppSinkReceivesOneLinePerBuffer) {
@@ -70,7 +70,7 @@ TEST(NdjsonSinks, AppSinkReceivesOneLinePerBuffer) {
     EXPECT_EQ(count_lines(text), ++buffers);
     gst_sample_unref(sample);
   }
-  expect_frames(text, 0, kFrames);
+  expect_frames(text, 0, kLineCount);
 }
 
 TEST(NdjsonSinks, FdSinkIntoAPipe) {
@@ -84,7 +84,7 @@ TEST(NdjsonSinks, FdSinkIntoAPipe) {
     text.append(bytes.data(), static_cast<std::size_t>(size));
   }
   close(ends[0]);
-  expect_frames(text, 0, kFrames);
+  expect_frames(text, 0, kLineCount);
 }
 
 TEST(NdjsonSinks, UdpSinkSendsOneLinePerDatagram) {
@@ -92,12 +92,12 @@ TEST(NdjsonSinks, UdpSinkSendsOneLinePerDatagram) {
   const std::string port = std::to_string(receiver.bind());
   ASSERT_EQ(run_pipeline(kLines + "udpsink host=127.0.0.1 port=" + port), "");
   std::string text;
-  for (std::size_t i = 0; i < kFrames; ++i) {
+  for (std::size_t i = 0; i < kLineCount; ++i) {
     const std::string datagram = receiver.receive();
     EXPECT_EQ(count_lines(datagram), 1U);
     text += datagram;
   }
-  expect_frames(text, 0, kFrames);
+  expect_frames(text, 0, kLineCount);
 }
 
 TEST(NdjsonSinks, TcpServerSinkServesEachClientFromItsConnectionOn) {
@@ -111,11 +111,11 @@ TEST(NdjsonSinks, TcpServerSinkServesEachClientFromItsConnectionOn) {
   early.receive_lines(all, 20);
   server.accept(late);
   ASSERT_EQ(server.wait_for_end(), "");
-  early.receive_lines(all, kFrames);
-  expect_frames(all, 0, kFrames);
+  early.receive_lines(all, kLineCount);
+  expect_frames(all, 0, kLineCount);
   std::string rest;
-  late.receive_lines(rest, kFrames - 20);
-  expect_frames(rest, 20, kFrames - 20);
+  late.receive_lines(rest, kLineCount - 20);
+  expect_frames(rest, 20, kLineCount - 20);
 }
 
 // Lines of about 16 KB each, 16 MB in total: more than the system buffers for a client.
@@ -173,7 +173,7 @@ TEST(NdjsonSinks, FdSinkToMosquittoPub) {
   EXPECT_EQ(run_pipeline(kLines + "fdsink fd=" + std::to_string(lines.in.number())), "");
   lines.in.close();
   EXPECT_EQ(publisher.wait(), 0);
-  expect_frames(broker.read(kFrames), 0, kFrames);
+  expect_frames(broker.read(kLineCount), 0, kLineCount);
 }
 
 // Without the reservation, some of so many random numbers would collide.
@@ -227,7 +227,7 @@ std::string lines_of(const std::string& pipeline) {
 
 // Lines without the processing time, which differs from run to run.
 std::string lines_without_times() {
-  return lines_of("ellipsetestsrc num-buffers=" + std::to_string(kFrames) +
+  return lines_of("ellipsetestsrc num-buffers=" + std::to_string(kLineCount) +
                   " ! ellipsetrack ! ellipsejson times=false ! ");
 }
 
@@ -237,7 +237,7 @@ TEST(NdjsonLines, CanOmitTheProcessingTimeAlone) {
   EXPECT_EQ(without, lines_without_times());
   EXPECT_EQ(without,
             std::regex_replace(lines_of(kLines), std::regex(",\"processing_ns\":[0-9]+"), ""));
-  expect_frames(without, 0, kFrames);
+  expect_frames(without, 0, kLineCount);
   // Without a tracker there is no processing time.
   const std::string untracked =
       lines_of("ellipsetestsrc num-buffers=1 ! ellipsejson times=false ! ");
@@ -251,7 +251,7 @@ TEST(NdjsonLines, AreIndependentOfTheLocale) {
   if (!german.is_spoken()) GTEST_SKIP() << "neither de_DE.UTF-8 nor localedef is here";
   const std::string lines = lines_without_times();
   EXPECT_EQ(lines, expected);
-  expect_frames(lines, 0, kFrames);
+  expect_frames(lines, 0, kLineCount);
 }
 
 }  // namespace

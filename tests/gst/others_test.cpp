@@ -16,17 +16,17 @@ namespace {
 using support::add_circle;
 using support::buffer_of;
 using support::caps_of;
+using support::GrayPicture;
 using support::harness_of;
 using support::info_of;
 using support::object_of;
 using support::Owned;
-using support::Picture;
 
 TEST(EllipseJson, WritesOneLinePerFrame) {
   const auto harness = harness_of("ellipsejson", caps_of("GRAY8", 64, 48), "application/x-ndjson");
   std::string text;
   for (int i = 0; i < 2; ++i) {
-    auto buffer = buffer_of(Picture(64, 48, 50), info_of("GRAY8", 64, 48));
+    auto buffer = buffer_of(GrayPicture(64, 48, 50), info_of("GRAY8", 64, 48));
     if (i == 1) add_circle(buffer.get(), 32.25, 24.5, 10.0);
     GST_BUFFER_PTS(buffer.get()) = static_cast<guint64>(i) * 40 * GST_MSECOND;
     const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
@@ -73,7 +73,7 @@ TEST(EllipseJson, TakesMosaics) {
   const auto harness = harness_of("ellipsejson",
                                   "video/x-bayer,format=bggr,width=64,height=48,framerate=30/1",
                                   "application/x-ndjson");
-  auto buffer = buffer_of(Picture(64, 48, 50), info_of("GRAY8", 64, 48));
+  auto buffer = buffer_of(GrayPicture(64, 48, 50), info_of("GRAY8", 64, 48));
   const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
   EXPECT_NE(support::bytes_of(out.get()).find("\"width\":64,\"height\":48"), std::string::npos);
 }

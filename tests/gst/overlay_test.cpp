@@ -12,7 +12,7 @@
 #include "core/geometry/ellipse.hpp"
 #include "core/image/luma.hpp"
 #include "gst/track/video_view.hpp"
-#include "tests/gst/support.hpp"
+#include "tests/gst/tracker_harness.hpp"
 
 namespace {
 
@@ -20,10 +20,11 @@ using ellipse::Ellipse;
 using support::add_circle;
 using support::byte_formats;
 using support::caps_of;
+using support::GrayPicture;
 using support::harness_of;
 using support::info_of;
 using support::Owned;
-using support::Picture;
+using support::push;
 
 constexpr const char* kAllParts = "overlay=ellipse+axes+centre+roi+label";
 
@@ -54,11 +55,7 @@ Owned<GstBuffer> noise_buffer(const GstVideoInfo& info) {
 }
 
 Owned<GstBuffer> even_buffer(const std::string& format, int width, int height) {
-  return support::buffer_of(Picture(width, height, 128), info_of(format, width, height));
-}
-
-Owned<GstBuffer> push(const Owned<GstHarness>& harness, Owned<GstBuffer> buffer) {
-  return Owned<GstBuffer>(gst_harness_push_and_pull(harness.get(), buffer.release()));
+  return support::buffer_of(GrayPicture(width, height, 128), info_of(format, width, height));
 }
 
 Owned<GstBuffer> drawn(const std::string& settings,
@@ -73,16 +70,16 @@ Owned<GstBuffer> drawn(const std::string& settings,
 }
 
 // The first component after drawing: luma, or red.
-Picture drawn_picture(const std::string& settings,
-                      const std::string& format,
-                      int width,
-                      int height,
-                      const Ellipse& e) {
+GrayPicture drawn_picture(const std::string& settings,
+                          const std::string& format,
+                          int width,
+                          int height,
+                          const Ellipse& e) {
   const auto buffer = drawn(settings, format, width, height, e);
   return support::picture_of(buffer.get(), info_of(format, width, height));
 }
 
-Picture drawn_gray(const std::string& settings, int width, int height, const Ellipse& e) {
+GrayPicture drawn_gray(const std::string& settings, int width, int height, const Ellipse& e) {
   return drawn_picture(settings, "GRAY8", width, height, e);
 }
 
@@ -271,7 +268,7 @@ TEST(EllipseOverlay, HasItsColourInRgb) {
 
 TEST(EllipseOverlay, DrawsLinesOfTheGivenWidth) {
   for (int width = 1; width <= 8; ++width) {
-    const Picture picture = drawn_picture(
+    const GrayPicture picture = drawn_picture(
         "overlay=ellipse overlay-color=0xffffffff line-width=" + std::to_string(width),
         "RGB",
         161,
@@ -287,7 +284,7 @@ TEST(EllipseOverlay, DrawsLinesOfTheGivenWidth) {
 // The curvature radius is below the line width.
 TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
   const Ellipse flat{60.0, 60.0, 50.0, 3.0, 0.7};
-  const Picture picture =
+  const GrayPicture picture =
       drawn_picture("overlay=ellipse overlay-color=0xffffffff line-width=8", "RGB", 121, 121, flat);
   for (int y = 0; y < 121; ++y) {
     for (int x = 0; x < 121; ++x) {
@@ -299,7 +296,7 @@ TEST(EllipseOverlay, FlatEllipsesHaveNoHoles) {
 }
 
 // The maximum difference from the background within 2 px of a point.
-int contrast_near(const Picture& picture, const Eigen::Vector2d& point, int background) {
+int contrast_near(const GrayPicture& picture, const Eigen::Vector2d& point, int background) {
   int max_difference = 0;
   const int cx = static_cast<int>(std::lround(point.x()));
   const int cy = static_cast<int>(std::lround(point.y()));
@@ -321,14 +318,15 @@ TEST(EllipseOverlay, IsVisibleOnAnyGreyInGreyFormats) {
       for (const int level : {0, 76, 128, 150, 200, 255}) {
         const auto harness =
             harness_of(std::string(element) + " overlay-color=" + color, caps, caps);
-        auto buffer = support::buffer_of(Picture(161, 121, static_cast<std::uint8_t>(level)), info);
+        auto buffer =
+            support::buffer_of(GrayPicture(161, 121, static_cast<std::uint8_t>(level)), info);
         add_ellipse(buffer.get(), e);
         GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
         meta->roi_x = 20;
         meta->roi_y = 20;
         meta->roi_width = 60;
         const auto out = push(harness, std::move(buffer));
-        const Picture picture = support::picture_of(out.get(), info);
+        const GrayPicture picture = support::picture_of(out.get(), info);
         const bool is_region = std::string(element).ends_with("roi");
         const Eigen::Vector2d point = is_region ? Eigen::Vector2d(50.0, 20.0) : e.point_at(1.0);
         EXPECT_GE(contrast_near(picture, point, level), 64) << element << color << " on " << level;
@@ -339,8 +337,8 @@ TEST(EllipseOverlay, IsVisibleOnAnyGreyInGreyFormats) {
 
 TEST(EllipseOverlay, BorderOnlyClips) {
   const Ellipse e{120.3, 90.6, 70.0, 45.0, 0.5};
-  const Picture whole = drawn_gray("overlay=ellipse+axes+centre", 240, 180, e);
-  const Picture part =
+  const GrayPicture whole = drawn_gray("overlay=ellipse+axes+centre", 240, 180, e);
+  const GrayPicture part =
       drawn_gray("overlay=ellipse+axes+centre", 77, 61, ellipse::translated(e, -37.0, -53.0));
   for (int y = 0; y < 61; ++y) {
     for (int x = 0; x < 77; ++x) {
@@ -386,7 +384,7 @@ TEST(EllipseOverlay, HonoursStrideAndOffset) {
   const std::string caps = caps_of("GRAY8", 161, 121);
   const auto harness = harness_of("ellipseoverlay overlay=ellipse+centre", caps, caps);
   const Bytes bytes = bytes_of(push(harness, Owned<GstBuffer>(wide)).get());
-  const Picture expected = drawn_gray("overlay=ellipse+centre", 161, 121, e);
+  const GrayPicture expected = drawn_gray("overlay=ellipse+centre", 161, 121, e);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const int x = static_cast<int>(i + kStride - 40) % kStride;
     const int y = static_cast<int>(i + kStride - 40) / kStride - 1;
@@ -420,7 +418,7 @@ TEST(EllipseOverlay, DegenerateAndHugeOnesAreDrawn) {
   for (const Ellipse& e : {Ellipse{30.0, 30.0, 0.2, 0.1, 0.0},
                            Ellipse{30.0, 30.0, 25.0, 0.1, 0.8},
                            Ellipse{30.0, -99940.0, 99990.0, 99970.0, 0.0}}) {
-    const Picture picture = drawn_gray(kAllParts, 64, 64, e);
+    const GrayPicture picture = drawn_gray(kAllParts, 64, 64, e);
     EXPECT_FALSE(std::all_of(
         picture.pixels.begin(), picture.pixels.end(), [](auto level) { return level == 128; }));
   }
@@ -475,10 +473,10 @@ TEST(EllipseOverlay, PassesTooSmallBuffersWithAWarning) {
 }
 
 TEST(EllipseOverlay, TransparentColourDrawsNothing) {
-  const Picture picture = drawn_gray(kAllParts + std::string(" overlay-color=0x00ffffff"),
-                                     320,
-                                     240,
-                                     {50.0, 50.0, 30.0, 20.0, 0.0});
+  const GrayPicture picture = drawn_gray(kAllParts + std::string(" overlay-color=0x00ffffff"),
+                                         320,
+                                         240,
+                                         {50.0, 50.0, 30.0, 20.0, 0.0});
   for (const auto level : picture.pixels) EXPECT_EQ(level, 128);
 }
 
@@ -492,7 +490,8 @@ struct Touched {
 };
 
 Touched touched_by_label(int width, int height, const Ellipse& e) {
-  const Picture picture = drawn_gray("overlay=label overlay-color=0xffffffff", width, height, e);
+  const GrayPicture picture =
+      drawn_gray("overlay=label overlay-color=0xffffffff", width, height, e);
   Touched touched;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

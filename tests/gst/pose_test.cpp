@@ -29,7 +29,7 @@ using support::object_of;
 using support::Owned;
 using support::TemporaryFolder;
 
-constexpr int kFrames = 40;
+constexpr int kPoses = 40;
 constexpr double kHfovRad = 1.012;  // of the test source's scenes
 
 // The pad's centre and normal in the camera frame [pad radii] at a time of a scene.
@@ -61,7 +61,7 @@ std::vector<Owned<JsonParser>> lines_of(const std::string& scene, const std::str
   const TemporaryFolder folder;
   const std::string file = folder.file("lines");
   EXPECT_EQ(support::run_pipeline("ellipsetestsrc scene=" + scene +
-                                  " num-buffers=" + std::to_string(kFrames) + " ! ellipsetrack " +
+                                  " num-buffers=" + std::to_string(kPoses) + " ! ellipsetrack " +
                                   properties + " ! ellipsejson ! filesink location=" + file),
             "");
   return support::read_ndjson(file);
@@ -81,7 +81,7 @@ TEST(Pose, MatchesTheSceneInEachLine) {
   for (const char* scene : {"oblique", "orbit"}) {
     const auto lines = lines_of(scene, "hfov=1.012 target-diameter=2");
     const auto targets = targets_of(lines);
-    ASSERT_EQ(targets.size(), static_cast<std::size_t>(kFrames));
+    ASSERT_EQ(targets.size(), static_cast<std::size_t>(kPoses));
     for (std::size_t i = 0; i < targets.size(); ++i) {
       ASSERT_NE(targets[i], nullptr) << scene << " " << i;
       const auto [position, normal] = truth_at(scene, static_cast<double>(i) / 30.0);
@@ -145,8 +145,8 @@ std::string camera_file(const TemporaryFolder& folder, const char* distortion) {
   return path;
 }
 
-support::Picture picture_at(double time_s) {
-  support::Picture picture(640, 360);
+support::GrayPicture picture_at(double time_s) {
+  support::GrayPicture picture(640, 360);
   ellipse::SceneRenderer(ellipse::scene_by_name("orbit")).render(time_s, 0, picture.writable());
   return picture;
 }
@@ -233,7 +233,7 @@ TEST_F(PoseElement, ReportsTheVisiblePartOfCandidatesInThePicture) {
                "candidates",
                TRUE,
                nullptr);
-  support::Picture picture(640, 360, 90);
+  support::GrayPicture picture(640, 360, 90);
   cv::Mat luma(360, 640, CV_8UC1, picture.pixels.data());
   cv::circle(luma, {320, 180}, 60, 230, cv::FILLED, cv::LINE_AA);
   cv::circle(luma, {590, 40}, 30, 230, cv::FILLED, cv::LINE_AA);
@@ -279,7 +279,7 @@ TEST(PoseMeta, IsDrawnAlongItsOutline) {
   const auto harness = harness_of("ellipseoverlay overlay=ellipse",
                                   support::caps_of("GRAY8", 320, 240),
                                   support::caps_of("GRAY8", 320, 240));
-  auto buffer = gray_buffer_of(support::Picture(320, 240));
+  auto buffer = gray_buffer_of(support::GrayPicture(320, 240));
   support::add_circle(buffer.get(), 160.0, 120.0, 30.0);
   GstEllipseMeta* meta = gst_buffer_get_ellipse_meta(buffer.get(), GST_ELLIPSE_ROLE_TARGET);
   meta->n_outline = 64;
@@ -290,7 +290,7 @@ TEST(PoseMeta, IsDrawnAlongItsOutline) {
     meta->outline[2 * i + 1] = static_cast<float>(point.y());
   }
   const Owned<GstBuffer> out(gst_harness_push_and_pull(harness.get(), buffer.release()));
-  const support::Picture drawn =
+  const support::GrayPicture drawn =
       support::picture_of(out.get(), support::info_of("GRAY8", 320, 240));
   int on_outline = 0;
   for (int i = 0; i < 200; ++i) {

@@ -18,8 +18,8 @@ using support::BusTap;
 using support::caps_of;
 using support::element_of;
 using support::gray_buffer_of;
+using support::GrayPicture;
 using support::Owned;
-using support::Picture;
 using support::plain_ring;
 using support::push;
 using support::rendered;
@@ -34,8 +34,8 @@ constexpr int kLeftHalf[] = {0, 0, 160, 240};
 constexpr int kRightHalf[] = {160, 0, 160, 240};
 
 Owned<GstBuffer> two_rings() {
-  Picture picture = rendered(plain_ring(), kLeft);
-  const Picture other = rendered(plain_ring(), kRight);
+  GrayPicture picture = rendered(plain_ring(), kLeft);
+  const GrayPicture other = rendered(plain_ring(), kRight);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     picture.pixels[i] = std::min(picture.pixels[i], other.pixels[i]);
   }

@@ -18,8 +18,8 @@ namespace {
 
 using support::BusTap;
 using support::caps_of;
+using support::GrayPicture;
 using support::Owned;
-using support::Picture;
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 120;
@@ -45,8 +45,8 @@ std::int64_t min_growth(const std::vector<std::int64_t>& resident) {
 }
 
 // A pad that leaves the picture and returns, then one that is hidden at times.
-std::vector<Picture> film() {
-  std::vector<Picture> film;
+std::vector<GrayPicture> film() {
+  std::vector<GrayPicture> film;
   for (const char* scene : {"reenter", "occluded"}) {
     ellipse::SceneRenderer renderer(ellipse::scene_by_name(scene, 1));
     for (std::uint64_t i = 0; i < 240; ++i) {
@@ -69,7 +69,7 @@ TEST_P(Soaks, MemoryStaysConstant) {
   const std::string caps = caps_of("GRAY8", kWidth, kHeight);
   const auto harness = support::harness_of(GetParam().elements, caps, "application/x-ndjson");
   BusTap bus(harness->element);
-  const std::vector<Picture> pictures = film();
+  const std::vector<GrayPicture> pictures = film();
   const int frames = GetParam().frames;
   std::vector<std::int64_t> resident;  // [KiB], at the end of each window
   std::uint64_t lines_with_target = 0;

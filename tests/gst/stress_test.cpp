@@ -21,11 +21,11 @@ namespace {
 
 using support::caps_of;
 using support::element_of;
+using support::GrayPicture;
 using support::harness_of;
 using support::info_of;
 using support::kRing;
 using support::Owned;
-using support::Picture;
 using support::Pipeline;
 using support::ring_picture;
 using support::stat;
@@ -94,7 +94,7 @@ TEST(Stress, PropertiesAreWrittenTenThousandTimesWhilePlaying) {
       if (writes % 200 == 0) g_signal_emit_by_name(element, "reset");
     }
   });
-  const Picture picture = ring_picture();
+  const GrayPicture picture = ring_picture();
   for (; writes < kWrites; ++frames) support::push(harness, support::gray_buffer_of(picture));
   writer.join();
   EXPECT_EQ(stat(element, "frames"), static_cast<guint64>(frames));
@@ -142,7 +142,7 @@ TEST(Stress, CapsChangeAtEachBuffer) {
     const std::string caps = caps_of(format, width, height);
     gst_harness_set_caps_str(harness.get(), caps.c_str(), caps.c_str());
     const ellipse::Ellipse ring = ring_of(width, height);
-    const Picture picture = support::rendered(support::plain_ring(), ring, width, height);
+    const GrayPicture picture = support::rendered(support::plain_ring(), ring, width, height);
     const auto out =
         support::push(harness, support::buffer_of(picture, info_of(format, width, height)));
     ASSERT_TRUE(out);

@@ -131,7 +131,7 @@ inline void set_sample(GstVideoFrame& frame, guint component, int x, int y, guin
 }
 
 /// A buffer of any format with a grey picture.
-inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& info) {
+inline Owned<GstBuffer> buffer_of(const GrayPicture& picture, const GstVideoInfo& info) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
   const guint8 neutral = GST_VIDEO_INFO_IS_RGB(&info) ? 255 : 128;  // alpha, or chroma
   gst_buffer_memset(buffer, 0, neutral, GST_VIDEO_INFO_SIZE(&info));
@@ -159,7 +159,7 @@ inline Owned<GstBuffer> buffer_of(const Picture& picture, const GstVideoInfo& in
   return Owned<GstBuffer>(buffer);
 }
 
-inline Owned<GstBuffer> gray_buffer_of(const Picture& picture) {
+inline Owned<GstBuffer> gray_buffer_of(const GrayPicture& picture) {
   return buffer_of(picture, info_of("GRAY8", picture.width, picture.height));
 }
 
@@ -194,8 +194,8 @@ inline void offer_composition(GstHarness* harness) {
 }
 
 /// The first component of a buffer: its luma, or one colour of a grey picture.
-inline Picture picture_of(GstBuffer* buffer, const GstVideoInfo& info) {
-  Picture picture(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
+inline GrayPicture picture_of(GstBuffer* buffer, const GstVideoInfo& info) {
+  GrayPicture picture(GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info));
   GstVideoFrame frame;
   if (!gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ)) return picture;
   for (int y = 0; y < picture.height; ++y) {

@@ -23,7 +23,7 @@ namespace {
 using support::run_pipeline;
 using support::TemporaryFolder;
 
-constexpr char kSource[] =
+constexpr char kTrackedSource[] =
     "ellipsetestsrc scene=oblique num-buffers=15 ! "
     "video/x-raw,format=I420,width=640,height=360,framerate=30/1 ! ellipsetrack ! ";
 
@@ -118,7 +118,7 @@ class Witness {
   }
 
   void judge(GstBuffer* buffer, const GstVideoInfo& info) {
-    const support::Picture picture = support::picture_of(buffer, info);
+    const support::GrayPicture picture = support::picture_of(buffer, info);
     const auto detected = tracker_.process(picture.view(), 0);
     ellipses_.insert(verdict_on_ellipses(buffer, detected));
     regions_.insert(verdict_on_region(buffer, detected));
@@ -182,7 +182,7 @@ TEST_P(Survival, MatchesTheDocument) {
   const TemporaryFolder folder;
   Witness witness;
   std::string failure;
-  std::string watched = kSource + row.pipeline;
+  std::string watched = kTrackedSource + row.pipeline;
   if (!row.reader.empty()) {
     failure = run_pipeline(in_folder(watched, folder));
     watched = in_folder(row.reader, folder);

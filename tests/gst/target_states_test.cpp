@@ -14,9 +14,9 @@
 namespace {
 
 using support::BusTap;
+using support::GrayPicture;
 using support::object_of;
 using support::Owned;
-using support::Picture;
 using support::Verdict;
 
 enum class Sight { kClear, kHalfHidden, kHidden };
@@ -36,8 +36,8 @@ const std::vector<Shot> kShots{{Sight::kClear, 20},
                                {Sight::kClear, 10}};
 
 // A drifting pad; a bar hides more than half of it on request.
-Picture picture_of(Sight sight, int frame) {
-  if (sight == Sight::kHidden) return Picture(320, 240, 90);
+GrayPicture picture_of(Sight sight, int frame) {
+  if (sight == Sight::kHidden) return GrayPicture(320, 240, 90);
   ellipse::Scene scene;
   if (sight == Sight::kHalfHidden) {
     scene.bars.push_back(support::bar_px({0.0, 120.0}, {320.0, 120.0}, 39.5, 60.0));

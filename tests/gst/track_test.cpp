@@ -17,10 +17,10 @@ using support::BusTap;
 using support::caps_of;
 using support::element_of;
 using support::gray_buffer_of;
+using support::GrayPicture;
 using support::info_of;
 using support::kRing;
 using support::Owned;
-using support::Picture;
 using support::push;
 using support::ring_picture;
 using support::stat;
@@ -48,7 +48,7 @@ TEST(EllipseTrack, AttachesTheTarget) {
 
 TEST(EllipseTrack, AttachesNothingToEmptyPictures) {
   const auto harness = tracker();
-  const auto out = push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  const auto out = push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   EXPECT_EQ(target_on(out), nullptr);
 }
 
@@ -91,7 +91,7 @@ TEST(EllipseTrack, LogsALineForEachFrame) {
   gst_debug_category_set_threshold(category, GST_LEVEL_LOG);
   push(harness, gray_buffer_of(ring_picture()));
   push(harness, gray_buffer_of(ring_picture()));
-  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   gst_debug_category_reset_threshold(category);
   gst_debug_remove_log_function(note);
   ASSERT_EQ(lines.size(), 3U);
@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, Formats, testing::Values(320, 321, 322));
 TEST(EllipseTrack, HonoursStrideAndOffsetOfTheVideoMeta) {
   // The picture starts 37 bytes into the buffer with a row stride of 400 bytes; the padding is
   // filled with 0xa5.
-  const Picture picture = ring_picture(321, 240);
+  const GrayPicture picture = ring_picture(321, 240);
   constexpr gsize kOffset = 37;
   constexpr gint kStride = 400;
   Owned<GstBuffer> buffer(gst_buffer_new_allocate(nullptr, kOffset + kStride * 240, nullptr));
@@ -335,7 +335,7 @@ TEST(EllipseTrack, PostsAMessageOnChange) {
                "tracked");
   push(harness, gray_buffer_of(ring_picture()));
   EXPECT_FALSE(bus.pop(GST_MESSAGE_ELEMENT));
-  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   const auto lost = bus.pop(GST_MESSAGE_ELEMENT);
   ASSERT_TRUE(lost);
   EXPECT_STREQ(gst_structure_get_string(gst_message_get_structure(lost.get()), "state"), "lost");
@@ -370,7 +370,7 @@ TEST(EllipseTrack, SignalsAcquisitionAndLoss) {
                    &heard);
   push(harness, gray_buffer_of(ring_picture()));
   push(harness, gray_buffer_of(ring_picture()));
-  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   push(harness, gray_buffer_of(ring_picture()));
   EXPECT_EQ(heard, "+-+");
 }
@@ -399,7 +399,7 @@ TEST(EllipseTrack, ResetReportsTheLoss) {
   g_signal_connect(
       element, "target-lost", G_CALLBACK(+[](GstElement*, int* count) { ++*count; }), &losses);
   g_signal_emit_by_name(element, "reset");
-  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   EXPECT_EQ(losses, 1);
   EXPECT_EQ(stat(element, "lost"), 1U);
   EXPECT_EQ(structure_property(element, "target"), nullptr);
@@ -459,7 +459,7 @@ TEST(EllipseTrack, TargetAndStatsAreReadable) {
   EXPECT_EQ(stat(element, "tracked"), 1U);
   EXPECT_GT(stat(element, "processing-time-median"), 0U);
   EXPECT_GE(stat(element, "processing-time-p99"), stat(element, "processing-time-median"));
-  push(harness, gray_buffer_of(Picture(320, 240, 90)));
+  push(harness, gray_buffer_of(GrayPicture(320, 240, 90)));
   EXPECT_EQ(structure_property(element, "target"), nullptr);
   EXPECT_EQ(stat(element, "lost"), 1U);
 }
@@ -492,8 +492,8 @@ TEST(EllipseTrack, TakesFramesOfAnySize) {
     for (const int height : {1, 2, 5, 34}) {
       for (const char* format : {"GRAY8", "I420", "YUY2", "BGR"}) {
         const auto harness = tracker("overlay=ellipse+label", caps_of(format, width, height));
-        const auto out =
-            push(harness, buffer_of(Picture(width, height, 200), info_of(format, width, height)));
+        const auto out = push(
+            harness, buffer_of(GrayPicture(width, height, 200), info_of(format, width, height)));
         EXPECT_TRUE(out) << width << 'x' << height << format;
       }
     }

@@ -12,7 +12,7 @@ namespace support {
 /// The ring in most of these tests.
 inline constexpr ellipse::Ellipse kRing{150.0, 110.0, 50.0, 35.0, 0.4};
 
-inline Picture ring_picture(int width = 320, int height = 240) {
+inline GrayPicture ring_picture(int width = 320, int height = 240) {
   return rendered(plain_ring(), kRing, width, height);
 }
 

@@ -16,8 +16,9 @@
 namespace ellipse {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
+using support::kHeight;
+using support::kWidth;
+
 constexpr std::uint64_t kSeed = 202;
 constexpr double kRightIou = 0.8;
 constexpr double kMinVisible = 0.3;
@@ -45,7 +46,7 @@ void follow(const Scene& scene, double from_s, int frames, Tally& tally) {
   settings.camera = camera_of(scene, kWidth, kHeight);
   Tracker tracker(settings);
   SceneRenderer renderer(scene);
-  support::Picture picture(kWidth, kHeight);
+  support::GrayPicture picture(kWidth, kHeight);
   for (int i = 0; i < frames; ++i) {
     const double time_s = from_s + i / 30.0;
     const Truth truth = renderer.render(time_s, static_cast<std::uint64_t>(i), picture.writable());

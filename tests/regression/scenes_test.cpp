@@ -19,8 +19,9 @@
 namespace ellipse {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
+using support::kHeight;
+using support::kWidth;
+
 constexpr std::uint64_t kSeed = 201;
 constexpr double kRightIou = 0.8;
 constexpr double kMinVisible = 0.3;
@@ -136,7 +137,7 @@ class Watched {
  public:
   explicit Watched(const Limits& limits) : limits_(limits), tracker_(settings_of(limits)) {}
 
-  void see(const support::Picture& picture, const Truth& truth, std::int64_t pts_ns) {
+  void see(const support::GrayPicture& picture, const Truth& truth, std::int64_t pts_ns) {
     const auto target = tracker_.process(picture.view(), pts_ns);
     if (!target) return;
     const bool is_right =
@@ -179,7 +180,7 @@ TEST_P(Scenes, ResultsMeetTheirLimits) {
   }
   ASSERT_NE(any, nullptr) << "no limits for this scene";
   SceneRenderer renderer(scene_by_name(GetParam(), kSeed));
-  support::Picture picture(kWidth, kHeight);
+  support::GrayPicture picture(kWidth, kHeight);
   for (int i = 0; i < any->frames; ++i) {
     const double time_s = any->from_s + i * any->step_s;
     const Truth truth = renderer.render(time_s, i, picture.writable());
@@ -227,7 +228,7 @@ TEST_P(BareGround, GivesNoTarget) {
   set_by_name(settings, "detector", GetParam().detector);
   set_by_name(settings, "tracking", "none");
   Tracker tracker(settings);
-  support::Picture picture(kWidth, kHeight);
+  support::GrayPicture picture(kWidth, kHeight);
   for (int i = 0; i < 20; ++i) {
     renderer.render(0.5 * i, i, picture.writable());
     EXPECT_FALSE(tracker.process(picture.view(), 0)) << i;
@@ -245,7 +246,7 @@ int false_on(GroundKind kind) {
   set_by_name(settings, "detector", "arcs");
   set_by_name(settings, "tracking", "none");
   Tracker tracker(settings);
-  support::Picture picture(kWidth, kHeight);
+  support::GrayPicture picture(kWidth, kHeight);
   int wrong = 0;
   for (std::uint64_t seed = 301; seed < 309; ++seed) {
     Scene scene = scene_by_name("negative", seed);

@@ -23,8 +23,8 @@ struct IntegerDisc {
   }
 
   /// The disc on a ramp, each pixel the mean of 4 x 4, with noise of +-`noise` grey levels.
-  [[nodiscard]] Picture draw(int width, int height, int noise) const {
-    Picture picture(width, height);
+  [[nodiscard]] GrayPicture draw(int width, int height, int noise) const {
+    GrayPicture picture(width, height);
     const IntegerDisc fine{4 * x, 4 * y, 4 * semi_x, 4 * semi_y};
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {

@@ -78,7 +78,9 @@ struct Edges {
 /// Fits all edges at once by Gauss-Newton with numeric derivatives.
 class PhotometricFit {
  public:
-  PhotometricFit(const ellipse::Scene& scene, const Picture& picture, const ellipse::Truth& truth)
+  PhotometricFit(const ellipse::Scene& scene,
+                 const GrayPicture& picture,
+                 const ellipse::Truth& truth)
       : scene_(scene), picture_(picture), has_inner_(truth.inner_edge.has_value()) {
     edges_.outer = parameters_of(*truth.outer_edge);
     if (has_inner_) edges_.inner = parameters_of(*truth.inner_edge);
@@ -133,7 +135,7 @@ class PhotometricFit {
   }
 
   const ellipse::Scene& scene_;
-  const Picture& picture_;
+  const GrayPicture& picture_;
   bool has_inner_;
   std::vector<Eigen::Vector2d> pixels_;
   Edges edges_;

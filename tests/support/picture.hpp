@@ -11,13 +11,17 @@
 
 namespace support {
 
+/// Size of a frame of a rendered scene [px].
+inline constexpr int kWidth = 640;
+inline constexpr int kHeight = 360;
+
 /// An 8-bit picture that owns its pixels.
-struct Picture {
+struct GrayPicture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> pixels;
 
-  Picture(int width_px, int height_px, std::uint8_t level = 0)
+  GrayPicture(int width_px, int height_px, std::uint8_t level = 0)
       : width(width_px),
         height(height_px),
         pixels(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), level) {}
@@ -31,12 +35,12 @@ struct Picture {
 };
 
 /// Renders a scene with the pad's outer edge at exactly this ellipse.
-inline Picture rendered(const ellipse::Scene& scene,
-                        const ellipse::Ellipse& outer_edge,
-                        int width = 320,
-                        int height = 240,
-                        std::uint64_t frame = 0) {
-  Picture picture(width, height);
+inline GrayPicture rendered(const ellipse::Scene& scene,
+                            const ellipse::Ellipse& outer_edge,
+                            int width = 320,
+                            int height = 240,
+                            std::uint64_t frame = 0) {
+  GrayPicture picture(width, height);
   ellipse::SceneRenderer(scene).render(
       ellipse::image_from_pad(outer_edge), frame, picture.writable());
   return picture;
@@ -45,11 +49,11 @@ inline Picture rendered(const ellipse::Scene& scene,
 /// The mean of pictures of an outline that moves by a length [px] along x, centred on the truth.
 /// @param render  Renders the outline at the instant k, from 0: picture = render(ellipse, k).
 template <class Render>
-Picture blurred_by_motion(const ellipse::Ellipse& truth, int length_px, const Render& render) {
-  Picture mean = render(truth, 0);
+GrayPicture blurred_by_motion(const ellipse::Ellipse& truth, int length_px, const Render& render) {
+  GrayPicture mean = render(truth, 0);
   std::vector<int> sums(mean.pixels.size());
   for (int k = 0; k <= length_px; ++k) {
-    const Picture picture = render(ellipse::translated(truth, k - 0.5 * length_px, 0.0), k);
+    const GrayPicture picture = render(ellipse::translated(truth, k - 0.5 * length_px, 0.0), k);
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += picture.pixels[i];
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -60,10 +64,10 @@ Picture blurred_by_motion(const ellipse::Ellipse& truth, int length_px, const Re
 
 /// A ball lit from above: brighter than its ground above the centre and darker below. `outline` is
 /// a circle.
-inline Picture lit_ball(const ellipse::Ellipse& outline, int width, int height) {
+inline GrayPicture lit_ball(const ellipse::Ellipse& outline, int width, int height) {
   constexpr double kGround = 120.0;
   constexpr double kShade = 40.0;  // largest difference from the ground
-  Picture picture(width, height);
+  GrayPicture picture(width, height);
   ellipse::Random noise(1);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -103,6 +107,13 @@ inline ellipse::Scene plain_ring() {
   scene.pad.plate_half_width = 0.0;
   scene.ground.level = 200.0;
   scene.ground.contrast = 0.0;
+  return scene;
+}
+
+/// A disc on such a plate.
+inline ellipse::Scene plain_disc() {
+  ellipse::Scene scene = plain_ring();
+  scene.pad.pattern = ellipse::Pattern::kDisc;
   return scene;
 }
 

@@ -71,12 +71,12 @@ class RayCaster {
   }
 
   /// Adds white noise and rounds to grey levels.
-  [[nodiscard]] Picture picture(const std::vector<double>& light,
-                                double noise,
-                                std::uint64_t seed) const {
+  [[nodiscard]] GrayPicture picture(const std::vector<double>& light,
+                                    double noise,
+                                    std::uint64_t seed) const {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal(0.0, noise);
-    Picture picture(camera_.width, camera_.height);
+    GrayPicture picture(camera_.width, camera_.height);
     for (std::size_t i = 0; i < light.size(); ++i) {
       picture.pixels[i] =
           static_cast<std::uint8_t>(std::clamp(std::lround(light[i] + normal(random)), 0L, 255L));

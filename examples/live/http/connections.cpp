@@ -6,15 +6,15 @@
 
 #include <algorithm>
 
+#include "examples/live/timeouts.hpp"
+
 namespace live {
 namespace {
 
 constexpr std::size_t kMaxConnections = 160;
 constexpr std::ptrdiff_t kMaxPerAddress = 40;
-constexpr guint kTickMs = 1000;
 constexpr gint64 kRequestUs = 20 * G_USEC_PER_SEC;  // for a complete request
 constexpr guint kIdleTimeoutSeconds = 20;           // without reading or writing
-constexpr gint kAckTimeoutMs = 30'000;              // without TCP acknowledgement
 
 std::string text_of(GSocketAddress* address) {
   const Ref<gchar> text(g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address)));

@@ -8,7 +8,7 @@
 namespace live {
 namespace {
 
-constexpr goffset kMaxBody = 64 * 1024;
+constexpr goffset kMaxHttpBody = 64 * 1024;
 constexpr std::size_t kMaxPathLength = 1024;
 constexpr gsize kMaxHeaders = 16 * 1024;
 constexpr double kRequestsPerSecond = 100.0;
@@ -84,7 +84,7 @@ bool HttpGate::refuses(SoupServerMessage* message, const std::string& path) {
   const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
   if (encoding == SOUP_ENCODING_CHUNKED) return refuse(message, 411, "Content-Length is required");
   const goffset length = soup_message_headers_get_content_length(headers);
-  if (length > (is_write(message) ? kMaxBody : 0)) {
+  if (length > (is_write(message) ? kMaxHttpBody : 0)) {
     return refuse(message, 413, "body too large");
   }
   return false;

@@ -9,11 +9,6 @@
 namespace live {
 namespace {
 
-// Locale-independent.
-std::string number(double value) {
-  return JsonWriter().value(value).text();
-}
-
 class Metrics {
  public:
   void add(std::string_view name, std::string_view type, std::string_view help, double value) {
@@ -25,7 +20,7 @@ class Metrics {
     text_ += "# TYPE ellipse_" + std::string(name) + " " + std::string(type) + "\n";
   }
   void sample(std::string_view name, std::string_view labels, double value) {
-    text_ += "ellipse_" + std::string(name) + std::string(labels) + " " + number(value) + "\n";
+    text_ += "ellipse_" + std::string(name) + std::string(labels) + " " + json_number(value) + "\n";
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 

@@ -44,10 +44,6 @@ void write_png(const Frame& frame, const fs::path& file) {
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-std::string number(double value) {
-  return JsonWriter().value(value).text();
-}
-
 }  // namespace
 
 LabelStore::LabelStore(fs::path folder) : folder_(std::move(folder)) {
@@ -68,10 +64,10 @@ std::string LabelStore::add(const Frame& frame, const std::optional<ellipse::Ell
   if (target) {
     for (const double value :
          {target->cx, target->cy, target->semi_major, target->semi_minor, target->angle_rad}) {
-      row.append(1, ',').append(number(value));
+      row.append(1, ',').append(json_number(value));
     }
     row.append(1, ',').append(
-        number(ellipse::visible_fraction(*target, frame.width, frame.height)));
+        json_number(ellipse::visible_fraction(*target, frame.width, frame.height)));
   } else {
     row += ",,,,,,";
   }

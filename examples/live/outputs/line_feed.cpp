@@ -3,12 +3,11 @@
 
 #include <utility>
 
+#include "examples/live/timeouts.hpp"
+
 namespace live {
 namespace {
 
-constexpr guint kTickMs = 1000;
-constexpr gint64 kStallTimeoutUs = 30 * G_USEC_PER_SEC;
-constexpr gint64 kKeepaliveUs = 5 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxQueueLength = 30;  // 1 s of video at 30 Hz
 constexpr int kBufferBytes = 32 * 1024;      // about a hundred lines
 

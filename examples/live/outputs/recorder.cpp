@@ -10,7 +10,7 @@
 namespace live {
 namespace {
 
-constexpr int kMaxWaiting = 8;  // frames; few, because they can hold buffers of a camera's pool
+constexpr int kRecorderQueue = 8;  // frames; few, because they can hold buffers of a camera's pool
 constexpr guint64 kMaxLines = 300;
 
 std::filesystem::path numbered(const std::filesystem::path& file, int number) {
@@ -48,7 +48,7 @@ Recorder::~Recorder() {
 
 void Recorder::open() {
   GError* problem = nullptr;
-  pipeline_ = gst_parse_launch((frame_inlet("video", kMaxWaiting) + " ! " + h264_encoder() +
+  pipeline_ = gst_parse_launch((frame_inlet("video", kRecorderQueue) + " ! " + h264_encoder() +
                                 " ! matroskamux ! filesink name=mkv "
                                 "appsrc name=lines max-buffers=" +
                                 std::to_string(kMaxLines) +

@@ -11,9 +11,9 @@
 namespace live {
 namespace {
 
-constexpr int kMaxWaiting = 2;  // frames
+constexpr int kRtspQueue = 2;  // frames
 constexpr guint kMaxSessions = 16;
-constexpr guint kTickSeconds = 2;
+constexpr guint kSessionTickSeconds = 2;
 constexpr char kInlet[] = "frames";
 constexpr char kUser[] = "ellipse";
 constexpr char kRole[] = "viewer";
@@ -70,7 +70,7 @@ RtspOutput::RtspOutput(const Settings& settings)
   GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
   gst_rtsp_media_factory_set_launch(
       factory,
-      ("( " + frame_inlet(kInlet, kMaxWaiting) +
+      ("( " + frame_inlet(kInlet, kRtspQueue) +
        " ! videoconvert ! ellipseoverlay overlay=ellipse+axes+centre+label ! " + h264_encoder() +
        " ! rtph264pay name=pay0 pt=96 config-interval=1 )")
           .c_str());
@@ -87,7 +87,7 @@ RtspOutput::RtspOutput(const Settings& settings)
     throw std::runtime_error("cannot serve RTSP on " + settings.address + ":" +
                              std::to_string(settings.port) + ": " + error.what());
   }
-  tick_ = g_timeout_add_seconds(kTickSeconds, on_tick, this);
+  tick_ = g_timeout_add_seconds(kSessionTickSeconds, on_tick, this);
 }
 
 RtspOutput::~RtspOutput() {

@@ -11,16 +11,15 @@
 
 #include "examples/live/http/guarded_input.hpp"
 #include "examples/live/outputs/rtsp_guard.hpp"
+#include "examples/live/timeouts.hpp"
 
 namespace live {
 namespace {
 
 constexpr std::size_t kMaxClients = 40;  // more than the sessions of RtspOutput
 constexpr std::ptrdiff_t kMaxClientsPerAddress = 10;
-constexpr guint kTickMs = 1000;
 constexpr guint kMaxTicksWithoutSession = 10;
-constexpr gint kAckTimeoutMs = 30'000;  // without a TCP acknowledgement
-constexpr guint kMaxBody = 0;           // the supported requests have no body
+constexpr guint kMaxRtspBody = 0;  // the supported requests have no body
 
 Ref<GInetSocketAddress> inet(GSocketAddress* address) {
   if (address == nullptr || !G_IS_INET_SOCKET_ADDRESS(address)) return nullptr;
@@ -115,7 +114,7 @@ bool has_session(GstRTSPClient* client) {
 }  // namespace
 
 RtspProxy::RtspProxy(GstRTSPServer* server) : server_(server) {
-  gst_rtsp_server_set_content_length_limit(server_, kMaxBody);
+  gst_rtsp_server_set_content_length_limit(server_, kMaxRtspBody);
   GError* problem = nullptr;
   const Ref<GSocket> listener(gst_rtsp_server_create_socket(server_, nullptr, &problem));
   if (problem != nullptr) {

@@ -9,13 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "examples/live/timeouts.hpp"
+
 namespace live {
 namespace {
 
-constexpr guint kTickMs = 1000;
 constexpr gint64 kRepeatUs = 500 * 1000;
-constexpr gint64 kKeepaliveUs = 5 * G_USEC_PER_SEC;
-constexpr gint64 kStallTimeoutUs = 30 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxDelays = 256;
 constexpr std::size_t kMaxInFlight = 2;  // one in transit, one being painted
 constexpr char kBoundary[] = "ellipse-frame";

@@ -11,7 +11,7 @@
 
 #include "core/detection/evidence.hpp"
 #include "core/tracking/tracker.hpp"
-#include "examples/live/json_writer.hpp"
+#include "examples/live/ellipse_json.hpp"
 #include "gst/track/video_view.hpp"
 
 namespace live {
@@ -22,16 +22,6 @@ constexpr std::size_t kMaxCandidates = 2000;  // a few hundred bytes of JSON eac
 bool is_found(const ellipse::TracedCandidate& candidate) {
   return candidate.verdict.is_accepted() ||
          candidate.verdict.reason >= ellipse::Reason::kTooFarFromLast;
-}
-
-void write_ellipse(JsonWriter& json, const ellipse::Ellipse& e) {
-  json.begin_object()
-      .member("cx", e.cx)
-      .member("cy", e.cy)
-      .member("semi_major", e.semi_major)
-      .member("semi_minor", e.semi_minor)
-      .member("angle_rad", e.angle_rad)
-      .end_object();
 }
 
 void write_passes(JsonWriter& json, const ellipse::DetectionTrace& trace) {
@@ -81,7 +71,7 @@ void write_candidate(JsonWriter& json, const ellipse::TracedCandidate& candidate
   if (candidate.contributions != ellipse::Features{}) write_evidence(json, candidate);
   json.key("ellipse");
   if (candidate.ellipse) {
-    write_ellipse(json, *candidate.ellipse);
+    begin_ellipse(json, *candidate.ellipse).end_object();
   } else {
     json.null();
   }

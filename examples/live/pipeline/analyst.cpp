@@ -7,7 +7,7 @@
 namespace live {
 namespace {
 
-constexpr std::size_t kMaxWaiting = 8;
+constexpr std::size_t kMaxWaitingRequests = 8;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Analyst::~Analyst() {
 bool Analyst::ask(Work work, Answer answer) {
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() >= kMaxWaiting) return false;
+    if (waiting_.size() >= kMaxWaitingRequests) return false;
     waiting_.push_back({std::move(work), std::move(answer)});
   }
   changed_.notify_one();

@@ -7,7 +7,7 @@
 namespace live {
 namespace {
 
-constexpr guint kTickSeconds = 60;
+constexpr guint kCleanupSeconds = 60;
 constexpr gint64 kUnusedUs = 600 * G_USEC_PER_SEC;
 
 std::size_t bytes_of(const Frame& frame) {
@@ -17,7 +17,7 @@ std::size_t bytes_of(const Frame& frame) {
 }  // namespace
 
 FrameHistory::FrameHistory(const Limits& limits)
-    : limits_(limits), tick_(g_timeout_add_seconds(kTickSeconds, on_tick, this)) {}
+    : limits_(limits), tick_(g_timeout_add_seconds(kCleanupSeconds, on_tick, this)) {}
 
 FrameHistory::~FrameHistory() {
   g_source_remove(tick_);

@@ -6,10 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "examples/live/timeouts.hpp"
+
 namespace live {
 namespace {
 
-constexpr guint kTickMs = 1000;
 // Ticks without a frame until a live source counts as lost. The first frame takes longer, because
 // the source has to connect and wait for a key frame.
 constexpr guint kMaxTicksToFirstFrame = 15;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/tracking/tracker.hpp"
-#include "examples/live/json_writer.hpp"
+#include "examples/live/ellipse_json.hpp"
 #include "gst/track/video_view.hpp"
 
 namespace live {
@@ -13,22 +13,13 @@ namespace {
 
 constexpr std::array kStateNicks = {"detected", "tracked", "predicted"};  // of TargetState
 
-JsonWriter& write_ellipse(JsonWriter& json, const ellipse::Ellipse& e) {
-  return json.begin_object()
-      .member("cx", e.cx)
-      .member("cy", e.cy)
-      .member("semi_major", e.semi_major)
-      .member("semi_minor", e.semi_minor)
-      .member("angle_rad", e.angle_rad);
-}
-
 void write_target(JsonWriter& json, const std::optional<ellipse::Target>& target) {
   json.key("target");
   if (!target) {
     json.null();
     return;
   }
-  write_ellipse(json, target->ellipse)
+  begin_ellipse(json, target->ellipse)
       .member("state", kStateNicks[static_cast<std::size_t>(target->state)])
       .member("probability", target->probability)
       .end_object();
@@ -37,7 +28,7 @@ void write_target(JsonWriter& json, const std::optional<ellipse::Target>& target
 void write_found(JsonWriter& json, const ellipse::Tracker& tracker) {
   json.key("found").begin_array();
   for (const ellipse::Detection& each : tracker.candidates()) {
-    write_ellipse(json, each.ellipse).end_object();
+    begin_ellipse(json, each.ellipse).end_object();
   }
   json.end_array();
 }

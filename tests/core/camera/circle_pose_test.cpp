@@ -12,6 +12,7 @@
 
 #include "core/geometry/ellipse_fit.hpp"
 #include "core/tracking/frame_clock.hpp"
+#include "tests/support/chi_square.hpp"
 
 namespace ellipse {
 namespace {
@@ -203,7 +204,7 @@ TEST(PositionCovariance, MatchesTheScatterOfThePositions) {
     const Matrix3d covariance = position_covariance(camera, found, picture);
     const double nees = error.dot(covariance.inverse() * error);
     sum += nees;
-    inside += nees < 7.8147 ? 1 : 0;  // 95 % of chi-square, 3 degrees of freedom
+    inside += nees < support::kChiSquare3 ? 1 : 0;
   }
   const double mean = sum / kPoses;
   EXPECT_NEAR(mean, 3.0, 1.96 * std::sqrt(6.0 / kPoses));
@@ -230,13 +231,13 @@ TEST(PositionCovariance, IsPositiveForAnyPartOfTheOutline) {
   }
 }
 
-struct View {
+struct CircleView {
   CirclePose truth;
   Ellipse ideal;
 };
 
-View view_at(double tilt_rad, double turn_rad = 0.7) {
-  View view{circle_at({400.0, 120.0}, 6.0, tilt_rad, turn_rad), {}};
+CircleView view_at(double tilt_rad, double turn_rad = 0.7) {
+  CircleView view{circle_at({400.0, 120.0}, 6.0, tilt_rad, turn_rad), {}};
   view.ideal = *project_circle(image_from_pad(camera_640(), view.truth), 1.0);
   return view;
 }
@@ -248,7 +249,7 @@ FittedEllipse inner_edge(const CirclePose& pose, double radius = 0.8, double sig
 }
 
 std::optional<TargetPose> pose_of(PoseEstimator& estimator,
-                                  const View& view,
+                                  const CircleView& view,
                                   const std::vector<FittedEllipse>& inner_edges,
                                   const Vector3d& gravity = Vector3d::Zero()) {
   return estimator.estimate(Lens(camera_640()),
@@ -261,7 +262,7 @@ std::optional<TargetPose> pose_of(PoseEstimator& estimator,
 
 TEST(PoseEstimator, ResolvesTheAmbiguityByOneInnerCircle) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
-    const View view = view_at(0.5, turn);
+    const CircleView view = view_at(0.5, turn);
     PoseEstimator estimator;
     const auto pose = pose_of(estimator, view, {inner_edge(view.truth)});
     ASSERT_TRUE(pose);
@@ -274,7 +275,7 @@ TEST(PoseEstimator, ResolvesTheAmbiguityByOneInnerCircle) {
 
 TEST(PoseEstimator, ResolvesTheAmbiguityByGravity) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
-    const View view = view_at(0.5, turn);
+    const CircleView view = view_at(0.5, turn);
     PoseEstimator estimator;
     const auto pose = pose_of(estimator, view, {}, -9.81 * view.truth.normal);
     ASSERT_TRUE(pose);
@@ -287,7 +288,7 @@ TEST(PoseEstimator, KeepsTheResolvedSolution) {
   PoseEstimator estimator;
   (void)pose_of(estimator, view_at(0.5), {inner_edge(view_at(0.5).truth)});
   for (int i = 1; i < 100; ++i) {
-    const View view = view_at(0.5 + 0.2 * std::sin(0.1 * i), 0.7 + 0.05 * i);
+    const CircleView view = view_at(0.5 + 0.2 * std::sin(0.1 * i), 0.7 + 0.05 * i);
     const auto pose = pose_of(estimator, view, {});
     ASSERT_TRUE(pose);
     EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5) << i;
@@ -297,7 +298,7 @@ TEST(PoseEstimator, KeepsTheResolvedSolution) {
 
 TEST(PoseEstimator, RepeatedFramesAddNoEvidence) {
   PoseEstimator estimator;
-  const View view = view_at(0.5);
+  const CircleView view = view_at(0.5);
   const FittedEllipse inner = inner_edge(view.truth, 0.8, 0.05);
   const auto log_odds = [&] {
     const double certainty = pose_of(estimator, view, {inner})->certainty;
@@ -311,7 +312,7 @@ TEST(PoseEstimator, RepeatedFramesAddNoEvidence) {
 }
 
 TEST(PoseEstimator, InnerEdgesThatFitNeitherSolutionAddLittleEvidence) {
-  const View view = view_at(0.5);
+  const CircleView view = view_at(0.5);
   FittedEllipse strange = inner_edge(view.truth);
   strange.ellipse.semi_major *= 1.1;
   strange.ellipse.semi_minor /= 1.1;
@@ -321,7 +322,7 @@ TEST(PoseEstimator, InnerEdgesThatFitNeitherSolutionAddLittleEvidence) {
 
 TEST(PoseEstimator, GravityOverridesAnInnerEdge) {
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
-    const View view = view_at(0.5, turn);
+    const CircleView view = view_at(0.5, turn);
     PoseEstimator estimator;
     const auto poses = circle_poses(camera_640(), view.ideal);
     const bool is_first = angle((*poses)[0].normal, view.truth.normal) < 1e-3;
@@ -336,7 +337,7 @@ TEST(PoseEstimator, GravityOverridesAnInnerEdge) {
 TEST(PoseEstimator, ResolvesTheAmbiguityByThePattern) {
   const Eigen::Matrix2d covariance = Vector2d::Constant(1e-5).asDiagonal();
   for (double turn = 0.0; turn < 6.28; turn += 0.3) {
-    const View view = view_at(0.5, turn);
+    const CircleView view = view_at(0.5, turn);
     Matrix3d biased = image_from_pad(camera_640(), view.truth);
     biased.row(2).head<2>() += 0.02 * biased(2, 2) * Eigen::RowVector2d(1.0, -1.0);
     for (const Matrix3d& seen : {image_from_pad(camera_640(), view.truth), biased}) {
@@ -360,7 +361,7 @@ TEST(PoseEstimator, CertaintyIsOneHalfWithoutEvidence) {
 }
 
 TEST(PoseEstimator, ReportsDirectionsOnlyWithoutADiameter) {
-  const View view = view_at(0.5);
+  const CircleView view = view_at(0.5);
   PoseEstimator estimator;
   const auto pose = estimator.estimate(Lens(camera_640()),
                                        view.ideal,

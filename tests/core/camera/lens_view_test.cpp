@@ -140,7 +140,7 @@ TEST_P(EachLensView, EdgesMoveAsTheirRowsPredict) {
   PadModel model;
   model.circles.push_back({1.0, true, 100.0, false});
   model.lines.push_back({{-0.5, -0.4}, {0.5, 0.6}, Vector2d(1.0, -1.0).normalized(), 80.0});
-  const support::Picture picture(640, 360);
+  const support::GrayPicture picture(640, 360);
   EdgeSearch search;
   const LensView view(lens_);
   search.sample(model, {pose, view}, picture.view());

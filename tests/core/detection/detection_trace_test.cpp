@@ -18,26 +18,21 @@
 #include "core/image/scale.hpp"
 #include "core/scene/catalog.hpp"
 #include "core/tracking/tracker.hpp"
+#include "tests/support/finding.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::detecting;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
 const Ellipse kRing{160.2, 119.7, 60.0, 45.0, 0.4};
 
-Thresholds detecting(const Detector& detector) {
-  Thresholds thresholds;
-  thresholds.contour_overlap = detector.detecting_overlaps().contour;
-  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
-  return thresholds;
-}
-
-Picture of_scene(const char* name, double time_s) {
-  Picture picture(640, 360);
+GrayPicture of_scene(const char* name, double time_s) {
+  GrayPicture picture(640, 360);
   (void)SceneRenderer(scene_by_name(name)).render(time_s, 0, picture.writable());
   return picture;
 }
@@ -52,7 +47,7 @@ struct Look {
 };
 
 Look look_at(DetectorKind kind,
-             const Picture& picture,
+             const GrayPicture& picture,
              const Change& change = {},
              const std::optional<Ellipse>& last_target = {}) {
   Look look;
@@ -81,7 +76,7 @@ class DetectionTraceOf : public testing::TestWithParam<DetectorKind> {
  protected:
   // The first verdict with this reason; accepted if there is none.
   static Verdict verdict_for(Reason reason,
-                             const Picture& picture,
+                             const GrayPicture& picture,
                              const Change& change = {},
                              const std::optional<Ellipse>& last_target = {}) {
     const Look look = look_at(GetParam(), picture, change, last_target);
@@ -99,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Detectors,
 
 TEST_P(DetectionTraceOf, LeavesTheDetectionsUnchanged) {
   for (const NamedScene& scene : scene_catalog()) {
-    const Picture picture = of_scene(scene.name, 4.0);
+    const GrayPicture picture = of_scene(scene.name, 4.0);
     const auto plain = make_detector(GetParam());
     const auto expected = plain->detect(picture.view(), detecting(*plain));
     const Look look = look_at(GetParam(), picture);
@@ -214,9 +209,9 @@ TEST_P(DetectionTraceOf, ReportsDistanceFromAndSizeOfTheLastTarget) {
 }
 
 TEST_P(DetectionTraceOf, ReportsWeakerSet) {
-  Picture picture = rendered(plain_ring(), kRing, 640, 240);
+  GrayPicture picture = rendered(plain_ring(), kRing, 640, 240);
   const Ellipse small{480.0, 120.0, 30.0, 26.0, 0.1};
-  const Picture second = rendered(plain_ring(), small, 640, 240);
+  const GrayPicture second = rendered(plain_ring(), small, 640, 240);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     picture.pixels[i] = std::min(picture.pixels[i], second.pixels[i]);
   }
@@ -371,7 +366,7 @@ TEST(DetectionTrace, OfArcsHasThreeScalesIfUncertain) {
 // A square in the other half of the picture has edges, too.
 TEST(DetectionTrace, OfArcsLooksAroundUncertainEllipsesFirst) {
   const Ellipse ring{100.3, 90.7, 28.0, 21.0, 0.4};
-  Picture picture = rendered(plain_ring(), ring);
+  GrayPicture picture = rendered(plain_ring(), ring);
   for (int y = 150; y < 210; ++y) {
     for (int x = 230; x < 290; ++x) picture.pixels[std::size_t(y * picture.width + x)] = 60;
   }
@@ -401,7 +396,7 @@ TEST(DetectionTrace, OfArcsLooksAroundUncertainEllipsesFirst) {
 }
 
 TEST(DetectionTrace, OfATrackerIsInFramePixels) {
-  const Picture picture = rendered(plain_ring(), kRing);
+  const GrayPicture picture = rendered(plain_ring(), kRing);
   TrackerSettings settings;
   settings.tracking = TrackingMode::kNone;
   Tracker tracker(settings);
@@ -417,7 +412,7 @@ TEST(DetectionTrace, OfATrackerIsInFramePixels) {
   EXPECT_EQ(trace.passes().back().region, (Rect{60, 40, 200, 160}));
   EXPECT_EQ(trace.passes().front().scale % 2, 0);
   tracker.set_trace(nullptr);
-  (void)tracker.process(Picture(320, 240).view(), 1);
+  (void)tracker.process(GrayPicture(320, 240).view(), 1);
   EXPECT_FALSE(trace.candidates().empty());
 }
 

@@ -12,13 +12,13 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
 constexpr Ellipse kTruth{160.3, 120.6, 90.0, 65.0, 0.3};
 
-Picture picture_of_disc(double blur_px, double noise, std::uint64_t seed) {
+GrayPicture picture_of_disc(double blur_px, double noise, std::uint64_t seed) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
   scene.pad.paint_level = 60.0;
@@ -37,7 +37,7 @@ double errors_over_sigma(double blur_px, double noise) {
   GradientMap map;
   ChainTracer chains;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Picture picture = picture_of_disc(blur_px, noise, seed);
+    const GrayPicture picture = picture_of_disc(blur_px, noise, seed);
     map.compute(picture.view());
     chains.trace(map);
     (void)measurer.measure(map, kTruth, Polarity::kDarkInside, 256, 2);
@@ -65,7 +65,7 @@ TEST(EdgeMeasurer, FindsTheVarianceOfDefocus) {
   EdgeMeasurer measurer;
   EXPECT_EQ(measurer.defocus_variance(), 0.0F);
   for (const double blur_px : {0.6, 1.0, 1.6, 2.5}) {
-    const Picture picture = picture_of_disc(blur_px, 1.0, 1);
+    const GrayPicture picture = picture_of_disc(blur_px, 1.0, 1);
     (void)measurer.measure(picture.view(), kTruth, Polarity::kDarkInside, 96, 200.0);
     const double defocus = blur_px * blur_px - kLensVariance;
     EXPECT_NEAR(measurer.defocus_variance(), defocus, 0.15 * defocus + 0.05) << blur_px;
@@ -79,7 +79,7 @@ TEST(EdgeMeasurer, CorrectsTheShiftOfDefocusedEdges) {
   scene.pad.pattern = Pattern::kDisc;
   scene.sensor.blur_px = 2.0;
   scene.sensor.read_noise = 1.0;
-  const Picture picture = rendered(scene, truth, 120, 120);
+  const GrayPicture picture = rendered(scene, truth, 120, 120);
   EdgeMeasurer measurer;
   (void)measurer.measure(picture.view(), truth, Polarity::kDarkInside, 96, 200.0);
   double sum_px = 0.0;
@@ -91,7 +91,7 @@ TEST(EdgeMeasurer, CorrectsTheShiftOfDefocusedEdges) {
 
 TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
   const Ellipse truth{160.3, 120.6, 50.0, 50.0, 0.0};
-  const Picture ball = support::lit_ball(truth, 320, 240);
+  const GrayPicture ball = support::lit_ball(truth, 320, 240);
   GradientMap map;
   ChainTracer chains;
   map.compute(ball.view());
@@ -109,7 +109,7 @@ TEST(EdgeMeasurer, MatchesEdgesOfBothPolaritiesIfMixed) {
   EXPECT_GT(measurer.measure(ball.view(), truth, Polarity::kMixed, 64, 10.0).support, 0.8);
 }
 
-Picture blurred_disc(const Ellipse& e, int length_px) {
+GrayPicture blurred_disc(const Ellipse& e, int length_px) {
   Scene scene = plain_ring();
   scene.pad.pattern = Pattern::kDisc;
   return support::blurred_by_motion(e, length_px, [&](const Ellipse& at, int k) {
@@ -120,7 +120,7 @@ Picture blurred_disc(const Ellipse& e, int length_px) {
 // The centroid is over at least 2 x 9 + 1 pixels instead of 2 x 3 + 1.
 TEST(EdgeMeasurer, IsLessSureOfEdgesBlurredByMotion) {
   const Ellipse truth{100.0, 80.0, 60.0, 50.0, 0.0};
-  const Picture picture = blurred_disc(truth, 12);
+  const GrayPicture picture = blurred_disc(truth, 12);
   EdgeMeasurer measurer;
   measurer.measure({picture.view(), {}}, truth, Polarity::kMixed, 64, 200.0, {36.0F, 0.0F});
   int across = 0;
@@ -138,10 +138,10 @@ TEST(EdgeMeasurer, IsLessSureOfEdgesBlurredByMotion) {
 // Of a view into a larger picture.
 TEST(EdgeMeasurer, ReadsNothingOutsideThePictureInMotionBlur) {
   const Ellipse truth{100.0, 80.0, 92.0, 60.0, 0.0};
-  const Picture inside = blurred_disc(truth, 12);
+  const GrayPicture inside = blurred_disc(truth, 12);
   std::vector<Eigen::Vector2f> points[2];
   for (int i = 0; i < 2; ++i) {
-    Picture around(240, 160);
+    GrayPicture around(240, 160);
     for (int y = 0; y < 160; ++y) {
       for (int x = 0; x < 240; ++x) {
         const bool is_inside = x >= 20 && x < 220;

@@ -15,10 +15,10 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
-Picture noise_of(int width, int height) {
-  Picture picture(width, height);
+GrayPicture noise_of(int width, int height) {
+  GrayPicture picture(width, height);
   Random random(7);
   for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
   return picture;
@@ -50,7 +50,7 @@ double expected_noise(const ImageView& luma) {
 TEST(PixelNoise, SamplesEveryOtherPixelThatIsNotSaturatedAtAnySize) {
   for (const int width : {1, 5, 6, 7, 8, 9, 64, 101, 640, 641}) {
     for (const int height : {1, 6, 7, 30, 121}) {
-      const Picture picture = noise_of(width, height);
+      const GrayPicture picture = noise_of(width, height);
       EXPECT_DOUBLE_EQ(pixel_noise(picture.view()), expected_noise(picture.view()))
           << width << " x " << height;
     }
@@ -58,14 +58,14 @@ TEST(PixelNoise, SamplesEveryOtherPixelThatIsNotSaturatedAtAnySize) {
 }
 
 TEST(PixelNoise, ReadsPartsOfAPicture) {
-  const Picture picture = noise_of(64, 40);
+  const GrayPicture picture = noise_of(64, 40);
   const ImageView part = picture.view().region({3, 5, 33, 21});
   EXPECT_DOUBLE_EQ(pixel_noise(part), expected_noise(part));
 }
 
 // Only a bright diagonal stripe is not saturated: its edges are not noise.
 TEST(PixelNoise, IsLowInAPictureOfBlackAndWhite) {
-  Picture picture(200, 100);
+  GrayPicture picture(200, 100);
   for (int y = 0; y < 100; ++y) {
     for (int x = y; x < y + 3; ++x) picture.at(x, y) = 250;
   }
@@ -73,7 +73,7 @@ TEST(PixelNoise, IsLowInAPictureOfBlackAndWhite) {
 }
 
 TEST(PixelNoise, IsThatOfRoundingWithoutSamples) {
-  Picture white(64, 40);
+  GrayPicture white(64, 40);
   std::fill(white.pixels.begin(), white.pixels.end(), std::uint8_t{255});
   EXPECT_DOUBLE_EQ(pixel_noise(white.view()), 1.0 / std::sqrt(12.0));
   EXPECT_DOUBLE_EQ(pixel_noise({}), 1.0 / std::sqrt(12.0));

@@ -13,7 +13,7 @@ namespace ellipse {
 namespace {
 
 using support::bar_px;
-using support::Picture;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
@@ -69,20 +69,20 @@ double bound_px(const Ellipse& e, double blur_px, double noise) {
   return std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
 }
 
-struct Errors {
+struct CentreErrors {
   double rms_px = 0.0;     // of a coordinate of the centre
   double radius_px = 0.0;  // mean
   double bound_px = 0.0;
 };
 
-Errors errors_of(double radius, double blur_px, double noise) {
+CentreErrors errors_of(double radius, double blur_px, double noise) {
   const Scene scene = disc(blur_px, noise);
   Random random(static_cast<std::uint64_t>(100.0 * radius + noise));
   const int pictures = 48;
-  Errors errors;
+  CentreErrors errors;
   for (int i = 0; i < pictures; ++i) {
     const Ellipse truth = support::random_ellipse(random, 130, 130, radius);
-    const Picture picture = rendered(scene, truth, 260, 260, static_cast<std::uint64_t>(i));
+    const GrayPicture picture = rendered(scene, truth, 260, 260, static_cast<std::uint64_t>(i));
     const auto refined = refined_photometrically(
         picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
     EXPECT_TRUE(refined) << radius << " " << noise << " " << i;
@@ -99,7 +99,7 @@ Errors errors_of(double radius, double blur_px, double noise) {
 TEST(PhotometricRefinement, ApproachesTheCramerRaoBound) {
   for (const double radius : {12.0, 20.0, 40.0, 70.0}) {
     for (const double noise : {4.0, 8.0}) {
-      const Errors errors = errors_of(radius, 0.7, noise);
+      const CentreErrors errors = errors_of(radius, 0.7, noise);
       EXPECT_LE(errors.rms_px, 1.6 * errors.bound_px) << radius << " noise " << noise;
       EXPECT_GE(errors.rms_px, 0.7 * errors.bound_px) << "the bound is wrong";
       EXPECT_LE(std::abs(errors.radius_px), 0.02) << radius << " noise " << noise;
@@ -109,14 +109,14 @@ TEST(PhotometricRefinement, ApproachesTheCramerRaoBound) {
 
 TEST(PhotometricRefinement, AdaptsToTheBlurOfTheEdge) {
   for (const double blur_px : {0.5, 1.0, 1.5}) {
-    const Errors errors = errors_of(50.0, blur_px, 4.0);
+    const CentreErrors errors = errors_of(50.0, blur_px, 4.0);
     EXPECT_LE(errors.rms_px, 2.5 * errors.bound_px) << blur_px;
   }
 }
 
 TEST(PhotometricRefinement, ConvergesFromOverHalfAPixelAway) {
   const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
-  const Picture picture = rendered(disc(0.7, 0.0), truth, 260, 260);
+  const GrayPicture picture = rendered(disc(0.7, 0.0), truth, 260, 260);
   Ellipse start = truth;
   start.cx += 0.5;
   start.cy -= 0.4;
@@ -132,7 +132,7 @@ TEST(PhotometricRefinement, IsUnaffectedByOccludersAndShadows) {
   scene.bars = {bar_px({60.0, 0.0}, {110.0, 259.0}, 14.0, 30.0, 260, 260),
                 bar_px({140.0, 200.0}, {259.0, 120.0}, 9.0, 240.0, 260, 260)};
   scene.light.shadows = {{0.5, 0.4, 0.35, 0.45, 0.02}};
-  const Picture picture = rendered(scene, truth, 260, 260);
+  const GrayPicture picture = rendered(scene, truth, 260, 260);
   Random random(7);
   const auto refined = refined_photometrically(
       picture.view(), nudged(truth, random, 0.2), Polarity::kDarkInside, 9.0, 20.0);
@@ -142,7 +142,7 @@ TEST(PhotometricRefinement, IsUnaffectedByOccludersAndShadows) {
 
 TEST(PhotometricRefinement, UsesThePartInsideThePicture) {
   const Ellipse truth{20.3, 129.6, 60.0, 50.0, 0.4};
-  const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
+  const GrayPicture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
   const auto refined =
       refined_photometrically(picture.view(), truth, Polarity::kDarkInside, 9.0, 20.0);
   ASSERT_TRUE(refined);
@@ -151,7 +151,7 @@ TEST(PhotometricRefinement, UsesThePartInsideThePicture) {
 
 TEST(PhotometricRefinement, FailsWithoutAMatchingEdge) {
   const Ellipse truth{130.3, 129.6, 60.0, 40.0, 0.4};
-  const Picture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
+  const GrayPicture picture = rendered(disc(0.7, 2.0), truth, 260, 260);
   const auto refined =
       [&](const ImageView& luma, Polarity polarity, double inside, double min_contrast) {
         return refined_photometrically(luma, truth, polarity, inside, min_contrast).has_value();
@@ -161,13 +161,13 @@ TEST(PhotometricRefinement, FailsWithoutAMatchingEdge) {
   EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, 9.0, 200.0));
   EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, 2.0, 20.0)) << "no room";
   EXPECT_FALSE(refined(picture.view(), Polarity::kDarkInside, std::nan(""), 20.0));
-  EXPECT_FALSE(refined(Picture(260, 260, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
-  EXPECT_FALSE(refined(Picture(1, 1, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(GrayPicture(260, 260, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
+  EXPECT_FALSE(refined(GrayPicture(1, 1, 90).view(), Polarity::kDarkInside, 9.0, 20.0));
   EXPECT_FALSE(refined(ImageView{}, Polarity::kDarkInside, 9.0, 20.0));
 }
 
 TEST(PhotometricRefinement, AcceptsEllipsesOfAnySize) {
-  const Picture picture = rendered(disc(0.7, 2.0), {130.3, 129.6, 60.0, 40.0, 0.4}, 260, 260);
+  const GrayPicture picture = rendered(disc(0.7, 2.0), {130.3, 129.6, 60.0, 40.0, 0.4}, 260, 260);
   for (const Ellipse& e : {Ellipse{130.0, 130.0, 0.01, 0.001, 0.0},
                            Ellipse{130.0, 130.0, 5000.0, 0.01, 1.0},
                            Ellipse{130.0, 130.0, 1e6, 1e6, 0.0},

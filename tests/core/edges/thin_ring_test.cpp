@@ -85,7 +85,7 @@ TEST(RingEdges, RemoveTheBiasOfSmallRings) {
       Scene scene = support::plain_ring();
       scene.sensor.read_noise = 3.0;
       scene.seed = i;
-      const support::Picture picture = support::rendered(scene, truth, 160, 140, i);
+      const support::GrayPicture picture = support::rendered(scene, truth, 160, 140, i);
       const auto target = select_target(detector.detect(picture.view(), thresholds));
       ASSERT_TRUE(target) << radius;
       major.push_back(target->ellipse.semi_major - truth.semi_major);

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "core/geometry/least_squares.hpp"
+#include "tests/support/chi_square.hpp"
 
 namespace ellipse {
 namespace {
 
-constexpr double kChiSquare5 = 11.0705;  // 95 % of a chi-square distribution of 5 degrees
 constexpr std::size_t kSamples = 48;
 constexpr double kReachOfSigma = 3.0;
 
@@ -44,7 +44,7 @@ TEST(RobustSigma, OfNormalErrorsWithOutliers) {
 }
 
 // The residuals of one outline: an autoregressive process of first order, and outliers.
-struct Errors {
+struct ErrorModel {
   double rho = 0.0;
   double sigma = 1.0;
   double outliers = 0.0;  // share
@@ -57,7 +57,7 @@ Vector row_at(std::size_t i) {
   return Vector{1.0, std::cos(t), std::sin(t), std::cos(2.0 * t), std::sin(2.0 * t)};
 }
 
-std::array<double, kSamples> errors_of(const Errors& model, std::mt19937& random) {
+std::array<double, kSamples> errors_of(const ErrorModel& model, std::mt19937& random) {
   std::normal_distribution<double> normal(0.0, 1.0);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::array<double, kSamples> errors;
@@ -99,14 +99,14 @@ struct Coverage {
   double inside = 0.0;  // share of the 95 % region
 };
 
-Coverage coverage_of(const Errors& model) {
+Coverage coverage_of(const ErrorModel& model) {
   constexpr int kTrials = 1500;
   std::mt19937 random(7);
   Coverage result;
   for (int trial = 0; trial < kTrials; ++trial) {
     const double error = squared_error(errors_of(model, random), 1e-6);
     result.mean += std::min(error, 100.0) / kTrials;
-    result.inside += (error <= kChiSquare5 ? 1.0 : 0.0) / kTrials;
+    result.inside += (error <= support::kChiSquare5 ? 1.0 : 0.0) / kTrials;
   }
   return result;
 }

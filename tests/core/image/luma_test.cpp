@@ -33,7 +33,7 @@ std::vector<int> read(const PixelView& picture, const Rect& region) {
 }
 
 TEST(LumaReader, ReadsPlainLumaInPlace) {
-  const support::Picture picture(10, 8, 7);
+  const support::GrayPicture picture(10, 8, 7);
   LumaReader reader;
   reader.begin(picture.view());
   const ImageView region = reader.read({2, 3, 4, 4});

@@ -19,10 +19,9 @@ namespace ellipse {
 namespace {
 
 using Eigen::Vector2d;
-using support::Picture;
-
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
+using support::GrayPicture;
+using support::kHeight;
+using support::kWidth;
 
 class SceneLens : public testing::TestWithParam<const char*> {
  protected:
@@ -99,7 +98,7 @@ struct EdgeErrors {
 };
 
 // The error of the edge's position, from the grey level of each edge pixel.
-EdgeErrors edge_errors(const Scene& scene, const Picture& picture, const Ellipse& truth) {
+EdgeErrors edge_errors(const Scene& scene, const GrayPicture& picture, const Ellipse& truth) {
   const Lens lens(camera_of(scene, picture.width, picture.height));
   const Vector2d middle(0.5 * (picture.width - 1), 0.5 * (picture.height - 1));
   EdgeErrors errors;
@@ -140,7 +139,7 @@ TEST_P(SceneLens, TruthMatchesThePixels) {
                                     Vector2d(320, 20)}) {
     const Vector2d ideal = lens.ideal_from_picture(centre_px).value();
     const Ellipse disc{ideal.x(), ideal.y(), 110.0, 85.0, 0.3};
-    Picture picture(kWidth, kHeight);
+    GrayPicture picture(kWidth, kHeight);
     const Truth truth = renderer.render(image_from_pad(disc), 0, picture.writable());
     ASSERT_LT(max_difference_px(*truth.outer_edge, disc), 1e-9);
     const EdgeErrors found = edge_errors(scene, picture, disc);
@@ -165,7 +164,7 @@ TEST_P(SceneLens, TruthOfAFlightMatchesThePixels) {
   SceneRenderer renderer(scene);
   std::vector<double> errors;
   for (const double time_s : {2.0, 5.0, 8.0, 10.0}) {
-    Picture picture(kWidth, kHeight);
+    GrayPicture picture(kWidth, kHeight);
     const Truth truth = renderer.render(time_s, 0, picture.writable());
     const EdgeErrors found = edge_errors(scene, picture, *truth.outer_edge);
     errors.insert(errors.end(), found.all.begin(), found.all.end());
@@ -201,9 +200,9 @@ TEST_P(SceneLens, VisibleFractionIsOfTheDistortedOutline) {
 TEST_P(SceneLens, SameSceneGivesTheSamePictures) {
   const Scene scene = through_lens(scene_by_name("shake", 3));
   SceneRenderer renderer(scene);
-  Picture first(160, 90);
-  Picture other(100, 70);
-  Picture again(160, 90);
+  GrayPicture first(160, 90);
+  GrayPicture other(100, 70);
+  GrayPicture again(160, 90);
   renderer.render(1.0, 4, first.writable());
   renderer.render(1.0, 4, other.writable());
   renderer.render(1.0, 4, again.writable());
@@ -219,10 +218,10 @@ INSTANTIATE_TEST_SUITE_P(Lenses,
 
 TEST(LensOfAScene, EqualsAPinholeWithoutDistortion) {
   Scene scene = scene_by_name("glare");
-  Picture pinhole(161, 91);
+  GrayPicture pinhole(161, 91);
   SceneRenderer(scene).render(4.0, 2, pinhole.writable());
   scene.lens = Distortion{};
-  Picture lens(161, 91);
+  GrayPicture lens(161, 91);
   SceneRenderer(scene).render(4.0, 2, lens.writable());
   EXPECT_EQ(lens.pixels, pinhole.pixels);
 }
@@ -232,10 +231,10 @@ TEST(LensOfAScene, EqualsAPinholeWithoutDistortion) {
 TEST(LensOfAScene, EqualsAPinholeWithLittleDistortion) {
   for (const NamedScene& named : scene_catalog()) {
     Scene scene = named.make(1);
-    Picture pinhole(322, 182);
+    GrayPicture pinhole(322, 182);
     const Truth expected = SceneRenderer(scene).render(4.0, 2, pinhole.writable());
     scene.lens = Distortion{LensModel::kBrownConrady, {1e-9}};
-    Picture lens(322, 182);
+    GrayPicture lens(322, 182);
     const Truth truth = SceneRenderer(scene).render(4.0, 2, lens.writable());
     int different = 0;
     for (std::size_t i = 0; i < lens.pixels.size(); ++i) {
@@ -251,7 +250,7 @@ TEST(LensOfAScene, IsBlackOutsideItsFieldOfView) {
   scene.lens = Distortion{LensModel::kFisheye, {}};
   scene.hfov_rad = 170.0 * std::numbers::pi / 180.0;
   scene.sensor.read_noise = 0.0;
-  Picture picture(101, 101);
+  GrayPicture picture(101, 101);
   SceneRenderer(scene).render(0.0, 0, picture.writable());
   EXPECT_EQ(picture.at(0, 0), 0);
   EXPECT_EQ(picture.at(100, 100), 0);

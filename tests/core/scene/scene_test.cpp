@@ -22,7 +22,7 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
 Scene clean_disc() {
   Scene scene = support::plain_ring();
@@ -39,7 +39,7 @@ double share(const Scene& scene, std::uint8_t level) {
 TEST(Scene, DarkAreaEqualsTheEllipseArea) {
   const Scene scene = clean_disc();
   const Ellipse truth{80.3, 70.6, 50.0, 25.0, 0.7};
-  const Picture picture = support::rendered(scene, truth, 160, 140);
+  const GrayPicture picture = support::rendered(scene, truth, 160, 140);
   double area = 0.0;
   for (const std::uint8_t level : picture.pixels) area += share(scene, level);
   EXPECT_NEAR(area / (std::numbers::pi * 50.0 * 25.0), 1.0, 2e-3);
@@ -48,7 +48,7 @@ TEST(Scene, DarkAreaEqualsTheEllipseArea) {
 TEST(Scene, CentroidOfTheDarkAreaIsTheTrueCentre) {
   const Scene scene = clean_disc();
   const Ellipse truth{80.3, 70.6, 40.0, 30.0, -0.4};
-  const Picture picture = support::rendered(scene, truth, 160, 140);
+  const GrayPicture picture = support::rendered(scene, truth, 160, 140);
   Eigen::Vector2d sum(0.0, 0.0);
   double weight = 0.0;
   for (int y = 0; y < 140; ++y) {
@@ -96,7 +96,7 @@ TEST(Scene, TruthHasTheEdgesOfThePattern) {
 TEST(Scene, SeedAndFrameDecideTheNoise) {
   const Ellipse e{40.0, 40.0, 20.0, 20.0, 0.0};
   Scene scene;
-  const Picture a = support::rendered(scene, e, 80, 80, 3);
+  const GrayPicture a = support::rendered(scene, e, 80, 80, 3);
   EXPECT_EQ(a.pixels, support::rendered(scene, e, 80, 80, 3).pixels);
   EXPECT_NE(a.pixels, support::rendered(scene, e, 80, 80, 4).pixels);
   scene.seed = 2;
@@ -108,7 +108,7 @@ double measured_noise(const Sensor& sensor, double light) {
   Scene scene = support::plain_ring();
   scene.ground.level = light;
   scene.sensor = sensor;
-  const Picture picture = support::rendered(scene, {-500.0, 0.0, 10.0, 10.0, 0.0}, 200, 200);
+  const GrayPicture picture = support::rendered(scene, {-500.0, 0.0, 10.0, 10.0, 0.0}, 200, 200);
   double sum = 0.0;
   double squares = 0.0;
   for (const std::uint8_t level : picture.pixels) {
@@ -137,7 +137,7 @@ TEST(Sensor, GainAndBiasScaleAndShift) {
   Scene scene = clean_disc();
   scene.sensor.gain = 0.5;
   scene.sensor.bias = 10.0;
-  Picture picture = support::rendered(scene, {50.0, 50.0, 20.0, 20.0, 0.0}, 100, 100);
+  GrayPicture picture = support::rendered(scene, {50.0, 50.0, 20.0, 20.0, 0.0}, 100, 100);
   EXPECT_EQ(picture.at(2, 2), 110);   // 200 / 2 + 10
   EXPECT_EQ(picture.at(50, 50), 38);  // 55 / 2 + 10, rounded
 }
@@ -145,13 +145,13 @@ TEST(Sensor, GainAndBiasScaleAndShift) {
 TEST(Sensor, JpegEqualsThatOfLibjpeg) {
   Scene scene;
   scene.sensor.read_noise = 10.0;
-  Picture picture = support::rendered(scene, {60.0, 50.0, 40.0, 30.0, 0.3}, 123, 101);
+  GrayPicture picture = support::rendered(scene, {60.0, 50.0, 40.0, 30.0, 0.3}, 123, 101);
   for (const int quality : {20, 45, 95}) {
     const cv::Mat original(101, 123, CV_8U, picture.pixels.data());
     std::vector<std::uint8_t> file;
     cv::imencode(".jpg", original, file, {cv::IMWRITE_JPEG_QUALITY, quality});
     const cv::Mat expected = cv::imdecode(file, cv::IMREAD_GRAYSCALE);
-    Picture compressed = picture;
+    GrayPicture compressed = picture;
     compress_jpeg(compressed.writable(), quality);
     const cv::Mat ours(101, 123, CV_8U, compressed.pixels.data());
     EXPECT_GT(cv::norm(ours, original, cv::NORM_INF), 3.0) << quality;
@@ -166,7 +166,7 @@ std::vector<double> moving_profile(double exposure_s) {
   scene.flight = {Path::kDash, 1.0, 8.0, 8.0};
   scene.sensor.exposure_s = exposure_s;
   scene.sensor.read_noise = 0.0;
-  Picture picture(640, 360);
+  GrayPicture picture(640, 360);
   const Truth truth = SceneRenderer(scene).render(0.0, 0, picture.writable());
   const auto* row = picture.view().row(static_cast<int>(std::lround(truth.outer_edge->cy)));
   return {row + static_cast<int>(truth.outer_edge->cx), row + 640};
@@ -195,7 +195,7 @@ TEST(Renderer, ZeroExposureIsSharp) {
 TEST(Renderer, ShadowReducesTheLightByItsShare) {
   Scene scene = clean_disc();
   scene.light.shadows = {{0.0, 10.0, 5.0, 0.4, 0.0}};  // x from 5 to 15 radii
-  Picture picture = support::rendered(scene, {20.0, 20.0, 4.0, 4.0, 0.0}, 100, 40);
+  GrayPicture picture = support::rendered(scene, {20.0, 20.0, 4.0, 4.0, 0.0}, 100, 40);
   EXPECT_EQ(picture.at(30, 20), 200);
   EXPECT_EQ(picture.at(50, 20), 120);
   EXPECT_EQ(picture.at(90, 20), 200);
@@ -205,7 +205,7 @@ TEST(Renderer, GlareSaturatesAndFadesAway) {
   Scene scene = clean_disc();
   scene.flight = {Path::kHover, 10.0, 8.0, 8.0};
   scene.light.glare = {{0.0, 0.0}, 0.05, 300.0};
-  Picture picture(640, 360);
+  GrayPicture picture(640, 360);
   SceneRenderer(scene).render(0.0, 0, picture.writable());
   EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), 255), 500);
   EXPECT_EQ(picture.at(2, 2), 200);
@@ -218,9 +218,9 @@ TEST(Renderer, MovedPadLiesOnOtherGround) {
   scene.sensor.read_noise = 0.0;
   const CameraPose pose{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, 0.0};
   View over_pad{.image_from_pad = image_from_pad(pose, 1.0, 160, 120)};
-  Picture still(160, 120);
-  Picture moved(160, 120);
-  Picture elsewhere(160, 120);
+  GrayPicture still(160, 120);
+  GrayPicture moved(160, 120);
+  GrayPicture elsewhere(160, 120);
   SceneRenderer renderer(scene);
   renderer.render(over_pad, 0, still.writable());
   over_pad.ground_from_pad = Eigen::Translation2d(1.5, -0.5) * Eigen::Rotation2Dd(0.0);
@@ -238,7 +238,7 @@ TEST(Renderer, GlareRequiresTheCameraPosition) {
   scene.light.glare = {{0.0, 0.0}, 0.05, 300.0};
   const CameraPose pose{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, 0.0};
   View view{.image_from_pad = image_from_pad(pose, 1.0, 160, 120)};
-  Picture picture(160, 120);
+  GrayPicture picture(160, 120);
   SceneRenderer renderer(scene);
   renderer.render(view, 0, picture.writable());
   EXPECT_EQ(std::count(picture.pixels.begin(), picture.pixels.end(), 255), 0);
@@ -250,7 +250,7 @@ TEST(Renderer, GlareRequiresTheCameraPosition) {
 TEST(Renderer, GradientBrightensOneSide) {
   Scene scene = clean_disc();
   scene.light.gradient = {0.4, 0.0};
-  Picture picture = support::rendered(scene, {50.0, 50.0, 10.0, 10.0, 0.0}, 101, 101);
+  GrayPicture picture = support::rendered(scene, {50.0, 50.0, 10.0, 10.0, 0.0}, 101, 101);
   EXPECT_NEAR(picture.at(0, 5), 200.0 * 0.8, 1.0);
   EXPECT_NEAR(picture.at(100, 95), 200.0 * 1.2, 1.0);
 }
@@ -259,7 +259,7 @@ TEST(Renderer, CrumpledEdgeDeviatesByItsAmplitude) {
   Scene scene = clean_disc();
   scene.pad.crumple = 0.03;
   const double radius = 200.0;
-  Picture picture = support::rendered(scene, {256.0, 256.0, radius, radius, 0.0}, 513, 513);
+  GrayPicture picture = support::rendered(scene, {256.0, 256.0, radius, radius, 0.0}, 513, 513);
   double largest = 0.0;
   double sum = 0.0;
   for (int i = 0; i < 360; ++i) {
@@ -298,7 +298,7 @@ TEST(Renderer, RendersAHorizon) {
   CameraPose pose;
   pose.position = {0.0, -6.0, 0.5};
   pose.looks_at = {0.0, 0.0, 0.4};
-  Picture picture(320, 240);
+  GrayPicture picture(320, 240);
   const Truth truth =
       SceneRenderer(scene).render(image_from_pad(pose, 1.0, 320, 240), 0, picture.writable());
   EXPECT_TRUE(truth.outer_edge);
@@ -373,7 +373,7 @@ TEST(Polygon, IsHollowAtSelfIntersections) {
 }
 
 // FNV-1a.
-std::uint64_t fingerprint(const Picture& picture) {
+std::uint64_t fingerprint(const GrayPicture& picture) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const std::uint8_t level : picture.pixels) hash = (hash ^ level) * 0x100000001b3U;
   return hash;
@@ -411,7 +411,7 @@ constexpr Fingerprint kFingerprints[] = {
 TEST(Catalog, PicturesAreTheSameOnEveryMachine) {
   ASSERT_EQ(std::size(kFingerprints), scene_catalog().size());
   for (const Fingerprint& expected : kFingerprints) {
-    Picture picture(160, 90);
+    GrayPicture picture(160, 90);
     SceneRenderer(scene_by_name(expected.scene)).render(3.0, 5, picture.writable());
     EXPECT_EQ(fingerprint(picture), expected.value) << expected.scene;
   }

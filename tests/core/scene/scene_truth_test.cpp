@@ -15,8 +15,8 @@ namespace {
 using support::Edges;
 using support::ellipse_of;
 using support::expect_same;
+using support::GrayPicture;
 using support::PhotometricFit;
-using support::Picture;
 
 // One of 20 views through a pinhole camera: radii from 15 to 150 px, aspect ratios from 1 to 4.
 class SceneTruth : public testing::TestWithParam<int> {
@@ -43,7 +43,7 @@ class SceneTruth : public testing::TestWithParam<int> {
     Scene scene = support::plain_ring();
     scene.pad.pattern = pattern;
     scene.sensor.read_noise = 0.0;
-    Picture picture(kWidth, kHeight);
+    GrayPicture picture(kWidth, kHeight);
     const Truth truth = SceneRenderer(scene).render(view(), 0, picture.writable());
     const Edges edges = PhotometricFit(scene, picture, truth).run();
     expect_same(ellipse_of(edges.outer), *truth.outer_edge);

@@ -14,7 +14,7 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
 // A disc on the ground seen from straight above, 100 px in radius in a picture of 320 x 240.
 Scene disc_scene() {
@@ -30,8 +30,8 @@ Scene disc_scene() {
   return scene;
 }
 
-Picture render(const Scene& scene, double time_s = 0.0) {
-  Picture picture(320, 240);
+GrayPicture render(const Scene& scene, double time_s = 0.0) {
+  GrayPicture picture(320, 240);
   SceneRenderer(scene).render(time_s, 0, picture.writable());
   return picture;
 }
@@ -120,7 +120,7 @@ TEST(Shape, MeshDarkensByTheShareOfItsWires) {
   scene.sheets[0].shapes = {wild::mesh(20.0 / 320.0, 2.0 / 320.0, 0.0, black)};
   for (const double blur_px : {0.6, 12.0}) {
     scene.sensor.blur_px = blur_px;
-    const Picture picture = render(scene);
+    const GrayPicture picture = render(scene);
     double sum = 0.0;
     for (int y = 20; y < 220; ++y) {
       for (int x = 20; x < 300; ++x) sum += picture.view().row(y)[x];
@@ -134,7 +134,7 @@ TEST(Sensor, GammaMapsTheGreysBetweenBlackAndWhite) {
   scene.ground.level = 255.0;
   scene.sheets[0].shapes[0].paint.level = 64.0;
   scene.sensor.gamma = 0.5;
-  Picture picture = render(scene);
+  GrayPicture picture = render(scene);
   EXPECT_EQ(picture.at(2, 2), 255);
   EXPECT_NEAR(picture.at(160, 120), 255.0 * std::sqrt(64.0 / 255.0), 1.0);
 }
@@ -143,7 +143,7 @@ TEST(Renderer, VignetteDarkensTheCorners) {
   Scene scene = disc_scene();
   scene.sheets.clear();
   scene.light.vignette = 0.4;
-  Picture picture = render(scene);
+  GrayPicture picture = render(scene);
   EXPECT_EQ(picture.at(160, 120), 200);
   EXPECT_EQ(picture.at(0, 0), 120);
   EXPECT_EQ(picture.at(319, 239), 120);
@@ -152,11 +152,11 @@ TEST(Renderer, VignetteDarkensTheCorners) {
 TEST(Renderer, FieldsShowTheRowsOfTheirTimes) {
   Scene scene = disc_scene();
   scene.sheets[0].swing.reach = {1.0, 0.0, 0.0};
-  Picture even = render(scene, 0.48);
-  Picture odd = render(scene, 0.52);
+  GrayPicture even = render(scene, 0.48);
+  GrayPicture odd = render(scene, 0.52);
   ASSERT_NE(even.pixels, odd.pixels);
   scene.sensor.field_s = 0.04;
-  Picture both = render(scene, 0.5);
+  GrayPicture both = render(scene, 0.5);
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 320; ++x) ASSERT_EQ(both.at(x, y), (y % 2 == 0 ? even : odd).at(x, y));
   }
@@ -168,7 +168,7 @@ TEST(Renderer, RollingShutterSkewsMovingObjects) {
   scene.sheets[0].swing = {{1.0, 0.0, 0.0}, 2.0 * std::numbers::pi, 0.0, 1};
   scene.sheets[0].shapes = {wild::box({0.0, 0.0}, {0.2, 5.0}, 0.0, Paint{55.0})};
   scene.sensor.readout_s = 0.48 * 239.0 / 240.0;
-  Picture picture = render(scene);
+  GrayPicture picture = render(scene);
   const auto left_edge = [&](int y) {
     double x = 0.0;
     while (picture.at(static_cast<int>(x), y) > 127) ++x;

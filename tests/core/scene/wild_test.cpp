@@ -15,10 +15,10 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
-Picture render(const Wild& wild, std::uint64_t frame = 0, double time_s = 0.0) {
-  Picture picture(wild.width, wild.height);
+GrayPicture render(const Wild& wild, std::uint64_t frame = 0, double time_s = 0.0) {
+  GrayPicture picture(wild.width, wild.height);
   SceneRenderer(wild.scene).render(time_s, frame, picture.writable());
   return picture;
 }
@@ -85,7 +85,7 @@ TEST(WildTruth, OfFlatShapesMatchesTheirPixels) {
     Truth truth;
     truth.outer_edge = ellipses[0].ellipse;
     if (ellipses.size() > 1) truth.inner_edge = ellipses[1].ellipse;
-    const Picture picture = render(one);
+    const GrayPicture picture = render(one);
     const support::Edges edges = support::PhotometricFit(one.scene, picture, truth).run();
     support::expect_same(support::ellipse_of(edges.outer), *truth.outer_edge);
     if (truth.inner_edge) {
@@ -94,7 +94,7 @@ TEST(WildTruth, OfFlatShapesMatchesTheirPixels) {
   });
 }
 
-double bilinear(const Picture& picture, const Eigen::Vector2d& p) {
+double bilinear(const GrayPicture& picture, const Eigen::Vector2d& p) {
   const int x = static_cast<int>(std::floor(p.x()));
   const int y = static_cast<int>(std::floor(p.y()));
   const auto* upper = picture.view().row(y) + x;
@@ -105,7 +105,7 @@ double bilinear(const Picture& picture, const Eigen::Vector2d& p) {
 }
 
 // Distance of the outline from an ellipse along its normals, outwards, at the mid grey level.
-std::vector<double> offsets_from(const Ellipse& e, const Picture& picture, double reach_px) {
+std::vector<double> offsets_from(const Ellipse& e, const GrayPicture& picture, double reach_px) {
   std::vector<double> offsets;
   walk_perimeter(e, [&](const PerimeterStep& step) {
     const double side = step.normal().dot(step.point - e.center()) > 0.0 ? 1.0 : -1.0;
@@ -143,7 +143,7 @@ TEST(Wild, SeedAndFrameDecideThePicture) {
   std::set<std::vector<std::uint8_t>> distinct;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const Wild wild = make_wild(seed);
-    const Picture picture = render(wild);
+    const GrayPicture picture = render(wild);
     EXPECT_EQ(picture.pixels, render(make_wild(seed)).pixels) << seed;
     EXPECT_TRUE(distinct.insert(picture.pixels).second) << seed;
     EXPECT_EQ(wild.things, make_wild(seed).things);
@@ -226,7 +226,7 @@ TEST(Wild, AllRoundShapesAreListed) {
 }
 
 // Mean change of the grey level across an outline in a picture, outwards.
-double contrast_across(const TrueEllipse& truth, const Picture& picture, double reach_px) {
+double contrast_across(const TrueEllipse& truth, const GrayPicture& picture, double reach_px) {
   double sum = 0.0;
   int samples = 0;
   walk_perimeter(truth.ellipse, [&](const PerimeterStep& step) {

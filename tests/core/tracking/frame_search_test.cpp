@@ -12,7 +12,7 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 using support::ScriptedDetector;
 
 class ScriptedFrameSearch : public testing::Test {
@@ -27,7 +27,7 @@ class ScriptedFrameSearch : public testing::Test {
   }
 
   ScriptedDetector::Script script_;
-  Picture picture_{640, 360};
+  GrayPicture picture_{640, 360};
   FrameSearch search_{std::make_unique<ScriptedDetector>(script_)};
 };
 

@@ -49,7 +49,7 @@ class OutlineJudgeTest : public testing::Test {
     return detector_.calls - before;
   }
 
-  support::Picture picture_{200, 160};
+  support::GrayPicture picture_{200, 160};
   LumaWindow window_{picture_.view(), {40.0, 20.0}, {640.0, 360.0}};
   Target target_;
   CountingDetector detector_;

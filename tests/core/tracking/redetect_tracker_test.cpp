@@ -14,11 +14,11 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::detection_at;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 using support::ScriptedDetector;
-constexpr auto at = support::detection_at;
 
 class ScriptedRedetectTracker : public testing::Test {
  protected:
@@ -35,13 +35,13 @@ class ScriptedRedetectTracker : public testing::Test {
 
   TrackerSettings settings_;
   ScriptedDetector::Script script_;
-  Picture picture_{640, 360};
+  GrayPicture picture_{640, 360};
   FrameSearch search_{std::make_unique<ScriptedDetector>(script_)};
   RedetectTracker tracker_;
 };
 
 TEST_F(ScriptedRedetectTracker, DetectsInTheWholeFrameAndTracksInTheRegion) {
-  script_.answers = {{at(100, 100, 30)}, {at(103, 98, 30)}};
+  script_.answers = {{detection_at(100, 100, 30)}, {detection_at(103, 98, 30)}};
   const auto detected = track();
   const auto tracked = track();
   ASSERT_TRUE(detected && tracked);
@@ -59,7 +59,7 @@ TEST_F(ScriptedRedetectTracker, DetectsInTheWholeFrameAndTracksInTheRegion) {
 }
 
 TEST_F(ScriptedRedetectTracker, ALossClearsTheRegion) {
-  script_.answers = {{at(100, 100, 30)}, {}, {at(100, 100, 30)}};
+  script_.answers = {{detection_at(100, 100, 30)}, {}, {detection_at(100, 100, 30)}};
   EXPECT_TRUE(track());
   EXPECT_FALSE(track());
   EXPECT_EQ(track()->state, TargetState::kDetected);
@@ -69,7 +69,7 @@ TEST_F(ScriptedRedetectTracker, ALossClearsTheRegion) {
 
 TEST_F(ScriptedRedetectTracker, ScaleDoublesWhileTheTargetIsLarge) {
   // 260 px across at scale 1, 130 at 2, 65 at 4: above 120 twice.
-  script_.answers = {{at(320, 180, 130)}};
+  script_.answers = {{detection_at(320, 180, 130)}};
   EXPECT_EQ(track()->scale, 1);
   EXPECT_EQ(track()->scale, 2);
   EXPECT_EQ(track()->scale, 4);
@@ -79,7 +79,7 @@ TEST_F(ScriptedRedetectTracker, ScaleDoublesWhileTheTargetIsLarge) {
 }
 
 TEST_F(ScriptedRedetectTracker, ScaleHalvesWhileTheTargetIsSmall) {
-  script_.answers = {{at(320, 180, 70)}, {at(320, 180, 39)}};
+  script_.answers = {{detection_at(320, 180, 70)}, {detection_at(320, 180, 39)}};
   EXPECT_EQ(track()->scale, 1);
   EXPECT_EQ(track()->scale, 2);  // 39 px across, below 40
   EXPECT_EQ(track()->scale, 1);
@@ -87,7 +87,7 @@ TEST_F(ScriptedRedetectTracker, ScaleHalvesWhileTheTargetIsSmall) {
 }
 
 TEST_F(ScriptedRedetectTracker, LossAtACoarseScaleIsRetriedInTheSameFrame) {
-  script_.answers = {{at(320, 180, 80)}, {}, {at(320, 180, 80)}};
+  script_.answers = {{detection_at(320, 180, 80)}, {}, {detection_at(320, 180, 80)}};
   EXPECT_TRUE(track());
   const auto retried = track();
   ASSERT_TRUE(retried);
@@ -101,7 +101,7 @@ TEST_F(ScriptedRedetectTracker, LossAtACoarseScaleIsRetriedInTheSameFrame) {
 }
 
 TEST_F(ScriptedRedetectTracker, LossIsFinalAfterTheRetry) {
-  script_.answers = {{at(320, 180, 80)}, {}};
+  script_.answers = {{detection_at(320, 180, 80)}, {}};
   EXPECT_TRUE(track());
   EXPECT_FALSE(track());
   EXPECT_EQ(script_.calls.size(), 3U);
@@ -110,7 +110,7 @@ TEST_F(ScriptedRedetectTracker, LossIsFinalAfterTheRetry) {
 }
 
 TEST_F(ScriptedRedetectTracker, LossAtScaleOneIsNotRetried) {
-  script_.answers = {{at(320, 180, 30)}, {}};
+  script_.answers = {{detection_at(320, 180, 30)}, {}};
   EXPECT_TRUE(track());
   EXPECT_FALSE(track());
   EXPECT_EQ(script_.calls.size(), 2U);
@@ -118,7 +118,7 @@ TEST_F(ScriptedRedetectTracker, LossAtScaleOneIsNotRetried) {
 
 TEST_F(ScriptedRedetectTracker, SearchesOnlyInsideTheScope) {
   const Rect within{80, 60, 200, 100};
-  script_.answers = {{at(100, 100, 30)}};
+  script_.answers = {{detection_at(100, 100, 30)}};
   EXPECT_EQ(track(within, 1)->search_region, within);
   // Without the limit the region would be [40, 161) by [43, 158).
   EXPECT_EQ(track(within, 1)->search_region, (Rect{80, 60, 81, 98}));
@@ -127,7 +127,7 @@ TEST_F(ScriptedRedetectTracker, SearchesOnlyInsideTheScope) {
 }
 
 TEST_F(ScriptedRedetectTracker, ScaleStaysAtOrAboveTheFinest) {
-  script_.answers = {{at(320, 180, 60)}, {}};
+  script_.answers = {{detection_at(320, 180, 60)}, {}};
   const Rect all{0, 0, 640, 360};
   EXPECT_EQ(track(all, 4)->scale, 4);
   EXPECT_EQ(script_.calls[0].width, 160);
@@ -139,7 +139,7 @@ TEST_F(ScriptedRedetectTracker, ScaleStaysAtOrAboveTheFinest) {
 }
 
 TEST_F(ScriptedRedetectTracker, FollowsALowerLimitOfTheScale) {
-  script_.answers = {{at(320, 180, 130)}};
+  script_.answers = {{detection_at(320, 180, 130)}};
   for (int frame = 0; frame < 3; ++frame) EXPECT_TRUE(track());
   settings_.max_scale = 3;
   EXPECT_EQ(track()->scale, 2);
@@ -158,7 +158,7 @@ TEST(RedetectTracker, OffsetsBetweenScalesAreCompensated) {
   for (int position = 0; position < kPositions; ++position) {
     const Ellipse truth{
         310.37 + 0.71 * position, 171.81 + 0.37 * position, 130.0, 110.0, 0.3 * position};
-    const Picture picture = rendered(scene, truth, 640, 360);
+    const GrayPicture picture = rendered(scene, truth, 640, 360);
     RedetectTracker tracker;
     for (int step = 0; step < 3; ++step) {
       const ScopedFrame frame{picture.view(), picture.view().bounds(), 1, {}};

@@ -19,21 +19,21 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 
 constexpr DetectorKind kDetectors[] = {DetectorKind::kContours, DetectorKind::kArcs};
 constexpr TrackingMode kTrackings[] = {
     TrackingMode::kNone, TrackingMode::kRedetect, TrackingMode::kEdges};
 constexpr int kFrames = 6;
-constexpr std::int64_t kFrameNs = 33'333'333;
+constexpr std::int64_t kStepNs = 33'333'333;
 
-using Sequence = std::vector<Picture>;
+using Sequence = std::vector<GrayPicture>;
 
 Sequence sequence_of(const char* name, double start_s) {
   SceneRenderer renderer(scene_by_name(name));
   Sequence frames;
   for (int i = 0; i < kFrames; ++i) {
-    Picture picture(640, 360);
+    GrayPicture picture(640, 360);
     (void)renderer.render(start_s + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
     frames.push_back(std::move(picture));
   }
@@ -76,14 +76,14 @@ Answers answers_to(const Sequence& frames, const TrackerSettings& settings, int 
   Tracker tracker(settings);
   Answers answers;
   std::int64_t pts_ns = 0;
-  for (const Picture& frame : frames) {
+  for (const GrayPicture& frame : frames) {
     const PixelView view = frame.view();
     const auto target = tracker.process(view, pts_ns, {view.bounds(), finest_scale});
     const Rect& region = tracker.search_region();
     answers.insert(answers.end(), {double(region.x), double(region.y), double(region.width)});
     if (target) add(answers, *target);
     for (const Detection& candidate : tracker.candidates()) add(answers, candidate.ellipse);
-    pts_ns += kFrameNs;
+    pts_ns += kStepNs;
   }
   return answers;
 }
@@ -191,7 +191,7 @@ TEST(SettingEffect, OfContourOverlapStartsBelowAllValuesOfArcs) {
   Thresholds thresholds;
   thresholds.contour_overlap = 0.01;
   thresholds.ellipse_overlap = arcs->detecting_overlaps().ellipse;
-  Picture picture(640, 360);
+  GrayPicture picture(640, 360);
   int count = 0;
   for (const NamedScene& scene : scene_catalog()) {
     SceneRenderer renderer(scene.make(1));

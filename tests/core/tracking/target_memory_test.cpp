@@ -20,7 +20,7 @@ Target target_with(double probability, std::uint64_t id = 7) {
   return target;
 }
 
-Ellipse moved(double by_px) {
+Ellipse moved_target(double by_px) {
   Ellipse e = kTarget;
   e.cx += by_px;
   return e;
@@ -48,8 +48,8 @@ TEST(TargetMemory, APlaceCountsForAShortTime) {
   TargetMemory memory;
   memory.remember(target_with(0.6));
   memory.advance(kShortly_s);
-  EXPECT_TRUE(memory.was_near(moved(29.0)));
-  EXPECT_FALSE(memory.was_near(moved(31.0)));
+  EXPECT_TRUE(memory.was_near(moved_target(29.0)));
+  EXPECT_FALSE(memory.was_near(moved_target(31.0)));
   memory.advance(kLonger_s - kShortly_s);
   EXPECT_FALSE(memory.was_near(kTarget));
 }
@@ -62,13 +62,13 @@ TEST(TargetMemory, ACertainTargetIsLikelyToBeFoundAgain) {
   for (TargetMemory* memory : {&certain, &uncertain}) memory->advance(kShortly_s);
   EXPECT_EQ(certain.prior_of(kTarget), TargetMemory::kLostPrior);
   EXPECT_EQ(uncertain.prior_of(kTarget), 0.0);
-  EXPECT_LT(uncertain.prior_of(moved(40.0)), 0.0);
+  EXPECT_LT(uncertain.prior_of(moved_target(40.0)), 0.0);
 }
 
 TEST(TargetMemory, AnEllipseOfAnotherSizeIsNotTheCertainTarget) {
   TargetMemory memory;
   memory.remember(target_with(0.99));
-  EXPECT_TRUE(memory.was_certain_as(moved(14.0)));
+  EXPECT_TRUE(memory.was_certain_as(moved_target(14.0)));
   EXPECT_FALSE(memory.was_certain_as({kTarget.cx, kTarget.cy, 60.0, 40.0, kTarget.angle_rad}));
   EXPECT_FALSE(memory.was_certain_as({kTarget.cx, kTarget.cy, 12.0, 8.0, kTarget.angle_rad}));
 }

@@ -24,11 +24,11 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::detection_at;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 using support::ScriptedDetector;
-constexpr auto at = support::detection_at;
 
 TrackerSettings redetecting() {
   TrackerSettings settings;
@@ -48,12 +48,13 @@ class ScriptedTracker : public testing::Test {
 
   TrackerSettings settings_ = redetecting();
   ScriptedDetector::Script script_;
-  Picture picture_{640, 360};
+  GrayPicture picture_{640, 360};
   Tracker tracker_{settings_, std::make_unique<ScriptedDetector>(script_)};
 };
 
 TEST_F(ScriptedTracker, ALossEndsTheId) {
-  script_.answers = {{at(100, 100, 30)}, {at(100, 100, 30)}, {}, {at(100, 100, 30)}};
+  script_.answers = {
+      {detection_at(100, 100, 30)}, {detection_at(100, 100, 30)}, {}, {detection_at(100, 100, 30)}};
   EXPECT_EQ(process()->id, 1U);
   EXPECT_EQ(process()->id, 1U);
   EXPECT_FALSE(process());
@@ -65,7 +66,7 @@ TEST_F(ScriptedTracker, IsFollowingOrSearchingWithoutEdgeTracking) {
     settings_.tracking = mode;
     tracker_.configure(settings_);
     script_.calls.clear();
-    script_.answers = {{at(100, 100, 30)}, {}};
+    script_.answers = {{detection_at(100, 100, 30)}, {}};
     EXPECT_TRUE(process());
     EXPECT_EQ(tracker_.state(), TrackerState::kFollowing);
     EXPECT_FALSE(process());
@@ -76,7 +77,7 @@ TEST_F(ScriptedTracker, IsFollowingOrSearchingWithoutEdgeTracking) {
 TEST_F(ScriptedTracker, FramesAreIndependentWithoutTracking) {
   settings_.tracking = TrackingMode::kNone;
   tracker_.configure(settings_);
-  script_.answers = {{at(320, 180, 130)}};
+  script_.answers = {{detection_at(320, 180, 130)}};
   for (int i = 0; i < 3; ++i) {
     const auto target = process();
     EXPECT_EQ(target->scale, 1);
@@ -87,9 +88,9 @@ TEST_F(ScriptedTracker, FramesAreIndependentWithoutTracking) {
 }
 
 TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
-  script_.answers = {{at(100, 100, 30)}};
+  script_.answers = {{detection_at(100, 100, 30)}};
   process();
-  const Picture other(320, 240);
+  const GrayPicture other(320, 240);
   const auto target = tracker_.process(other.view(), 5);
   EXPECT_EQ(target->state, TargetState::kDetected);
   EXPECT_EQ(target->pts_ns, 5);
@@ -97,7 +98,7 @@ TEST_F(ScriptedTracker, AnotherFrameSizeStartsOver) {
 }
 
 TEST_F(ScriptedTracker, AnEmptyScopeForgetsTheTarget) {
-  script_.answers = {{at(100, 100, 30)}};
+  script_.answers = {{detection_at(100, 100, 30)}};
   process();
   for (const Rect& nowhere : {Rect{}, Rect{640, 0, 9, 9}, Rect{10, 10, -5, 9}}) {
     EXPECT_FALSE(process({nowhere}));
@@ -111,7 +112,7 @@ TEST_F(ScriptedTracker, AnEmptyScopeForgetsTheTarget) {
 TEST_F(ScriptedTracker, FinestScaleIsLimitedByTheCoarsest) {
   settings_.max_scale = 3;
   tracker_.configure(settings_);
-  script_.answers = {{at(320, 180, 60)}};
+  script_.answers = {{detection_at(320, 180, 60)}};
   EXPECT_EQ(process({{0, 0, 640, 360}, 8})->scale, 2);
 }
 
@@ -121,14 +122,14 @@ TEST(Tracker, RejectsInvalidSettingsAndKeepsTheOldOnes) {
   EXPECT_THROW(Tracker{bad}, std::invalid_argument);
   Tracker tracker;
   EXPECT_THROW(tracker.configure(bad), std::invalid_argument);
-  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 50.0, 40.0, 0.0});
+  const GrayPicture picture = rendered(plain_ring(), {160.0, 120.0, 50.0, 40.0, 0.0});
   EXPECT_TRUE(tracker.process(picture.view(), 0));
 }
 
 TEST(Tracker, FollowsALandingFromFarToNear) {
   SceneRenderer renderer(scene_by_name("approach"));
   Tracker tracker;
-  Picture picture(640, 360);
+  GrayPicture picture(640, 360);
   int right = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const Truth truth = renderer.render(0.1 * frame, frame, picture.writable());
@@ -142,7 +143,7 @@ TEST(Tracker, TheSameFramesGiveTheSameTargets) {
   Tracker first;
   Tracker second;
   for (int frame = 0; frame < 5; ++frame) {
-    const Picture picture =
+    const GrayPicture picture =
         rendered(plain_ring(), {100.0 + 3 * frame, 90.0, 40.0, 30.0, 0.2}, 320, 240, frame);
     EXPECT_EQ(first.process(picture.view(), 0)->ellipse,
               second.process(picture.view(), 0)->ellipse);
@@ -152,8 +153,8 @@ TEST(Tracker, TheSameFramesGiveTheSameTargets) {
 constexpr std::int64_t kFrameNs = 33'333'333;
 
 // The pixel-wise minimum of two pictures combines their paint on one bright ground.
-Picture both(const Picture& a, const Picture& b) {
-  Picture result = a;
+GrayPicture both(const GrayPicture& a, const GrayPicture& b) {
+  GrayPicture result = a;
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     result.pixels[i] = std::min(a.pixels[i], b.pixels[i]);
   }
@@ -168,10 +169,12 @@ class Film {
   [[nodiscard]] static Ellipse truth_at(int frame) {
     return {120.0 + 2.0 * frame, 110.0 + 0.5 * frame, 40.0, 32.0, 0.3};
   }
-  [[nodiscard]] Picture at(int frame) const {
+  [[nodiscard]] GrayPicture at(int frame) const {
     return rendered(scene_, truth_at(frame), 320, 240, static_cast<std::uint64_t>(frame));
   }
-  [[nodiscard]] Picture empty() const { return rendered(scene_, {-900.0, -900.0, 9.0, 9.0, 0.0}); }
+  [[nodiscard]] GrayPicture empty() const {
+    return rendered(scene_, {-900.0, -900.0, 9.0, 9.0, 0.0});
+  }
 
  private:
   Scene scene_;
@@ -229,7 +232,7 @@ std::vector<std::vector<int>> searched_widths(const TrackerSettings& settings, i
   script.answers = {{}};
   script.region = [] { return Rect{}; };
   Tracker tracker(settings, std::make_unique<ScriptedDetector>(script));
-  const Picture picture(640, 360);
+  const GrayPicture picture(640, 360);
   std::vector<std::vector<int>> widths;
   for (int frame = 0; frame < frames; ++frame) {
     script.calls.clear();
@@ -343,7 +346,7 @@ class OneEdgeFirst : public testing::Test {
     return 60;
   }
 
-  support::Picture picture_{320, 240};
+  support::GrayPicture picture_{320, 240};
 };
 
 TEST_F(OneEdgeFirst, IsCorrectedByTheNextDetection) {
@@ -379,7 +382,7 @@ TEST(FollowingTracker, TakesNoInnerEdgeOfAPredictedPad) {
   Ellipse inner = outer;
   inner.semi_major *= 0.8;
   inner.semi_minor *= 0.8;
-  const Picture disc = rendered(disc_scene, inner, 320, 240);
+  const GrayPicture disc = rendered(disc_scene, inner, 320, 240);
   Tracker tracker;
   for (int frame = 0; frame < 20; ++frame) {
     ASSERT_TRUE(tracker.process(ring.at(0).view(), frame * kFrameNs)) << frame;
@@ -443,7 +446,7 @@ TEST(FollowingTracker, DropsAnUnreportedHypothesisThatNewLimitsExclude) {
   TrackerSettings settings;
   settings.limits.min_probability = 0.99;
   Tracker tracker(settings, std::make_unique<OneEllipseDetector>(found, 0.0));
-  EXPECT_FALSE(tracker.process(Picture(320, 240, 90).view(), 0));
+  EXPECT_FALSE(tracker.process(GrayPicture(320, 240, 90).view(), 0));
   ASSERT_EQ(tracker.state(), TrackerState::kConfirming);
   settings.limits.max_axis_px = 70.0;
   tracker.configure(settings);
@@ -463,7 +466,7 @@ TEST(FollowingTracker, ADetectionHasItsOwnUncertainty) {
     ASSERT_TRUE(target) << frame;
   }
   ASSERT_EQ(tracker.state(), TrackerState::kFollowing);
-  const auto target = tracker.process(Picture(320, 240, 90).view(), frame * kFrameNs);
+  const auto target = tracker.process(GrayPicture(320, 240, 90).view(), frame * kFrameNs);
   ASSERT_TRUE(target);
   EXPECT_EQ(target->ellipse, found.ellipse);
   const RingUncertainty expected = expected_uncertainty(found.ellipse, 320, 240, kPixelError);
@@ -474,7 +477,7 @@ TEST(FollowingTracker, ADetectionHasItsOwnUncertainty) {
 bool is_found_again(double probability, double shift_px, int lost_frames) {
   Detection found = support::detection_at(160.0, 120.0, 40.0);
   Tracker tracker({}, std::make_unique<OneEllipseDetector>(found));
-  const Picture picture(320, 240, 90);
+  const GrayPicture picture(320, 240, 90);
   int frame = 0;
   const auto process = [&] { return tracker.process(picture.view(), frame++ * kFrameNs); };
   found.probability = 0.99;
@@ -505,8 +508,8 @@ TEST(FollowingTracker, DropsTargetsThatAreNoLongerEllipses) {
   for (int frame = 0; frame < 30; ++frame) {
     ASSERT_TRUE(tracker.process(film.at(0).view(), frame * kFrameNs)) << frame;
   }
-  Picture hexagon = film.empty();
-  const Picture paint = film.at(0);
+  GrayPicture hexagon = film.empty();
+  const GrayPicture paint = film.at(0);
   const Eigen::Matrix3d to_disc = image_from_pad(disc).inverse();
   for (int y = 0; y < hexagon.height; ++y) {
     for (int x = 0; x < hexagon.width; ++x) {
@@ -622,10 +625,10 @@ TEST(FollowingTracker, SwitchesFromADiscOrASmallerRingToThePad) {
   const Ellipse lone{60.0, 60.0, 34.0, 30.0, 0.0};
   const Ellipse pad{220.0, 150.0, 44.0, 38.0, 0.2};
   const Ellipse small_ring{60.0, 60.0, 20.0, 17.0, 0.0};
-  const Picture with_disc = rendered(disc, lone);
-  const Picture with_ring = rendered(plain_ring(), small_ring);
+  const GrayPicture with_disc = rendered(disc, lone);
+  const GrayPicture with_ring = rendered(plain_ring(), small_ring);
   for (const auto& [before, wrong] : {std::pair{with_disc, lone}, {with_ring, small_ring}}) {
-    const Picture after = both(before, rendered(plain_ring(), pad));
+    const GrayPicture after = both(before, rendered(plain_ring(), pad));
     Tracker tracker;
     for (int frame = 0; frame < 20; ++frame) {
       const auto target = tracker.process(before.view(), frame * kFrameNs);
@@ -652,8 +655,8 @@ TEST(FollowingTracker, SwitchesFromAReflectionToThePupilAroundIt) {
   dark.pad.paint_level = 30.0;
   const Ellipse reflection{140.0, 110.0, 16.0, 15.0, 0.0};
   const Ellipse pupil{165.0, 118.0, 60.0, 56.0, 0.2};
-  const Picture closed = rendered(lit, reflection);
-  Picture open = rendered(dark, pupil);
+  const GrayPicture closed = rendered(lit, reflection);
+  GrayPicture open = rendered(dark, pupil);
   for (int y = 0; y < open.height; ++y) {
     for (int x = 0; x < open.width; ++x) {
       if (sampson_distance(reflection, {x, y}) < 0.0) open.at(x, y) = 240;
@@ -678,12 +681,12 @@ TEST(FollowingTracker, StaysOnASmallTargetBesideALargerDisc) {
     for (const double radius : {14.0, 18.0, 22.0, 26.0}) {
       for (const double other : {26.0, 40.0, 60.0}) {
         const Ellipse truth{70.0, 60.0, radius, 0.85 * radius, 0.2};
-        const Picture before = rendered(small, truth);
-        const Picture after =
+        const GrayPicture before = rendered(small, truth);
+        const GrayPicture after =
             both(before, rendered(disc, {220.0, 150.0, other, 0.85 * other, 0.1}));
         Tracker tracker;
         for (int frame = 0; frame < 40; ++frame) {
-          const Picture& picture = frame < 20 ? before : after;
+          const GrayPicture& picture = frame < 20 ? before : after;
           const auto target = tracker.process(picture.view(), frame * kFrameNs);
           ASSERT_TRUE(target);
           EXPECT_GT(iou_inside(target->ellipse, truth, 320, 240), 0.9)
@@ -695,7 +698,7 @@ TEST(FollowingTracker, StaysOnASmallTargetBesideALargerDisc) {
 }
 
 TEST(FollowingTracker, ReportsCandidatesInEveryFrameOnRequest) {
-  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 60.0, 50.0, 0.2});
+  const GrayPicture picture = rendered(plain_ring(), {160.0, 120.0, 60.0, 50.0, 0.2});
   for (const bool is_wanted : {false, true}) {
     TrackerSettings settings;
     settings.wants_candidates = is_wanted;

@@ -10,12 +10,11 @@
 #include "core/scene/catalog.hpp"
 #include "core/scene/renderer.hpp"
 #include "core/tracking/tracker.hpp"
+#include "tests/support/chi_square.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
 namespace {
-
-constexpr double kChiSquare5 = 11.0705;  // 95 % of a chi-square distribution of 5 degrees
 
 struct Shares {
   int frames = 0;
@@ -39,7 +38,7 @@ double squared_error(const Target& target, const Ellipse& truth) {
 // Counts the frames in which the target is tracked.
 Shares shares_in(const Scene& scene, int frames) {
   SceneRenderer renderer(scene);
-  support::Picture picture(640, 360);
+  support::GrayPicture picture(640, 360);
   Tracker tracker;
   Shares shares;
   for (int i = 0; i < frames; ++i) {
@@ -48,7 +47,7 @@ Shares shares_in(const Scene& scene, int frames) {
     const auto target = tracker.process(picture.view(), i * 1'000'000'000LL / 30);
     if (!target || target->state != TargetState::kTracked || !truth.outer_edge) continue;
     ++shares.frames;
-    shares.inside += squared_error(*target, *truth.outer_edge) <= kChiSquare5 ? 1 : 0;
+    shares.inside += squared_error(*target, *truth.outer_edge) <= support::kChiSquare5 ? 1 : 0;
   }
   return shares;
 }
@@ -87,7 +86,7 @@ TEST(Uncertainty, ContainsTheTruthInAcceleratedMotion) {
 // The uncertainty is not simply too large: errors twice as large would exceed it.
 TEST(Uncertainty, MatchesTheErrors) {
   SceneRenderer renderer(scene_by_name("oblique", 31));
-  support::Picture picture(640, 360);
+  support::GrayPicture picture(640, 360);
   Tracker tracker;
   double sum = 0.0;
   int frames = 0;

@@ -39,24 +39,24 @@ TEST(LiveSecurity, TokensAreRandomAndComparedCompletely) {
   EXPECT_FALSE(live::is_same_secret("", token));
 }
 
-std::int64_t now_us = 0;
+std::int64_t rate_now_us = 0;
 
 TEST(LiveSecurity, RateLimiterRefillsWithTime) {
-  now_us = 5'000'000;
-  live::RateLimiter allowance(100.0, 300.0, [] { return now_us; });
+  rate_now_us = 5'000'000;
+  live::RateLimiter allowance(100.0, 300.0, [] { return rate_now_us; });
   const auto taken = [&] {
     int count = 0;
     while (allowance.take()) ++count;
     return count;
   };
   EXPECT_EQ(taken(), 300);
-  now_us += 9'000;
+  rate_now_us += 9'000;
   EXPECT_EQ(taken(), 0);
-  now_us += 1'001;
+  rate_now_us += 1'001;
   EXPECT_EQ(taken(), 1);
-  now_us += 500'000;
+  rate_now_us += 500'000;
   EXPECT_NEAR(taken(), 50, 1);
-  now_us += 60'000'000;  // not above the bucket's capacity
+  rate_now_us += 60'000'000;  // not above the bucket's capacity
   EXPECT_EQ(taken(), 300);
 }
 

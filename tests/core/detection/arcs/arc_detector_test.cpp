@@ -16,57 +16,38 @@
 #include "core/scene/catalog.hpp"
 #include "core/scene/polygon.hpp"
 #include "core/scene/random.hpp"
+#include "tests/support/finding.hpp"
 #include "tests/support/picture.hpp"
 
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::best_iou;
+using support::detecting;
+using support::GrayPicture;
+using support::plain_disc;
 using support::plain_ring;
 using support::rendered;
 
-Thresholds detecting() {
-  Thresholds thresholds;
-  const ArcDetector detector;
-  thresholds.contour_overlap = detector.detecting_overlaps().contour;
-  thresholds.ellipse_overlap = detector.detecting_overlaps().ellipse;
-  return thresholds;
-}
-
-double best_iou(const Picture& picture, const Ellipse& truth, const Thresholds& thresholds) {
+bool finds_nothing(const GrayPicture& picture) {
   ArcDetector detector;
-  double best = 0.0;
-  for (const Detection& d : detector.detect(picture.view(), thresholds)) {
-    best = std::max(best, iou_inside(d.ellipse, truth, picture.width, picture.height));
-  }
-  return best;
-}
-
-Scene disc() {
-  Scene scene = plain_ring();
-  scene.pad.pattern = Pattern::kDisc;
-  return scene;
-}
-
-bool finds_nothing(const Picture& picture) {
-  ArcDetector detector;
-  return detector.detect(picture.view(), detecting()).empty();
+  return detector.detect(picture.view(), detecting<ArcDetector>()).empty();
 }
 
 TEST(ArcDetector, FindsRingsOfEitherPolarity) {
   const Ellipse truth{160.2, 119.7, 70.0, 45.0, 0.6};
   Scene scene = plain_ring();
-  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+  EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.97);
   std::swap(scene.pad.paint_level, scene.ground.level);
-  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.97);
+  EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.97);
 }
 
 TEST(ArcDetector, FindsABallBrighterThanTheGroundAboveAndDarkerBelow) {
   const Ellipse truth{160.3, 120.6, 50.0, 50.0, 0.0};
-  const Picture ball = support::lit_ball(truth, 320, 240);
-  EXPECT_GT(best_iou(ball, truth, detecting()), 0.97);
+  const GrayPicture ball = support::lit_ball(truth, 320, 240);
+  EXPECT_GT(best_iou<ArcDetector>(ball, truth, detecting<ArcDetector>()), 0.97);
   ArcDetector detector;
-  const auto odds = detector.log_odds_of({ball.view()}, truth, detecting());
+  const auto odds = detector.log_odds_of({ball.view()}, truth, detecting<ArcDetector>());
   ASSERT_TRUE(odds);
   EXPECT_GT(*odds, 0.0);
 }
@@ -74,11 +55,12 @@ TEST(ArcDetector, FindsABallBrighterThanTheGroundAboveAndDarkerBelow) {
 // An ellipse along the edge of one half and the shading inside the other is accepted, but
 // uncertain. It must not exclude the right one.
 TEST(ArcDetector, FindsABallBesideAnUncertainFitToItsHalf) {
-  Thresholds thresholds = detecting();
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   for (int x = 0; x < 60; ++x) {
     const Ellipse truth{130.3 + x, 120.6, 50.0, 50.0, 0.0};
-    EXPECT_GT(best_iou(support::lit_ball(truth, 320, 240), truth, thresholds), 0.99) << x;
+    EXPECT_GT(best_iou<ArcDetector>(support::lit_ball(truth, 320, 240), truth, thresholds), 0.99)
+        << x;
   }
 }
 
@@ -88,7 +70,7 @@ TEST(ArcDetector, MeasuresADoubtfulOutlineWithEdgesOfBothPolarities) {
   constexpr double kDash = 18.0;
   constexpr double kGap = 10.0;
   const Ellipse truth{160.3, 120.6, 60.0, 60.0, 0.0};
-  Picture picture(320, 240);
+  GrayPicture picture(320, 240);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const double from_centre = std::hypot(x - truth.cx, y - truth.cy);
@@ -99,7 +81,7 @@ TEST(ArcDetector, MeasuresADoubtfulOutlineWithEdgesOfBothPolarities) {
       picture.at(x, y) = static_cast<std::uint8_t>(ground + covered * (120.0 - ground));
     }
   }
-  Thresholds thresholds = detecting();
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
   ArcDetector detector;
   const auto found = detector.detect({picture.view()}, thresholds);
@@ -115,7 +97,7 @@ TEST(ArcDetector, FindsASmallDiscAmongManyLongerArcs) {
   constexpr double kContrast = 70.0;
   for (int n = 0; n < 5; ++n) {
     const Ellipse truth{53.4 + kCell * 2 * n, 81.2 + kCell * n, 12.0, 12.0, 0.0};
-    Picture picture(12 * kCell, 9 * kCell);
+    GrayPicture picture(12 * kCell, 9 * kCell);
     Random noise(1);
     for (int y = 0; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
@@ -129,7 +111,7 @@ TEST(ArcDetector, FindsASmallDiscAmongManyLongerArcs) {
       }
     }
     ArcDetector detector;
-    const auto target = select_target(detector.detect(picture.view(), detecting()));
+    const auto target = select_target(detector.detect(picture.view(), detecting<ArcDetector>()));
     ASSERT_TRUE(target) << n;
     EXPECT_GT(iou_inside(target->ellipse, truth, picture.width, picture.height), 0.9) << n;
   }
@@ -138,18 +120,18 @@ TEST(ArcDetector, FindsASmallDiscAmongManyLongerArcs) {
 // The slope of the ground is not noise, although its gradient exceeds that of the noise.
 TEST(ArcDetector, FindsASoftFaintDiscInAShadedPicture) {
   const Ellipse truth{160.2, 119.7, 50.0, 42.0, 0.6};
-  Scene scene = disc();
+  Scene scene = plain_disc();
   scene.pad.paint_level = 60.0;
   scene.ground.level = 80.0;
   scene.sensor.blur_px = 4.0;
   scene.sensor.read_noise = 1.0;
-  Picture picture = rendered(scene, truth);
+  GrayPicture picture = rendered(scene, truth);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       picture.at(x, y) = static_cast<std::uint8_t>(picture.at(x, y) + x / 2 - y / 8);
     }
   }
-  EXPECT_GT(best_iou(picture, truth, detecting()), 0.95);
+  EXPECT_GT(best_iou<ArcDetector>(picture, truth, detecting<ArcDetector>()), 0.95);
 }
 
 // Nearly all pixels are saturated, and most of the others are edges.
@@ -157,7 +139,7 @@ TEST(ArcDetector, FindsADrawnDiscInBlackAndWhite) {
   for (const double radius : {20.0, 40.0, 100.0}) {
     for (const int inside : {0, 255}) {
       const Ellipse truth{160.2, 119.7, radius, 0.7 * radius, 0.6};
-      Picture picture(320, 240);
+      GrayPicture picture(320, 240);
       for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
           const double covered = std::clamp(0.5 - sampson_distance(truth, {x, y}), 0.0, 1.0);
@@ -165,7 +147,8 @@ TEST(ArcDetector, FindsADrawnDiscInBlackAndWhite) {
               std::lround(covered * inside + (1.0 - covered) * (255 - inside)));
         }
       }
-      EXPECT_GT(best_iou(picture, truth, detecting()), 0.97) << radius << ", " << inside;
+      EXPECT_GT(best_iou<ArcDetector>(picture, truth, detecting<ArcDetector>()), 0.97)
+          << radius << ", " << inside;
     }
   }
 }
@@ -173,14 +156,14 @@ TEST(ArcDetector, FindsADrawnDiscInBlackAndWhite) {
 // The ring is 4 px wide on its long sides and 8 px at its ends. The correction for thin rings does
 // not apply.
 TEST(ArcDetector, IsExactOnAFlatRingFoundInAReducedPicture) {
-  Picture picture(640, 360);
+  GrayPicture picture(640, 360);
   ArcDetector detector;
   for (const std::uint64_t seed : {6U, 8U, 9U, 42U}) {
     SceneRenderer renderer(scene_by_name("oblique", seed));
     for (std::uint64_t frame = 0; frame < 15; ++frame) {
       const Truth truth =
           renderer.render(static_cast<double>(frame) / 30.0, frame, picture.writable());
-      const auto target = select_target(detector.detect(picture.view(), detecting()));
+      const auto target = select_target(detector.detect(picture.view(), detecting<ArcDetector>()));
       ASSERT_TRUE(target);
       EXPECT_LT(max_difference_px(target->ellipse, *truth.outer_edge), 0.1) << seed << " " << frame;
     }
@@ -190,8 +173,8 @@ TEST(ArcDetector, IsExactOnAFlatRingFoundInAReducedPicture) {
 const Ellipse kNoisyDisc{160.2, 119.7, 50.0, 42.0, 0.6};
 
 // At the full size the noise hides the edge.
-Picture noisy_disc(std::uint64_t seed) {
-  Scene scene = disc();
+GrayPicture noisy_disc(std::uint64_t seed) {
+  Scene scene = plain_disc();
   scene.seed = seed;
   scene.pad.paint_level = 90.0;
   scene.ground.level = 125.0;
@@ -202,14 +185,15 @@ Picture noisy_disc(std::uint64_t seed) {
 
 TEST(ArcDetector, FindsADiscVisibleOnlyInReducedPictures) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
-    EXPECT_GT(best_iou(noisy_disc(seed), kNoisyDisc, detecting()), 0.9) << seed;
+    EXPECT_GT(best_iou<ArcDetector>(noisy_disc(seed), kNoisyDisc, detecting<ArcDetector>()), 0.9)
+        << seed;
   }
 }
 
 TEST(ArcDetector, JudgesAnOutlineVisibleOnlyInReducedPictures) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     ArcDetector detector;
-    const Picture picture = noisy_disc(seed);
+    const GrayPicture picture = noisy_disc(seed);
     EXPECT_GT(detector.log_odds_of(picture.view(), kNoisyDisc, {}).value(), 0.0) << seed;
     const Ellipse beside = translated(kNoisyDisc, 30.0, 0.0);
     EXPECT_LT(detector.log_odds_of(picture.view(), beside, {}).value(), -1.0) << seed;
@@ -220,7 +204,7 @@ TEST(ArcDetector, JudgesOnlyTheGivenOutlineAtAnySize) {
   for (const double radius : {9.0, 30.0, 70.0, 100.0}) {
     SCOPED_TRACE(radius);
     const Ellipse truth{160.2, 119.7, radius, 0.7 * radius, 0.6};
-    const Picture picture = rendered(plain_ring(), truth);
+    const GrayPicture picture = rendered(plain_ring(), truth);
     ArcDetector detector;
     EXPECT_GT(detector.log_odds_of(picture.view(), truth, {}).value(), 2.0);
     EXPECT_GT(detector.log_odds_of(picture.view(), translated(truth, 1.0, 0.5), {}).value(), 2.0);
@@ -238,7 +222,7 @@ TEST(ArcDetector, JudgesAnOutlineOfEitherPolarity) {
     scene.pad.pattern = Pattern::kDisc;
     scene.ground.level = 120.0;
     scene.pad.paint_level = paint;
-    const Picture picture = rendered(scene, truth);
+    const GrayPicture picture = rendered(scene, truth);
     ArcDetector detector;
     EXPECT_GT(detector.log_odds_of(picture.view(), truth, {}).value(), 2.0) << paint;
   }
@@ -250,22 +234,23 @@ TEST(ArcDetector, FindsPartlyOccludedRings) {
   scene.pad.gaps_rad = {0.3, 2.5};
   scene.pad.gap_width_rad = 0.5;
   scene.bars = {support::bar_px({60.0, 0.0}, {220.0, 239.0}, 14.0, 90.0)};
-  EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.95);
+  EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.95);
 }
 
 TEST(ArcDetector, FindsRingsCutByTheFrame) {
   const Ellipse truth{20.0, 119.7, 80.0, 60.0, 0.2};
-  EXPECT_GT(best_iou(rendered(plain_ring(), truth), truth, detecting()), 0.95);
+  EXPECT_GT(best_iou<ArcDetector>(rendered(plain_ring(), truth), truth, detecting<ArcDetector>()),
+            0.95);
 }
 
 // Its nearly parallel sides may as well be those of a blade of grass.
 TEST(ArcDetector, IsLessSureOfALongEllipseWhoseEndsAreOutside) {
   const auto log_odds = [](double cy) {
     const Ellipse e{160.3, cy, 240.0, 80.0, 0.5 * std::numbers::pi};
-    const Picture picture = rendered(disc(), e);
+    const GrayPicture picture = rendered(plain_disc(), e);
     ArcDetector detector;
-    EXPECT_GT(best_iou(picture, e, detecting()), 0.97) << cy;
-    return detector.log_odds_of({picture.view()}, e, detecting()).value_or(-9.0);
+    EXPECT_GT(best_iou<ArcDetector>(picture, e, detecting<ArcDetector>()), 0.97) << cy;
+    return detector.log_odds_of({picture.view()}, e, detecting<ArcDetector>()).value_or(-9.0);
   };
   EXPECT_LT(log_odds(119.6), log_odds(229.6) - 2.0);
 }
@@ -274,8 +259,8 @@ TEST(ArcDetector, IsLessSureOfALongEllipseWhoseEndsAreOutside) {
 TEST(ArcDetector, FindsTheOuterEdgeInASmallPicture) {
   const Ellipse truth{45.0, 45.0, 31.5, 25.2, 0.3};
   ArcDetector detector;
-  const Picture picture = rendered(plain_ring(), truth, 90, 90);
-  const auto target = select_target(detector.detect(picture.view(), detecting()));
+  const GrayPicture picture = rendered(plain_ring(), truth, 90, 90);
+  const auto target = select_target(detector.detect(picture.view(), detecting<ArcDetector>()));
   ASSERT_TRUE(target);
   EXPECT_NEAR(target->ellipse.semi_major, truth.semi_major, 0.3);
 }
@@ -285,14 +270,15 @@ TEST(ArcDetector, FindsCrumpledRings) {
   for (const double deviation : {0.01, 0.02, 0.03}) {
     Scene scene = plain_ring();
     scene.pad.crumple = deviation;
-    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.93) << deviation;
+    EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.93)
+        << deviation;
   }
 }
 
 // Dark discs in rows, each at a different sub-pixel position.
-Picture board_of_discs(int columns, int rows, double radius) {
+GrayPicture board_of_discs(int columns, int rows, double radius) {
   const int pitch = static_cast<int>(3.0 * radius);
-  Picture picture(columns * pitch, rows * pitch);
+  GrayPicture picture(columns * pitch, rows * pitch);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const int column = x / pitch;
@@ -307,8 +293,8 @@ Picture board_of_discs(int columns, int rows, double radius) {
 }
 
 TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
-  const Picture picture = board_of_discs(25, 16, 10.0);
-  Thresholds thresholds = detecting();
+  const GrayPicture picture = board_of_discs(25, 16, 10.0);
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.wants_all = true;
   ArcDetector detector;
   const auto found = detector.detect(picture.view(), thresholds);
@@ -318,9 +304,9 @@ TEST(ArcDetector, FindsAllOfFourHundredDiscs) {
 
 // Each disc has a single arc; at most 50 such ellipses are accepted at each of the three sizes.
 TEST(ArcDetector, StopsAfterEnoughTargets) {
-  const Picture picture = board_of_discs(25, 16, 10.0);
+  const GrayPicture picture = board_of_discs(25, 16, 10.0);
   ArcDetector detector;
-  const auto found = detector.detect(picture.view(), detecting());
+  const auto found = detector.detect(picture.view(), detecting<ArcDetector>());
   EXPECT_GE(found.size(), 50U);
   EXPECT_LE(found.size(), 150U);
   for (const Detection& disc : found) EXPECT_NEAR(disc.ellipse.semi_major, 10.0, 0.1);
@@ -328,19 +314,19 @@ TEST(ArcDetector, StopsAfterEnoughTargets) {
 
 TEST(ArcDetector, FindsSmallDiscsWithASmallerMinContourSize) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
-  const Picture picture = rendered(disc(), truth, 120, 100);
-  EXPECT_EQ(best_iou(picture, truth, detecting()), 0.0);
-  Thresholds thresholds = detecting();
+  const GrayPicture picture = rendered(plain_disc(), truth, 120, 100);
+  EXPECT_EQ(best_iou<ArcDetector>(picture, truth, detecting<ArcDetector>()), 0.0);
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.min_contour_size = 20;
-  EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
+  EXPECT_GT(best_iou<ArcDetector>(picture, truth, thresholds), 0.85);
 }
 
 TEST(ArcDetector, FindsSmallDiscsWhenAllAreWanted) {
   const Ellipse truth{60.3, 50.2, 6.5, 5.5, 0.3};
-  const Picture picture = rendered(disc(), truth, 120, 100);
-  Thresholds thresholds = detecting();
+  const GrayPicture picture = rendered(plain_disc(), truth, 120, 100);
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.wants_all = true;
-  EXPECT_GT(best_iou(picture, truth, thresholds), 0.85);
+  EXPECT_GT(best_iou<ArcDetector>(picture, truth, thresholds), 0.85);
   ArcDetector detector;
   const auto found = detector.detect(picture.view(), thresholds);
   ASSERT_FALSE(found.empty());
@@ -355,7 +341,7 @@ TEST(ArcDetector, FindsSmallDiscsWhenAllAreWanted) {
 
 TEST(ArcDetector, FindsNearlyAllSmallTargetsUnderNoise) {
   Random random(11);
-  Thresholds thresholds = detecting();
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.min_contour_size = 20;
   for (const Pattern pattern : {Pattern::kDisc, Pattern::kRing}) {
     int found = 0;
@@ -367,16 +353,18 @@ TEST(ArcDetector, FindsNearlyAllSmallTargetsUnderNoise) {
       scene.sensor.read_noise = 3.0;
       scene.seed = i;
       const Ellipse truth = support::random_ellipse(random, 60, 50, 6.0);
-      found += best_iou(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8 ? 1 : 0;
+      found += best_iou<ArcDetector>(rendered(scene, truth, 120, 100, i), truth, thresholds) >= 0.8
+                   ? 1
+                   : 0;
     }
     EXPECT_GE(found, 42) << static_cast<int>(pattern);
   }
 }
 
 // The affine image of a regular polygon with the area of an ellipse, blurred.
-Picture polygon(const Ellipse& e, int corners, double blur_px) {
+GrayPicture polygon(const Ellipse& e, int corners, double blur_px) {
   constexpr int kGround = 60;
-  Picture picture(320, 240);
+  GrayPicture picture(320, 240);
   cv::Mat tile(picture.height, picture.width, CV_32F, cv::Scalar(kGround));
   std::vector<cv::Point> points;
   const double turn = kTwoPi / corners;
@@ -396,8 +384,8 @@ Picture polygon(const Ellipse& e, int corners, double blur_px) {
 }
 
 // Of the candidate nearest to an ellipse.
-double corners_of(const Picture& picture, const Ellipse& e) {
-  Thresholds thresholds = detecting();
+double corners_of(const GrayPicture& picture, const Ellipse& e) {
+  Thresholds thresholds = detecting<ArcDetector>();
   thresholds.min_probability = 1.0;  // no candidate is accepted, so that all are measured
   thresholds.wants_all = true;
   ArcDetector detector;
@@ -431,12 +419,12 @@ TEST(ArcDetector, MeasuresTheTurnInCorners) {
 
 TEST(ArcDetector, AppliesEachThreshold) {
   const Ellipse truth{160.0, 120.0, 60.0, 30.0, 0.2};
-  const Picture picture = rendered(disc(), truth);
-  ASSERT_GT(best_iou(picture, truth, detecting()), 0.95);
+  const GrayPicture picture = rendered(plain_disc(), truth);
+  ASSERT_GT(best_iou<ArcDetector>(picture, truth, detecting<ArcDetector>()), 0.95);
   const auto with = [&](auto change) {
-    Thresholds thresholds = detecting();
+    Thresholds thresholds = detecting<ArcDetector>();
     change(thresholds);
-    return best_iou(picture, truth, thresholds);
+    return best_iou<ArcDetector>(picture, truth, thresholds);
   };
   EXPECT_EQ(with([](Thresholds& t) { t.min_axis_px = 62.0; }), 0.0);
   EXPECT_EQ(with([](Thresholds& t) { t.max_axis_px = 118.0; }), 0.0);
@@ -454,11 +442,11 @@ TEST(ArcDetector, IsUnbiasedAndAccurate) {
   for (int i = 0; i < 60; ++i) {
     const double radius = 10.0 * std::pow(12.0, random.unit());
     const Ellipse truth = support::random_ellipse(random, 200, 180, radius);
-    Scene scene = disc();
+    Scene scene = plain_disc();
     scene.sensor.read_noise = 3.0;
     scene.seed = static_cast<std::uint64_t>(i);
-    const Picture picture = rendered(scene, truth, 400, 360);
-    const auto target = select_target(detector.detect(picture.view(), detecting()));
+    const GrayPicture picture = rendered(scene, truth, 400, 360);
+    const auto target = select_target(detector.detect(picture.view(), detecting<ArcDetector>()));
     ASSERT_TRUE(target) << truth.semi_major;
     centre.push_back((target->ellipse.center() - truth.center()).norm());
     axes.push_back(target->ellipse.semi_major - truth.semi_major);
@@ -477,19 +465,20 @@ TEST(ArcDetector, AdaptsToTheLight) {
   for (const double gain : {1.0, 0.4, 0.14}) {
     Scene scene = plain_ring();
     scene.sensor.gain = gain;
-    EXPECT_GT(best_iou(rendered(scene, truth), truth, detecting()), 0.9) << gain;
+    EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.9)
+        << gain;
   }
 }
 
 TEST(ArcDetector, FindsNothingInAFlatPicture) {
   for (const int level : {0, 128, 255}) {
-    EXPECT_TRUE(finds_nothing(Picture(200, 150, static_cast<std::uint8_t>(level)))) << level;
+    EXPECT_TRUE(finds_nothing(GrayPicture(200, 150, static_cast<std::uint8_t>(level)))) << level;
   }
 }
 
 TEST(ArcDetector, FindsNothingInNoise) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    Picture picture(320, 240);
+    GrayPicture picture(320, 240);
     Random random(seed);
     for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
     EXPECT_TRUE(finds_nothing(picture)) << seed;
@@ -498,7 +487,7 @@ TEST(ArcDetector, FindsNothingInNoise) {
 
 TEST(ArcDetector, FindsNothingOnACheckerboard) {
   for (const int square : {1, 2, 7, 20, 33}) {
-    Picture picture(320, 240);
+    GrayPicture picture(320, 240);
     for (int y = 0; y < 240; ++y) {
       for (int x = 0; x < 320; ++x) {
         picture.at(x, y) = ((x / square + y / square) & 1) != 0 ? 255 : 0;
@@ -516,19 +505,21 @@ TEST(ArcDetector, SurvivesAnySizeAndStride) {
       const int stride = width + 7;
       std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * height));
       for (std::uint8_t& level : pixels) level = random.below(8) == 0 ? 255 : 0;
-      EXPECT_LE(detector.detect({pixels.data(), width, height, stride}, detecting()).size(), 400U);
+      EXPECT_LE(
+          detector.detect({pixels.data(), width, height, stride}, detecting<ArcDetector>()).size(),
+          400U);
     }
   }
-  EXPECT_TRUE(detector.detect({}, detecting()).empty());
+  EXPECT_TRUE(detector.detect({}, detecting<ArcDetector>()).empty());
 }
 
 TEST(ArcDetector, IsDeterministic) {
-  const Picture picture = rendered(plain_ring(), {160.0, 120.0, 70.0, 45.0, 0.6});
+  const GrayPicture picture = rendered(plain_ring(), {160.0, 120.0, 70.0, 45.0, 0.6});
   ArcDetector used;
-  (void)used.detect(Picture(500, 300, 90).view(), detecting());
-  const auto again = used.detect(picture.view(), detecting());
+  (void)used.detect(GrayPicture(500, 300, 90).view(), detecting<ArcDetector>());
+  const auto again = used.detect(picture.view(), detecting<ArcDetector>());
   ArcDetector fresh;
-  const auto first = fresh.detect(picture.view(), detecting());
+  const auto first = fresh.detect(picture.view(), detecting<ArcDetector>());
   ASSERT_EQ(first.size(), again.size());
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].ellipse, again[i].ellipse);
 }
@@ -537,11 +528,11 @@ TEST(ArcDetector, GivesTheSameWithEachInstructionSet) {
   if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
   for (const double radius : {9.0, 30.0, 90.0}) {
     const Ellipse truth{160.0, 120.0, radius * 1.2, radius / 1.2, 0.6};
-    const Picture picture = rendered(plain_ring(), truth);
+    const GrayPicture picture = rendered(plain_ring(), truth);
     ArcDetector baseline(Simd::kBaseline);
     ArcDetector best(best_simd());
-    const auto a = baseline.detect(picture.view(), detecting());
-    const auto b = best.detect(picture.view(), detecting());
+    const auto a = baseline.detect(picture.view(), detecting<ArcDetector>());
+    const auto b = best.detect(picture.view(), detecting<ArcDetector>());
     ASSERT_EQ(a.size(), b.size());
     ASSERT_FALSE(a.empty()) << radius;
     for (std::size_t i = 0; i < a.size(); ++i) {

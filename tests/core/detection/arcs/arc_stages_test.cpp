@@ -22,12 +22,12 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
-Picture random_picture(int width, int height, std::uint64_t seed) {
-  Picture picture(width, height);
+GrayPicture random_picture(int width, int height, std::uint64_t seed) {
+  GrayPicture picture(width, height);
   Random random(seed);
   for (std::uint8_t& level : picture.pixels) level = static_cast<std::uint8_t>(random.below(256));
   return picture;
@@ -43,7 +43,7 @@ Scene disc(double paint = 55.0) {
 }
 
 TEST(GradientMap, EqualsTheConvolution) {
-  const Picture picture = random_picture(61, 23, 3);
+  const GrayPicture picture = random_picture(61, 23, 3);
   constexpr int kSmooth[5] = {1, 4, 6, 4, 1};
   constexpr int kDifference[5] = {-1, -2, 0, 2, 1};
   GradientMap map;
@@ -75,7 +75,7 @@ TEST(GradientMap, EqualsTheConvolution) {
 TEST(GradientMap, IsTheSameWithEachInstructionSet) {
   if (best_simd() == Simd::kBaseline) GTEST_SKIP() << "this processor has one kind only";
   for (const int width : {1, 5, 31, 32, 33, 97, 321}) {
-    const Picture picture = rendered(disc(), {width / 2.0, 20.0, 15.0, 10.0, 0.4}, width, 41);
+    const GrayPicture picture = rendered(disc(), {width / 2.0, 20.0, 15.0, 10.0, 0.4}, width, 41);
     GradientMap baseline(Simd::kBaseline);
     GradientMap best(best_simd());
     baseline.compute(picture.view());
@@ -95,7 +95,7 @@ TEST(GradientMap, MeasuresTheNoise) {
     Scene scene = plain_ring();
     scene.sensor.read_noise = noise;
     scene.ground.level = 128.0;
-    const Picture picture = rendered(scene, {-90.0, 0.0, 5.0, 5.0, 0.0}, 320, 240);
+    const GrayPicture picture = rendered(scene, {-90.0, 0.0, 5.0, 5.0, 0.0}, 320, 240);
     GradientMap map;
     map.compute(picture.view());
     EXPECT_NEAR(map.noise() / (26.5 * noise), 1.0, 0.15) << noise;
@@ -106,7 +106,7 @@ TEST(GradientMap, MeasuresTheNoise) {
 
 // Rounding turns slow shading into steps of one grey level.
 TEST(GradientMap, HasNoSeedsOnAStepOfOneGreyLevel) {
-  Picture picture(64, 64, 100);
+  GrayPicture picture(64, 64, 100);
   for (int y = 0; y < 64; ++y) {
     for (int x = 32; x < 64; ++x) picture.at(x, y) = 101;
   }
@@ -121,7 +121,7 @@ TEST(GradientMap, HasNoSeedsOnAStepOfOneGreyLevel) {
 }
 
 TEST(GradientMap, UsesGivenThresholds) {
-  const Picture picture = random_picture(40, 40, 1);
+  const GrayPicture picture = random_picture(40, 40, 1);
   GradientMap map;
   const auto expect = [&](EdgeThresholds given, double low, double high) {
     map.compute(picture.view(), given);
@@ -136,7 +136,7 @@ TEST(GradientMap, UsesGivenThresholds) {
 TEST(GradientMap, HasNoMaximaNearTheBorderOrInTinyPictures) {
   for (const int width : {1, 2, 6, 7, 40}) {
     for (const int height : {1, 2, 6, 7, 40}) {
-      const Picture picture = random_picture(width, height, 5);
+      const GrayPicture picture = random_picture(width, height, 5);
       GradientMap map;
       map.compute(picture.view(), {0.1, 0.1});
       for (int y = 0; y < height; ++y) {
@@ -152,7 +152,7 @@ TEST(GradientMap, HasNoMaximaNearTheBorderOrInTinyPictures) {
 }
 
 TEST(GradientMap, HasNoBlocksOfAnEarlierPicture) {
-  const Picture picture = random_picture(40, 40, 5);
+  const GrayPicture picture = random_picture(40, 40, 5);
   GradientMap map;
   map.compute(picture.view());
   EXPECT_FALSE(map.blocks().empty());
@@ -161,7 +161,7 @@ TEST(GradientMap, HasNoBlocksOfAnEarlierPicture) {
 }
 
 struct Traced {
-  explicit Traced(const Picture& picture) {
+  explicit Traced(const GrayPicture& picture) {
     map.compute(picture.view());
     chains.trace(map);
     arcs = splitter.split(map, chains);
@@ -183,7 +183,7 @@ TEST(ChainTracer, MakesOneChainOfADisc) {
 
 // A vertical edge whose contrast falls from row to row.
 TEST(ChainTracer, ContinuesBelowTheHighThreshold) {
-  Picture picture(60, 120, 100);
+  GrayPicture picture(60, 120, 100);
   for (int y = 0; y < 120; ++y) {
     for (int x = 30; x < 60; ++x) picture.at(x, y) = static_cast<std::uint8_t>(220 - y);
   }
@@ -202,7 +202,7 @@ TEST(ChainTracer, ContinuesBelowTheHighThreshold) {
 }
 
 TEST(ChainTracer, BridgesAGapOfOnePixel) {
-  Picture picture(120, 60, 140);
+  GrayPicture picture(120, 60, 140);
   for (int y = 0; y < 60; ++y) {
     for (int x = 60; x < 120; ++x) picture.at(x, y) = 40;
   }
@@ -232,7 +232,7 @@ TEST(ArcSplitter, DeterminesThePolarity) {
 }
 
 TEST(ArcSplitter, CutsAtCorners) {
-  Picture picture(120, 100, 150);
+  GrayPicture picture(120, 100, 150);
   for (int y = 30; y < 70; ++y) {
     for (int x = 30; x < 90; ++x) picture.at(x, y) = 40;
   }
@@ -246,7 +246,7 @@ TEST(ArcSplitter, CutsAtCorners) {
 
 TEST(ArcSplitter, CutsWhereTheCurvatureChangesItsSign) {
   // The upper side of a dark ground is a wave.
-  Picture picture(260, 120, 150);
+  GrayPicture picture(260, 120, 150);
   for (int x = 0; x < 260; ++x) {
     const double edge = 60.0 + 25.0 * std::sin(2.0 * std::numbers::pi * x / 130.0);
     for (int y = 0; y < 120; ++y) {
@@ -326,7 +326,7 @@ TEST(OutlineSamples, TurnInTheIdealPlane) {
 
 TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
   const Ellipse truth{100.3, 80.6, 50.0, 30.0, 0.3};
-  const Picture picture = rendered(disc(), truth, 200, 160);
+  const GrayPicture picture = rendered(disc(), truth, 200, 160);
   Ellipse start = translated(truth, 0.8, -0.7);
   start.semi_major += 0.8;
   const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, {200.0});
@@ -338,7 +338,7 @@ TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
 // Glare on the right half clips the picture, which moves its edges towards the dark disc.
 TEST(PictureRefinement, GivesEdgesBesideSaturatedPixelsLittleWeight) {
   const Ellipse truth{100.3, 80.6, 50.0, 30.0, 0.3};
-  Picture picture = rendered(disc(), truth, 200, 160);
+  GrayPicture picture = rendered(disc(), truth, 200, 160);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       std::uint8_t& level = picture.pixels[static_cast<std::size_t>(y * picture.width + x)];
@@ -357,7 +357,7 @@ TEST(PictureRefinement, FindsTheMeanPositionOfEdgesBlurredByMotion) {
   Scene scene = disc();
   scene.sensor.read_noise = 6.0;
   for (scene.seed = 1; scene.seed <= 20; ++scene.seed) {
-    const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
+    const GrayPicture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
       return rendered(scene, e, 200, 160, std::uint64_t(k));
     });
     const Ellipse start = translated(truth, 0.8, -0.5);
@@ -375,7 +375,7 @@ TEST(PictureRefinement, FindsTheMeanPositionOfEdgesBlurredByMotion) {
 TEST(PictureRefinement, SurvivesMotionBlurAtTheBorder) {
   const Ellipse truth{100.0, 80.0, 92.0, 60.0, 0.0};
   const Scene scene = disc();
-  const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
+  const GrayPicture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
     return rendered(scene, e, 200, 160, std::uint64_t(k));
   });
   const auto refined = refined_on_picture(

@@ -87,7 +87,7 @@ TEST(FoundEllipses, OnlyACertainOneOfTheScaleExcludesAGuess) {
 }
 
 TEST(FoundEllipses, ReportVerdictsToTheTrace) {
-  const support::Picture picture(8, 8);
+  const support::GrayPicture picture(8, 8);
   DetectionTrace trace;
   trace.begin_pass(picture.view(), 1);
   FoundEllipses ellipses;

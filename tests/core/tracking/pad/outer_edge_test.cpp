@@ -14,20 +14,19 @@
 namespace ellipse {
 namespace {
 
-using support::Picture;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
-Scene disc() {
-  Scene scene = plain_ring();
-  scene.pad.pattern = Pattern::kDisc;
+Scene quiet_disc() {
+  Scene scene = support::plain_disc();
   scene.sensor.read_noise = 1.0;
   return scene;
 }
 
 const Eigen::Vector2d kAtRest(0.0, 0.0);
 
-std::optional<FittedEllipse> refined_outer_edge(const Picture& picture,
+std::optional<FittedEllipse> refined_outer_edge(const GrayPicture& picture,
                                                 const PadView& view,
                                                 const PadModel& model,
                                                 const Eigen::Vector2d& motion_px = kAtRest,
@@ -42,7 +41,7 @@ TEST(OuterEdge, IsExactForThickAndThinRings) {
     Scene scene = plain_ring();
     scene.pad.ring_width = ring_width;
     const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
-    const Picture picture = rendered(scene, truth, 260, 260);
+    const GrayPicture picture = rendered(scene, truth, 260, 260);
     const Eigen::Matrix3d view = image_from_pad(truth);
     const auto model = learn_circles(picture.view(), view);
     ASSERT_TRUE(model) << ring_width;
@@ -61,7 +60,7 @@ TEST(OuterEdge, IsExactForThickAndThinRings) {
 
 TEST(OuterEdge, IsNotFoundFarFromThePad) {
   const Ellipse truth{130.3, 129.6, 70.0, 55.0, 0.4};
-  const Picture picture = rendered(plain_ring(), truth, 260, 260);
+  const GrayPicture picture = rendered(plain_ring(), truth, 260, 260);
   const auto model = learn_circles(picture.view(), image_from_pad(truth));
   ASSERT_TRUE(model);
   const Eigen::Matrix3d far_off = image_from_pad(translated(truth, 30.0, 0.0));
@@ -76,7 +75,7 @@ TEST(OuterEdge, IsExactForDefocusedRings) {
     Scene scene = plain_ring();
     scene.sensor.blur_px = blur_px;
     const Ellipse truth{130.3, 129.6, 44.0, 35.0, 0.4};
-    const Picture picture = rendered(scene, truth, 260, 260);
+    const GrayPicture picture = rendered(scene, truth, 260, 260);
     const PadView view(image_from_pad(truth), {});
     const auto model = learn_circles(picture.view(), view);
     ASSERT_TRUE(model) << blur_px;
@@ -93,7 +92,7 @@ TEST(OuterEdge, IsNotSureOfTheSizeOfADefocusedThinRing) {
   scene.pad.ring_width = 0.055;
   scene.sensor.blur_px = 1.6;
   const Ellipse truth{130.3, 129.6, 44.0, 35.0, 0.4};
-  const Picture picture = rendered(scene, truth, 260, 260);
+  const GrayPicture picture = rendered(scene, truth, 260, 260);
   const PadView view(image_from_pad(truth), {});
   const auto model = learn_circles(picture.view(), view);
   ASSERT_TRUE(model);
@@ -111,11 +110,11 @@ TEST(OuterEdge, IsExactForThinRingsInMotion) {
   Scene scene = plain_ring();
   scene.pad.ring_width = 0.12;
   const Ellipse truth{160.0, 120.0, 60.0, 54.0, 0.0};
-  const Picture sharp = rendered(scene, truth, 320, 240);
+  const GrayPicture sharp = rendered(scene, truth, 320, 240);
   const PadView view(image_from_pad(truth), {});
   const auto model = learn_circles(sharp.view(), view);
   ASSERT_TRUE(model);
-  const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
+  const GrayPicture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
     return rendered(scene, e, 320, 240, std::uint64_t(k));
   });
   const auto exact = refined_outer_edge(picture, view, *model, {24.0, 0.0});
@@ -128,9 +127,9 @@ TEST(OuterEdge, IsExactForThinRingsInMotion) {
 }
 
 TEST(OuterEdge, LearnsTheExposureFromTheBlur) {
-  const Scene scene = disc();
+  const Scene scene = quiet_disc();
   const Ellipse truth{160.0, 120.0, 40.0, 36.0, 0.0};
-  const Picture sharp = rendered(scene, truth, 320, 240);
+  const GrayPicture sharp = rendered(scene, truth, 320, 240);
   const PadView view(image_from_pad(truth), {});
   const auto model = learn_circles(sharp.view(), view, 0.0, 0.1);
   ASSERT_TRUE(model);
@@ -139,7 +138,7 @@ TEST(OuterEdge, LearnsTheExposureFromTheBlur) {
   EXPECT_TRUE(edge.refine(sharp.view(), view, *model, 1.0, {24.0, 0.0}, 1.0));
   EXPECT_EQ(edge.squared_exposure(), 0.0);
   edge.restart();
-  const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
+  const GrayPicture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
     return rendered(scene, e, 320, 240, std::uint64_t(k));
   });
   EXPECT_TRUE(edge.refine(picture.view(), view, *model, 1.0, {24.0, 0.0}, 1.0));
@@ -153,14 +152,14 @@ TEST(OuterEdge, LearnsTheExposureFromTheBlur) {
 TEST(OuterEdge, LearnsNothingFromAnEdgeThatIsTooFarAway) {
   Scene scene = plain_ring();
   const Ellipse truth{130.3, 129.6, 20.0, 19.0, 0.4};
-  const Picture sharp = rendered(scene, truth, 260, 260);
+  const GrayPicture sharp = rendered(scene, truth, 260, 260);
   scene.sensor.blur_px = 1.6;
-  const Picture defocused = rendered(scene, truth, 260, 260);
+  const GrayPicture defocused = rendered(scene, truth, 260, 260);
   const PadView view(image_from_pad(truth), {});
   const auto model = learn_circles(sharp.view(), view);
   ASSERT_TRUE(model);
   OuterEdge edge;
-  const auto refine = [&](const Picture& picture, const Ellipse& predicted, double adaptation) {
+  const auto refine = [&](const GrayPicture& picture, const Ellipse& predicted, double adaptation) {
     const PadView at(image_from_pad(predicted), {});
     return edge.refine(picture.view(), at, *model, 1.0, kAtRest, adaptation);
   };
@@ -178,9 +177,9 @@ TEST(OuterEdge, LearnsNothingFromAnEdgeThatIsTooFarAway) {
 
 // Blurred edges may be matched anywhere over the length of the blur, so that the view is off.
 TEST(OuterEdge, MayBeFartherFromThePredictedOneInMotion) {
-  const Scene scene = disc();
+  const Scene scene = quiet_disc();
   const Ellipse truth{160.0, 120.0, 40.0, 36.0, 0.0};
-  const Picture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
+  const GrayPicture picture = support::blurred_by_motion(truth, 12, [&](const Ellipse& e, int k) {
     return rendered(scene, e, 320, 240, std::uint64_t(k));
   });
   Ellipse predicted = truth;

@@ -29,7 +29,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using support::Picture;
+using support::GrayPicture;
 using support::plain_ring;
 using support::rendered;
 
@@ -46,7 +46,7 @@ Scene scene_of(Pattern pattern, bool is_bright = false) {
   return scene;
 }
 
-Picture flat_picture() {
+GrayPicture flat_picture() {
   Scene scene = scene_of(Pattern::kNone);
   return rendered(scene, kPad);
 }
@@ -69,7 +69,7 @@ Ellipse resized(Ellipse e, double factor) {
 
 // The next pixel of a point that rounds to the last column or row would be outside the picture.
 TEST(PadView, HasNoLevelOnTheLastColumnAndRow) {
-  const Picture picture(20, 10, 100);
+  const GrayPicture picture(20, 10, 100);
   const PadView view(Matrix3d::Identity());
   const auto level_at = [&](double x, double y) {
     return view.level_at(picture.view(), {x, y, 1.0});
@@ -92,7 +92,7 @@ class LearnCircles : public testing::TestWithParam<Circles> {};
 
 TEST_P(LearnCircles, FindsAllCirclesInBothPolarities) {
   for (const bool is_bright : {false, true}) {
-    const Picture picture = rendered(scene_of(GetParam().pattern, is_bright), kPad);
+    const GrayPicture picture = rendered(scene_of(GetParam().pattern, is_bright), kPad);
     const auto model = learn_circles(picture.view(), image_from_pad(kPad));
     ASSERT_TRUE(model) << is_bright;
     ASSERT_EQ(model->circles.size(), GetParam().radii.size()) << is_bright;
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(LearnCirclesFrom, AnOutlineOffByAFewPercent) {
-  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  const GrayPicture picture = rendered(scene_of(Pattern::kRing), kPad);
   for (const double factor : {0.96, 1.04}) {
     const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
     ASSERT_TRUE(model) << factor;
@@ -136,7 +136,7 @@ TEST(LearnCirclesFrom, TheOuterEdgeOfAThinRing) {
     for (const bool is_bright : {false, true}) {
       Scene scene = scene_of(Pattern::kRing, is_bright);
       scene.pad.ring_width = ring_width;
-      const Picture picture = rendered(scene, kPad);
+      const GrayPicture picture = rendered(scene, kPad);
       for (const double factor : {0.985, 1.0, 1.015}) {
         const auto model = learn_circles(picture.view(), image_from_pad(resized(kPad, factor)));
         ASSERT_TRUE(model) << ring_width << is_bright << factor;
@@ -151,7 +151,7 @@ TEST(LearnCirclesFrom, TheOuterEdgeOfAThinRing) {
 TEST(LearnCirclesFrom, NoOutlineOfBothPolarities) {
   for (int x = 0; x < 60; ++x) {
     const Ellipse ball{130.3 + x, 120.6, 50.0, 50.0, 0.0};
-    const Picture picture = support::lit_ball(ball, 320, 240);
+    const GrayPicture picture = support::lit_ball(ball, 320, 240);
     EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(ball))) << x;
   }
 }
@@ -161,7 +161,7 @@ TEST(LearnCirclesFrom, AGivenRingRatio) {
   Scene scene = scene_of(Pattern::kRing, false);
   scene.pad.ring_width = 0.06;
   const Ellipse small{160.0, 120.0, 14.0, 12.0, 0.3};
-  const Picture picture = rendered(scene, small);
+  const GrayPicture picture = rendered(scene, small);
   const Matrix3d view = image_from_pad(small);
   const auto given = learn_circles(picture.view(), view, 0.94);
   ASSERT_TRUE(given);
@@ -170,7 +170,7 @@ TEST(LearnCirclesFrom, AGivenRingRatio) {
   EXPECT_TRUE(given->circles[1].is_given);
   EXPECT_NE(given->circles[1].is_bright_outside, given->circles[0].is_bright_outside);
   // A resolved ring does not get a second inner circle.
-  const Picture large = rendered(scene_of(Pattern::kRing), kPad);
+  const GrayPicture large = rendered(scene_of(Pattern::kRing), kPad);
   const auto model = learn_circles(large.view(), image_from_pad(kPad), kInner + 0.004);
   ASSERT_TRUE(model);
   ASSERT_EQ(model->circles.size(), 2U);
@@ -179,7 +179,7 @@ TEST(LearnCirclesFrom, AGivenRingRatio) {
 
 // Two steps in the same direction: the search could take one edge for the other.
 TEST(LearnCirclesFrom, StepsThatAreFarEnoughApart) {
-  Picture picture(320, 240, 200);
+  GrayPicture picture(320, 240, 200);
   const Matrix3d from_picture = image_from_pad(kPad).inverse();
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -199,7 +199,7 @@ TEST(LearnCirclesFrom, StepsThatAreFarEnoughApart) {
 
 TEST(LearnCirclesFrom, ThePartInsideThePicture) {
   const Ellipse half_out = translated(kPad, -150.0, 0.0);
-  const Picture picture = rendered(scene_of(Pattern::kRing), half_out);
+  const GrayPicture picture = rendered(scene_of(Pattern::kRing), half_out);
   const auto model = learn_circles(picture.view(), image_from_pad(half_out));
   ASSERT_TRUE(model);
   ASSERT_EQ(model->circles.size(), 2U);
@@ -209,15 +209,15 @@ TEST(LearnCirclesFrom, ThePartInsideThePicture) {
 TEST(LearnCirclesFrom, FlatOrOutsideRegionsGivesNothing) {
   const Matrix3d view = image_from_pad(kPad);
   EXPECT_FALSE(learn_circles(flat_picture().view(), view));
-  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  const GrayPicture picture = rendered(scene_of(Pattern::kRing), kPad);
   EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(translated(kPad, 400.0, 0.0))));
   EXPECT_FALSE(learn_circles(picture.view(), image_from_pad(resized(kPad, 0.5))));
   EXPECT_FALSE(learn_circles(ImageView{}, view));
-  EXPECT_FALSE(learn_circles(Picture(1, 1, 90).view(), view));
+  EXPECT_FALSE(learn_circles(GrayPicture(1, 1, 90).view(), view));
 }
 
 TEST(LearnCirclesFrom, AnEllipseBelowAPixelGivesNothing) {
-  const Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  const GrayPicture picture = rendered(scene_of(Pattern::kRing), kPad);
   EXPECT_FALSE(learn_circles(picture.view(), image_from_pad({160.0, 120.0, 0.3, 0.2, 0.0})));
 }
 
@@ -258,7 +258,7 @@ struct Learned {
     model = learn_circles(picture.view(), image_from_pad(pad)).value();
     learn_at_once(learner, picture.view(), pad, model);
   }
-  Picture picture{0, 0};
+  GrayPicture picture{0, 0};
   PadModel model;
   LineLearner learner;
 };
@@ -325,7 +325,7 @@ TEST(LineLearner, FindsNoLineInCircles) {
 TEST(LineLearner, ReplacesEarlierLines) {
   Learned learned(scene_of(Pattern::kRingX));
   ASSERT_FALSE(learned.model.lines.empty());
-  const Picture ring = rendered(scene_of(Pattern::kRing), kPad);
+  const GrayPicture ring = rendered(scene_of(Pattern::kRing), kPad);
   learn_at_once(learned.learner, ring.view(), kPad, learned.model);
   EXPECT_TRUE(learned.model.lines.empty());
 }
@@ -338,7 +338,7 @@ TEST(LineLearner, CombinesFramesOfAMovingPad) {
   int frames = 0;
   while (!in_motion.learner.is_ready()) {
     const Ellipse pad = translated(kPad, 3.0 * frames, -2.0 * frames);
-    const Picture picture = rendered(scene_of(Pattern::kRingX), pad);
+    const GrayPicture picture = rendered(scene_of(Pattern::kRingX), pad);
     in_motion.learner.take(picture.view(), image_from_pad(pad));
     ++frames;
   }
@@ -369,7 +369,7 @@ TEST(LineLearner, FindsNothingInEmptyAndTinyPictures) {
   LineLearner learner;
   for (const int size : {0, 1, 2, 7}) {
     PadModel model = ring_model();
-    learn_at_once(learner, Picture(size, size, 200).view(), kPad, model);
+    learn_at_once(learner, GrayPicture(size, size, 200).view(), kPad, model);
     EXPECT_TRUE(model.lines.empty()) << size;
   }
 }
@@ -381,7 +381,7 @@ TEST(EdgeSearch, PlacesSamplesInsideThePictureOnly) {
   EdgeSearch search;
   for (const double dx : {-160.0, -90.0, 120.0, 200.0}) {
     const Ellipse e = translated(kPad, dx, 40.0);
-    search.sample(model, image_from_pad(e), Picture(320, 240).view());
+    search.sample(model, image_from_pad(e), GrayPicture(320, 240).view());
     EXPECT_FALSE(search.samples().empty()) << dx;
     for (const EdgeSample& sample : search.samples()) {
       EXPECT_GE(sample.view.point.minCoeff(), 2.99);
@@ -395,7 +395,7 @@ TEST(EdgeSearch, PlacesSamplesInsideThePictureOnly) {
 TEST(EdgeSearch, DistributesSamplesByTheLengthOfTheEdges) {
   const PadModel model = Learned(scene_of(Pattern::kRingX)).model;
   EdgeSearch search;
-  search.sample(model, image_from_pad(kPad), Picture(320, 240).view());
+  search.sample(model, image_from_pad(kPad), GrayPicture(320, 240).view());
   EXPECT_NEAR(static_cast<double>(search.samples().size()), EdgeSearch::kSamples, 14.0);
   std::vector<double> outer_angles;
   int inner = 0;
@@ -422,7 +422,7 @@ TEST(EdgeSearch, DistributesSamplesByTheLengthOfTheEdges) {
 TEST(EdgeSearch, PlacesThePredictedNumberOfSamples) {
   PadModel model = ring_model();
   for (const double radius : {0.6, 0.4, 0.2}) model.circles.push_back({radius, true, 100.0});
-  const Picture picture(2000, 2000);
+  const GrayPicture picture(2000, 2000);
   for (const double radius_px : {40.0, 900.0, 5000.0}) {
     EdgeSearch search;
     search.sample(
@@ -433,7 +433,7 @@ TEST(EdgeSearch, PlacesThePredictedNumberOfSamples) {
 
 TEST(EdgeSearch, MeasuresTheOffsetsOfTheEdges) {
   for (const bool is_bright : {false, true}) {
-    const Picture picture = rendered(scene_of(Pattern::kRing, is_bright), kPad);
+    const GrayPicture picture = rendered(scene_of(Pattern::kRing, is_bright), kPad);
     const auto model = learn_circles(picture.view(), image_from_pad(kPad)).value();
     for (const Vector2d& shift : {Vector2d(2.0, 0.0), Vector2d(-2.0, 0.0), Vector2d(1.4, -1.4)}) {
       const Ellipse expected = translated(kPad, shift.x(), shift.y());
@@ -453,7 +453,7 @@ TEST(EdgeSearch, MeasuresTheOffsetsOfTheEdges) {
 }
 
 TEST(EdgeSearch, IgnoresEdgesOfTheOtherSign) {
-  const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  const GrayPicture picture = rendered(scene_of(Pattern::kDisc), kPad);
   PadModel model = disc_model();
   EdgeSearch search;
   const auto matched_samples = [&] {
@@ -473,7 +473,7 @@ TEST(EdgeSearch, IgnoresEdgesOfTheOtherSign) {
 TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
   Scene faint = scene_of(Pattern::kDisc);
   faint.pad.paint_level = faint.ground.level - 20.0;
-  const Picture picture = rendered(faint, kPad);
+  const GrayPicture picture = rendered(faint, kPad);
   EdgeSearch search;
   search.sample(disc_model(), image_from_pad(kPad), picture.view());
   search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 6.0);
@@ -483,7 +483,7 @@ TEST(EdgeSearch, IgnoresEdgesTooWeakForTheLight) {
 }
 
 // Of a model on a picture of a pad at kPad.
-HomographySupport support_in(const Picture& picture, const PadModel& model) {
+HomographySupport support_in(const GrayPicture& picture, const PadModel& model) {
   EdgeSearch search;
   search.sample(model, image_from_pad(kPad), picture.view());
   search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
@@ -493,7 +493,7 @@ HomographySupport support_in(const Picture& picture, const PadModel& model) {
 
 // A shadow leaves .3 of the light, and of the contrast.
 TEST(EdgeSearch, SeesEdgesInShadow) {
-  Picture picture = rendered(scene_of(Pattern::kRing), kPad);
+  GrayPicture picture = rendered(scene_of(Pattern::kRing), kPad);
   const PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
   const HomographySupport lit = support_in(picture, model);
   EXPECT_NEAR(lit.gain / lit.relative_gain, plain_ring().ground.level, 5.0);
@@ -510,7 +510,7 @@ TEST(EdgeSearch, SeesEdgesInShadow) {
 // Blur also reduces the contrast, but the picture is as bright as before beside the edge.
 TEST(EdgeSearch, DoesNotTakeBlurForShadow) {
   constexpr int kBlurPx = 12;
-  Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  GrayPicture picture = rendered(scene_of(Pattern::kDisc), kPad);
   const PadModel model = learn_circles(picture.view(), image_from_pad(kPad)).value();
   const double relative_gain = support_in(picture, model).relative_gain;
   cv::Mat pixels(picture.height, picture.width, CV_8UC1, picture.pixels.data());
@@ -535,7 +535,7 @@ TEST(EdgeSearch, IgnoresNoise) {
   model.circles[0].contrast = 8.0;
   for (const double noise : {4.0, 8.0, 16.0}) {
     flat.sensor.read_noise = noise;
-    const Picture picture = rendered(flat, kPad);
+    const GrayPicture picture = rendered(flat, kPad);
     EdgeSearch search;
     search.sample(model, image_from_pad(kPad), picture.view());
     search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 2.0);
@@ -548,7 +548,7 @@ TEST(EdgeSearch, IgnoresNoise) {
 }
 
 TEST(EdgeSearch, SearchesAsFarAsTheCovariance) {
-  const Picture picture = rendered(scene_of(Pattern::kDisc), kPad);
+  const GrayPicture picture = rendered(scene_of(Pattern::kDisc), kPad);
   const Ellipse expected = translated(kPad, 7.0, 0.0);
   EdgeSearch search;
   search.sample(disc_model(), image_from_pad(expected), picture.view());
@@ -571,7 +571,7 @@ TEST(EdgeSearch, SearchesAsFarAsTheCovariance) {
 }
 
 TEST(EdgeSearch, KeepsTheStrongestEdgesFirst) {
-  Picture picture(120, 60, 20);
+  GrayPicture picture(120, 60, 20);
   const int steps[] = {30, 40, 50, 60, 70, 80};
   const int rises[] = {10, 60, 20, 40, 30, 15};
   for (int y = 0; y < 60; ++y) {
@@ -598,7 +598,7 @@ TEST(EdgeSearch, KeepsTheStrongestEdgesFirst) {
 
 TEST(EdgeSearch, StaysInsideLargePictures) {
   // Steps along a normal accumulate in floats, which are coarse at large coordinates.
-  Picture picture(31, 12'000, 200);
+  GrayPicture picture(31, 12'000, 200);
   for (int y = 11'960; y < 12'000; ++y) {
     for (int x = 0; x < 31; ++x) picture.at(x, y) = 40;
   }
@@ -623,7 +623,7 @@ TEST(EdgeSearch, StaysInsideLargePictures) {
 TEST(EdgeSearch, PlacesNoSampleInEmptyAndTinyPictures) {
   EdgeSearch search;
   for (const int size : {0, 1, 2, 6}) {
-    const Picture picture(size, size, 90);
+    const GrayPicture picture(size, size, 90);
     search.sample(ring_model(), image_from_pad({0.0, 0.0, 3.0, 2.0, 0.0}), picture.view());
     search.search(picture.view(), {1.0, pixel_noise(picture.view())}, 4.0);
     EXPECT_TRUE(search.samples().empty()) << size;
@@ -649,7 +649,7 @@ struct SearchedRing {
   [[nodiscard]] double error_px(const HomographyChange& change) const {
     return max_difference_px(project_circle(moved(start, change), 1.0).value(), kPad);
   }
-  Picture picture;
+  GrayPicture picture;
   Matrix3d start;
   EdgeSearch search;
 };
@@ -902,7 +902,7 @@ TEST(Support, ReportsTheLight) {
   const PadModel model = learn_circles(rendered(scene, kPad).view(), image_from_pad(kPad)).value();
   for (const double gain : {1.0, 0.5, 0.25}) {
     scene.sensor.gain = gain;
-    const Picture picture = rendered(scene, kPad);
+    const GrayPicture picture = rendered(scene, kPad);
     EdgeSearch search;
     search.sample(model, image_from_pad(kPad), picture.view());
     search.search(picture.view(), {gain, pixel_noise(picture.view())}, 4.0);

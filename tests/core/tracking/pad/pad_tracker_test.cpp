@@ -16,19 +16,19 @@ namespace ellipse {
 namespace {
 
 using Eigen::Vector2d;
-using support::Picture;
+using support::GrayPicture;
+using support::kHeight;
+using support::kWidth;
 using support::plain_ring;
 using support::rendered;
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
-const Ellipse kPad{300.3, 180.6, 60.0, 48.0, 0.4};
+const Ellipse kTrackedPad{300.3, 180.6, 60.0, 48.0, 0.4};
 
-LumaWindow whole(const Picture& picture) {
+LumaWindow whole(const GrayPicture& picture) {
   return {picture.view(), {0.0, 0.0}, Vector2d(picture.width, picture.height)};
 }
 
-LumaWindow part(const Picture& picture, const Rect& region) {
+LumaWindow part(const GrayPicture& picture, const Rect& region) {
   return {picture.view().region(region),
           Vector2d(region.x, region.y),
           Vector2d(picture.width, picture.height)};
@@ -40,23 +40,29 @@ Scene pad_scene(Pattern pattern = Pattern::kRing) {
   return scene;
 }
 
-Picture frame_of(const Ellipse& pad, const Scene& scene = pad_scene(), std::uint64_t number = 0) {
+GrayPicture frame_of(const Ellipse& pad,
+                     const Scene& scene = pad_scene(),
+                     std::uint64_t number = 0) {
   return rendered(scene, pad, kWidth, kHeight, number);
 }
 
-// Of the affine view of kPad.
+// Of the affine view of kTrackedPad.
 Ellipse circle_of_pad(double radius) {
-  return {kPad.cx, kPad.cy, radius * kPad.semi_major, radius * kPad.semi_minor, kPad.angle_rad};
+  return {kTrackedPad.cx,
+          kTrackedPad.cy,
+          radius * kTrackedPad.semi_major,
+          radius * kTrackedPad.semi_minor,
+          kTrackedPad.angle_rad};
 }
 
-Picture empty_frame() {
-  return frame_of(kPad, pad_scene(Pattern::kNone), 1);
+GrayPicture empty_frame() {
+  return frame_of(kTrackedPad, pad_scene(Pattern::kNone), 1);
 }
 
 // A ring with a dot, which looks like a circle of the pad.
-Picture ring_with_dot(std::uint64_t number = 0) {
-  Picture picture = frame_of(kPad, pad_scene(), number);
-  Picture dot = frame_of(circle_of_pad(0.3), pad_scene(Pattern::kDisc), number);
+GrayPicture ring_with_dot(std::uint64_t number = 0) {
+  GrayPicture picture = frame_of(kTrackedPad, pad_scene(), number);
+  GrayPicture dot = frame_of(circle_of_pad(0.3), pad_scene(Pattern::kDisc), number);
   const Ellipse around = circle_of_pad(0.5);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -66,81 +72,81 @@ Picture ring_with_dot(std::uint64_t number = 0) {
   return picture;
 }
 
-struct Look {
+struct PadLook {
   const char* name;
   Pattern pattern;
   double paint;
   double ground;
 };
 
-class LockEdges : public testing::TestWithParam<Look> {};
+class LockEdges : public testing::TestWithParam<PadLook> {};
 
 TEST_P(LockEdges, LocksOnTheTruthAndStaysThere) {
   Scene scene = pad_scene(GetParam().pattern);
   scene.pad.paint_level = GetParam().paint;
   scene.ground.level = GetParam().ground;
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad, scene)), kTrackedPad));
   EXPECT_TRUE(tracker.is_locked());
   for (std::uint64_t i = 1; i < 6; ++i) {
-    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), kFrame_s);
+    const auto track = tracker.track(whole(frame_of(kTrackedPad, scene, i)), kFrame_s);
     ASSERT_TRUE(track);
     EXPECT_TRUE(track->is_visible);
     EXPECT_GT(track->coverage, 0.9);
-    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.15);
+    EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.15);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Pads,
                          LockEdges,
-                         testing::Values(Look{"ring", Pattern::kRing, 55.0, 200.0},
-                                         Look{"bright_ring", Pattern::kRing, 215.0, 90.0},
-                                         Look{"disc", Pattern::kDisc, 55.0, 200.0},
-                                         Look{"bright_disc", Pattern::kDisc, 215.0, 90.0},
-                                         Look{"bullseye", Pattern::kBullseye, 215.0, 90.0},
-                                         Look{"x", Pattern::kRingX, 55.0, 200.0},
-                                         Look{"h", Pattern::kRingH, 55.0, 200.0},
-                                         Look{"faint", Pattern::kRing, 90.0, 115.0}),
+                         testing::Values(PadLook{"ring", Pattern::kRing, 55.0, 200.0},
+                                         PadLook{"bright_ring", Pattern::kRing, 215.0, 90.0},
+                                         PadLook{"disc", Pattern::kDisc, 55.0, 200.0},
+                                         PadLook{"bright_disc", Pattern::kDisc, 215.0, 90.0},
+                                         PadLook{"bullseye", Pattern::kBullseye, 215.0, 90.0},
+                                         PadLook{"x", Pattern::kRingX, 55.0, 200.0},
+                                         PadLook{"h", Pattern::kRingH, 55.0, 200.0},
+                                         PadLook{"faint", Pattern::kRing, 90.0, 115.0}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(PadTracker, LocksFromAnEllipseThatIsOffByAPixel) {
-  Ellipse rough = translated(kPad, 1.0, -0.8);
+  Ellipse rough = translated(kTrackedPad, 1.0, -0.8);
   rough.semi_major *= 1.02;
   PadTracker tracker;
-  const Picture picture = frame_of(kPad);
+  const GrayPicture picture = frame_of(kTrackedPad);
   ASSERT_TRUE(tracker.lock(whole(picture), rough));
   const auto track = tracker.track(whole(picture), kFrame_s);
   ASSERT_TRUE(track);
-  EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.2);
+  EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.2);
 }
 
 TEST(PadTracker, RefusesToLockWithoutEdges) {
   PadTracker tracker;
-  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
+  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kTrackedPad));
   EXPECT_FALSE(tracker.is_locked());
-  EXPECT_FALSE(tracker.track(whole(frame_of(kPad)), kFrame_s));
+  EXPECT_FALSE(tracker.track(whole(frame_of(kTrackedPad)), kFrame_s));
   // Beside the pad, overlapping it, half as large, and outside the picture.
-  const Picture picture = frame_of(kPad);
-  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 140.0, 0.0)));
-  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 40.0, 0.0)));
-  EXPECT_FALSE(tracker.lock(whole(picture), {kPad.cx, kPad.cy, 30.0, 24.0, 0.4}));
-  EXPECT_FALSE(tracker.lock(whole(picture), translated(kPad, 1000.0, 0.0)));
+  const GrayPicture picture = frame_of(kTrackedPad);
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kTrackedPad, 140.0, 0.0)));
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kTrackedPad, 40.0, 0.0)));
+  EXPECT_FALSE(tracker.lock(whole(picture), {kTrackedPad.cx, kTrackedPad.cy, 30.0, 24.0, 0.4}));
+  EXPECT_FALSE(tracker.lock(whole(picture), translated(kTrackedPad, 1000.0, 0.0)));
 }
 
 TEST(PadTracker, RefusesToLockOnAnotherEdgeThanTheDetectedOne) {
-  const Picture picture = frame_of(kPad);
+  const GrayPicture picture = frame_of(kTrackedPad);
   PadTracker tracker;
-  Ellipse rough = kPad;
+  Ellipse rough = kTrackedPad;
   rough.semi_major *= 0.95;  // by 3 px; the tolerance is 2.7 px
   EXPECT_FALSE(tracker.lock(whole(picture), rough));
-  rough.semi_major = 0.97 * kPad.semi_major;
+  rough.semi_major = 0.97 * kTrackedPad.semi_major;
   EXPECT_TRUE(tracker.lock(whole(picture), rough));
 }
 
 TEST(PadTracker, ForgetsTheReleasedPad) {
   PadTracker tracker;
-  const Picture picture = frame_of(kPad);
-  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+  const GrayPicture picture = frame_of(kTrackedPad);
+  ASSERT_TRUE(tracker.lock(whole(picture), kTrackedPad));
   tracker.release();
   EXPECT_FALSE(tracker.is_locked());
   EXPECT_FALSE(tracker.track(whole(picture), kFrame_s));
@@ -148,16 +154,17 @@ TEST(PadTracker, ForgetsTheReleasedPad) {
 
 TEST(PadTracker, ARefusedLockReleasesTheLastOne) {
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
-  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad)), kTrackedPad));
+  EXPECT_FALSE(tracker.lock(whole(empty_frame()), kTrackedPad));
   EXPECT_FALSE(tracker.is_locked());
 }
 
 TEST(PadTracker, LocksOnASecondPad) {
   PadTracker tracker;
   const Scene x = pad_scene(Pattern::kRingX);
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, x)), kPad));
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(tracker.track(whole(frame_of(kPad, x, i)), kFrame_s));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad, x)), kTrackedPad));
+  for (int i = 0; i < 5; ++i)
+    ASSERT_TRUE(tracker.track(whole(frame_of(kTrackedPad, x, i)), kFrame_s));
   const Ellipse other{400.0, 150.0, 50.0, 50.0, 0.0};
   const Scene disc = pad_scene(Pattern::kDisc);
   ASSERT_TRUE(tracker.lock(whole(frame_of(other, disc)), other));
@@ -181,7 +188,7 @@ TEST(PadTracker, TracksOscillationsOfARadiusPerFrame) {
     scene.ground.contrast = 1.0;
     scene.sensor.read_noise = 4.0;
     SceneRenderer renderer(scene);
-    Picture picture(kWidth, kHeight);
+    GrayPicture picture(kWidth, kHeight);
     PadTracker tracker;
     for (int i = 0; i <= 45; ++i) {
       const Ellipse truth = dashing(i, 40.0, 40.0);
@@ -209,7 +216,7 @@ TEST(PadTracker, IsExactInMotionBlur) {
     at_px += step_px;
     const Ellipse truth{at_px, 180.0, 40.0, 36.0, 0.0};
     const int blur_px = static_cast<int>(0.5 * step_px);
-    const Picture picture =
+    const GrayPicture picture =
         support::blurred_by_motion(truth, blur_px, [&](const Ellipse& e, int k) {
           return frame_of(e, scene, std::uint64_t(100 * i + k));
         });
@@ -251,13 +258,13 @@ TEST(PadTracker, LearnsLinesUnderTheTiltOfTheRing) {
     return Ellipse{320.0 + 60.0 * std::sin(0.1 * i), 180.0, radius, radius, 0.0};
   };
   PadTracker tracker;
-  const auto window_of = [&](const Picture& picture) {
+  const auto window_of = [&](const GrayPicture& picture) {
     LumaWindow window = whole(picture);
     window.camera = camera;
     return window;
   };
   for (int i = 0; i < 100; ++i) {
-    const Picture picture = frame_of(truth_at(i), i < 80 ? ring : lines, std::uint64_t(i));
+    const GrayPicture picture = frame_of(truth_at(i), i < 80 ? ring : lines, std::uint64_t(i));
     const bool is_found = i == 0 ? tracker.lock(window_of(picture), truth_at(0))
                                  : tracker.track(window_of(picture), kFrame_s).has_value();
     ASSERT_TRUE(is_found) << i;
@@ -272,10 +279,10 @@ TEST(PadTracker, LearnsLinesUnderTheTiltOfTheRing) {
 TEST(PadTracker, TracksInFadingLight) {
   Scene scene = pad_scene();
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad, scene)), kTrackedPad));
   for (std::uint64_t i = 1; i <= 35; ++i) {
     scene.sensor.gain *= 0.94;  // to 0.11
-    const Ellipse truth = translated(kPad, 3.0 * static_cast<double>(i), 0.0);
+    const Ellipse truth = translated(kTrackedPad, 3.0 * static_cast<double>(i), 0.0);
     const auto track = tracker.track(whole(frame_of(truth, scene, i)), kFrame_s);
     ASSERT_TRUE(track && track->is_visible) << i;
     EXPECT_LT(max_difference_px(track->ellipse, truth), 0.4) << i;
@@ -285,13 +292,13 @@ TEST(PadTracker, TracksInFadingLight) {
 TEST(PadTracker, TracksBehindABar) {
   Scene scene = pad_scene();
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad, scene)), kTrackedPad));
   for (std::uint64_t i = 1; i <= 40; ++i) {
     const double x = 200.0 + 5.0 * static_cast<double>(i);
     scene.bars = {support::bar_px({x, 0.0}, {x, 360.0}, 18.0, 60.0, kWidth, kHeight)};
-    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), kFrame_s);
+    const auto track = tracker.track(whole(frame_of(kTrackedPad, scene, i)), kFrame_s);
     ASSERT_TRUE(track && track->is_visible) << i;
-    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.6) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.6) << i;
   }
 }
 
@@ -302,32 +309,32 @@ TEST(PadTracker, ForgetsLinesOfOtherObjects) {
     return support::bar_px({x, 0.0}, {x, 360.0}, 12.0, 60.0, kWidth, kHeight);
   };
   scene.bars = {bar_at(300.0)};
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad, scene)), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad, scene)), kTrackedPad));
   constexpr std::uint64_t kGone = 12;  // by then the lines have been learned
   double coverage = 0.0;
   for (std::uint64_t i = 1; i <= kGone + 20; ++i) {
     if (i == kGone) scene.bars.clear();
-    const auto track = tracker.track(whole(frame_of(kPad, scene, i)), kFrame_s);
+    const auto track = tracker.track(whole(frame_of(kTrackedPad, scene, i)), kFrame_s);
     ASSERT_TRUE(track && track->is_visible) << i;
     if (i == kGone) {
       EXPECT_LT(track->coverage, 0.95);
     }
     coverage = track->coverage;
-    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.3) << i;
   }
   EXPECT_GT(coverage, 0.97);
 }
 
 TEST(PadTracker, FollowsARingWithoutACircleThatWasNotOnIt) {
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(ring_with_dot()), kPad));
+  ASSERT_TRUE(tracker.lock(whole(ring_with_dot()), kTrackedPad));
   const auto with_dot = tracker.track(whole(ring_with_dot(1)), kFrame_s);
   ASSERT_TRUE(with_dot && with_dot->is_visible);
   EXPECT_GT(with_dot->coverage, 0.97);
   for (std::uint64_t i = 2; i < 10; ++i) {
-    const auto track = tracker.track(whole(frame_of(kPad, pad_scene(), i)), kFrame_s);
+    const auto track = tracker.track(whole(frame_of(kTrackedPad, pad_scene(), i)), kFrame_s);
     ASSERT_TRUE(track && track->is_visible) << i;
-    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.3) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.3) << i;
     EXPECT_LT(track->coverage, 0.95) << "the dot was learned";
   }
 }
@@ -335,9 +342,9 @@ TEST(PadTracker, FollowsARingWithoutACircleThatWasNotOnIt) {
 // A shadow with a quarter of the light moves over the pad.
 TEST(PadTracker, FollowsAPadHalfInShadow) {
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad)), kTrackedPad));
   for (std::uint64_t i = 1; i < 40; ++i) {
-    Picture frame = frame_of(kPad, pad_scene(), i);
+    GrayPicture frame = frame_of(kTrackedPad, pad_scene(), i);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < static_cast<int>(230 + 5 * i); ++x) {
         frame.at(x, y) = static_cast<std::uint8_t>(0.25 * frame.at(x, y));
@@ -346,7 +353,7 @@ TEST(PadTracker, FollowsAPadHalfInShadow) {
     const auto track = tracker.track(whole(frame), kFrame_s);
     ASSERT_TRUE(track && track->is_visible) << i;
     EXPECT_GT(track->coverage, 0.9) << i;
-    EXPECT_LT(max_difference_px(track->ellipse, kPad), 0.5) << i;
+    EXPECT_LT(max_difference_px(track->ellipse, kTrackedPad), 0.5) << i;
   }
 }
 
@@ -359,7 +366,7 @@ TEST(PadTracker, IgnoresLinesThatDoNotMoveWithThePad) {
   }
   const auto truth_at = [](std::uint64_t i) {
     const double time = 0.15 * static_cast<double>(i);
-    return translated(kPad, 12.0 * std::sin(time), 18.0 * std::sin(0.7 * time));
+    return translated(kTrackedPad, 12.0 * std::sin(time), 18.0 * std::sin(0.7 * time));
   };
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0), scene)), truth_at(0)));
@@ -372,13 +379,13 @@ TEST(PadTracker, IgnoresLinesThatDoNotMoveWithThePad) {
 
 TEST(PadTracker, PredictsAVanishedPadThenLosesIt) {
   PadTracker tracker;
-  const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
+  const auto truth_at = [](int i) { return translated(kTrackedPad, 4.0 * i, -2.0 * i); };
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
   for (int i = 1; i <= 15; ++i) {
     ASSERT_TRUE(tracker.track(
         whole(frame_of(truth_at(i), pad_scene(), static_cast<std::uint64_t>(i))), kFrame_s));
   }
-  const Picture ground = empty_frame();
+  const GrayPicture ground = empty_frame();
   const auto first = tracker.track(whole(ground), kFrame_s);
   ASSERT_TRUE(first);
   EXPECT_FALSE(first->is_visible);
@@ -404,7 +411,7 @@ TEST(PadTracker, ResumesAFastPadAndThenFollowsIt) {
   };
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0), scene)), truth_at(0)));
-  const Picture second = frame_of(truth_at(1), scene, 1);
+  const GrayPicture second = frame_of(truth_at(1), scene, 1);
   const auto missed = tracker.track(whole(second), kFrame_s);
   ASSERT_TRUE(missed);
   EXPECT_FALSE(missed->is_visible);
@@ -417,41 +424,41 @@ TEST(PadTracker, ResumesAFastPadAndThenFollowsIt) {
 }
 
 TEST(PadTracker, ResumesAnyCircleOfAnUnmatchedPad) {
-  const Picture picture = frame_of(kPad);
+  const GrayPicture picture = frame_of(kTrackedPad);
   PadTracker tracker;
-  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "never locked";
-  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
-  EXPECT_FALSE(tracker.resume(whole(picture), kPad)) << "matched";
+  EXPECT_FALSE(tracker.resume(whole(picture), kTrackedPad)) << "never locked";
+  ASSERT_TRUE(tracker.lock(whole(picture), kTrackedPad));
+  EXPECT_FALSE(tracker.resume(whole(picture), kTrackedPad)) << "matched";
   (void)tracker.track(whole(empty_frame()), kFrame_s);
-  EXPECT_FALSE(tracker.resume(whole(empty_frame()), kPad)) << "no edges";
+  EXPECT_FALSE(tracker.resume(whole(empty_frame()), kTrackedPad)) << "no edges";
   EXPECT_FALSE(tracker.resume(whole(picture), circle_of_pad(0.5))) << "another circle";
   EXPECT_TRUE(tracker.is_locked());
-  EXPECT_TRUE(tracker.resume(whole(picture), kPad));
+  EXPECT_TRUE(tracker.resume(whole(picture), kTrackedPad));
 
   (void)tracker.track(whole(empty_frame()), kFrame_s);
   const auto inside =
       tracker.resume(whole(picture), circle_of_pad(inner_radius(pad_scene().pad).value()));
   ASSERT_TRUE(inside && inside->is_visible);
-  EXPECT_LT(max_difference_px(inside->ellipse, kPad), 0.3);
+  EXPECT_LT(max_difference_px(inside->ellipse, kTrackedPad), 0.3);
 }
 
 TEST(PadTracker, ResumesAReleasedPadUntilItIsForgotten) {
-  const Picture picture = frame_of(kPad);
+  const GrayPicture picture = frame_of(kTrackedPad);
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+  ASSERT_TRUE(tracker.lock(whole(picture), kTrackedPad));
   tracker.release();
   EXPECT_FALSE(tracker.is_locked());
-  EXPECT_TRUE(tracker.resume(whole(picture), kPad));
+  EXPECT_TRUE(tracker.resume(whole(picture), kTrackedPad));
   EXPECT_TRUE(tracker.is_locked());
   tracker.forget();
   EXPECT_FALSE(tracker.is_locked());
-  EXPECT_FALSE(tracker.resume(whole(picture), kPad));
+  EXPECT_FALSE(tracker.resume(whole(picture), kTrackedPad));
 }
 
 TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
   PadTracker locked;
-  ASSERT_TRUE(locked.lock(whole(frame_of(kPad)), kPad));
-  const Picture ground = empty_frame();
+  ASSERT_TRUE(locked.lock(whole(frame_of(kTrackedPad)), kTrackedPad));
+  const GrayPicture ground = empty_frame();
   for (const double elapsed_s : {1.0 / 60, 1.0 / 30, 1.0 / 15, 4.0 / 30}) {
     PadTracker tracker = locked;
     double unseen = elapsed_s;
@@ -463,11 +470,11 @@ TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
 
 TEST(PadTracker, FindsAPadAgainAfterOcclusion) {
   PadTracker tracker;
-  const auto truth_at = [](int i) { return translated(kPad, 4.0 * i, -2.0 * i); };
+  const auto truth_at = [](int i) { return translated(kTrackedPad, 4.0 * i, -2.0 * i); };
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
   for (int i = 1; i <= 30; ++i) {
     const bool is_hidden = i > 15 && i <= 21;
-    const Picture picture = is_hidden ? empty_frame() : frame_of(truth_at(i));
+    const GrayPicture picture = is_hidden ? empty_frame() : frame_of(truth_at(i));
     const auto track = tracker.track(whole(picture), kFrame_s);
     ASSERT_TRUE(track) << i;
     EXPECT_EQ(track->is_visible, !is_hidden) << i;
@@ -477,7 +484,7 @@ TEST(PadTracker, FindsAPadAgainAfterOcclusion) {
 }
 
 TEST(PadTracker, TreatsAGapAsALongerStep) {
-  const auto truth_at = [](int i) { return translated(kPad, -150.0 + 7.0 * i, 0.0); };
+  const auto truth_at = [](int i) { return translated(kTrackedPad, -150.0 + 7.0 * i, 0.0); };
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
   for (int i = 1; i <= 20; ++i) {
@@ -500,7 +507,7 @@ TEST(PadTracker, TreatsAGapAsALongerStep) {
 
 TEST(PadTracker, ContinuesWithLittleOfTheRingInView) {
   SceneRenderer renderer(scene_by_name("touchdown", 201));
-  Picture picture(kWidth, kHeight);
+  GrayPicture picture(kWidth, kHeight);
   PadTracker tracker;
   int nearly_hidden = 0;
   int tracked = 0;
@@ -535,7 +542,7 @@ TEST(PadTracker, ContinuesWithLittleOfTheRingInView) {
 TEST(PadTracker, DoesNotAverageTheErrorsOfItsModelAway) {
   const Scene scene = scene_by_name("touchdown", 201);
   SceneRenderer renderer(scene);
-  Picture picture(kWidth, kHeight);
+  GrayPicture picture(kWidth, kHeight);
   PadTracker tracker;
   const auto centre_sigma_after = [&](int frames) {
     for (int i = 0; i < frames; ++i) (void)tracker.track(whole(picture), kFrame_s);
@@ -559,7 +566,7 @@ TEST(PadTracker, DoesNotAverageTheErrorsOfItsModelAway) {
 TEST(PadTracker, IsDeterministic) {
   PadTracker trackers[2];
   SceneRenderer renderer(scene_by_name("approach", 201));
-  Picture picture(kWidth, kHeight);
+  GrayPicture picture(kWidth, kHeight);
   for (int i = 0; i < 25; ++i) {
     const Truth truth =
         renderer.render(4.0 + i / 30.0, static_cast<std::uint64_t>(i), picture.writable());
@@ -581,14 +588,14 @@ TEST(PadTracker, GivesTheSameAfterAnotherPad) {
   PadTracker fresh;
   PadTracker used;
   const Scene x = pad_scene(Pattern::kRingX);
-  const Ellipse other = translated(kPad, -100.0, 20.0);
+  const Ellipse other = translated(kTrackedPad, -100.0, 20.0);
   ASSERT_TRUE(used.lock(whole(frame_of(other, x)), other));
   for (int i = 1; i < 5; ++i) ASSERT_TRUE(used.track(whole(frame_of(other, x)), kFrame_s));
   for (PadTracker* tracker : {&fresh, &used}) {
-    ASSERT_TRUE(tracker->lock(whole(frame_of(kPad)), kPad));
+    ASSERT_TRUE(tracker->lock(whole(frame_of(kTrackedPad)), kTrackedPad));
   }
   for (int i = 1; i < 8; ++i) {
-    const Picture picture = frame_of(translated(kPad, 2.0 * i, 0.0));
+    const GrayPicture picture = frame_of(translated(kTrackedPad, 2.0 * i, 0.0));
     const auto first = fresh.track(whole(picture), kFrame_s);
     const auto second = used.track(whole(picture), kFrame_s);
     ASSERT_TRUE(first && second);
@@ -600,7 +607,7 @@ TEST(PadTracker, NeedsOnlyItsRegion) {
   PadTracker of_frames;
   PadTracker of_parts;
   SceneRenderer renderer(scene_by_name("oblique", 201));
-  Picture picture(kWidth, kHeight);
+  GrayPicture picture(kWidth, kHeight);
   int parts = 0;
   for (int i = 0; i < 40; ++i) {
     const Truth truth =
@@ -623,7 +630,7 @@ TEST(PadTracker, NeedsOnlyItsRegion) {
 }
 
 TEST(PadTracker, RegionFollowsTheMotionInsideTheFrame) {
-  const auto truth_at = [](int i) { return translated(kPad, 10.0 * i, 0.0); };
+  const auto truth_at = [](int i) { return translated(kTrackedPad, 10.0 * i, 0.0); };
   PadTracker tracker;
   ASSERT_TRUE(tracker.lock(whole(frame_of(truth_at(0))), truth_at(0)));
   for (int i = 1; i <= 12; ++i) {
@@ -644,33 +651,33 @@ TEST(PadTracker, RegionFollowsTheMotionInsideTheFrame) {
 
 TEST(PadTracker, SurvivesEmptyAndTinyWindows) {
   PadTracker tracker;
-  const Picture picture = frame_of(kPad);
+  const GrayPicture picture = frame_of(kTrackedPad);
   for (const int size : {0, 1, 2, 3, 7, 12}) {
     const Rect region{300, 180, size, size};
-    EXPECT_FALSE(tracker.lock(part(picture, region), kPad)) << size;
+    EXPECT_FALSE(tracker.lock(part(picture, region), kTrackedPad)) << size;
     EXPECT_FALSE(tracker.lock(part(picture, region), {300.5, 180.5, 0.4, 0.3, 0.0})) << size;
-    ASSERT_TRUE(tracker.lock(whole(picture), kPad));
+    ASSERT_TRUE(tracker.lock(whole(picture), kTrackedPad));
     const auto track = tracker.track(part(picture, region), kFrame_s);
     ASSERT_TRUE(track) << size;
     EXPECT_FALSE(track->is_visible) << size;
     // Then recovers it.
     const auto again = tracker.track(whole(picture), kFrame_s);
     ASSERT_TRUE(again && again->is_visible) << size;
-    EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3) << size;
+    EXPECT_LT(max_difference_px(again->ellipse, kTrackedPad), 0.3) << size;
   }
 }
 
 TEST(PadTracker, SurvivesFramesWithoutPixels) {
   PadTracker tracker;
-  EXPECT_FALSE(tracker.lock({}, kPad));
-  ASSERT_TRUE(tracker.lock(whole(frame_of(kPad)), kPad));
+  EXPECT_FALSE(tracker.lock({}, kTrackedPad));
+  ASSERT_TRUE(tracker.lock(whole(frame_of(kTrackedPad)), kTrackedPad));
   for (int i = 0; i < 3; ++i) {
     const auto track = tracker.track({}, kFrame_s);
     EXPECT_FALSE(track && track->is_visible);
   }
-  const auto again = tracker.track(whole(frame_of(kPad)), kFrame_s);
+  const auto again = tracker.track(whole(frame_of(kTrackedPad)), kFrame_s);
   ASSERT_TRUE(again && again->is_visible);
-  EXPECT_LT(max_difference_px(again->ellipse, kPad), 0.3);
+  EXPECT_LT(max_difference_px(again->ellipse, kTrackedPad), 0.3);
 }
 
 }  // namespace
