@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/geometry/ellipse.hpp"
+#include "gst/meta_ellipse.hpp"
 #include "gst/overlay/label.hpp"
 
 using Eigen::Vector2d;
@@ -20,17 +21,18 @@ namespace {
 
 constexpr double kCasingPx = 1.0;  // on each side of a line
 
-bool is_near(double value) {
+bool is_plausible_px(double value) {
   constexpr double kFarthestPx = 1e5;
   return std::abs(value) <= kFarthestPx;  // NaN is not
 }
 
 // Plausible values. Metadata may come from any element; a line of 1e300 px would never finish.
 bool is_drawable(const GstEllipseMeta& meta) {
-  return is_near(meta.cx) && is_near(meta.cy) && is_near(meta.semi_major) &&
-         is_near(meta.semi_minor) && meta.semi_minor >= 0.1 && meta.semi_major >= meta.semi_minor &&
-         std::isfinite(meta.angle_rad) && is_near(meta.roi_x) && is_near(meta.roi_y) &&
-         is_near(meta.roi_width) && is_near(meta.roi_height);
+  return is_plausible_px(meta.cx) && is_plausible_px(meta.cy) && is_plausible_px(meta.semi_major) &&
+         is_plausible_px(meta.semi_minor) && meta.semi_minor >= 0.1 &&
+         meta.semi_major >= meta.semi_minor && std::isfinite(meta.angle_rad) &&
+         is_plausible_px(meta.roi_x) && is_plausible_px(meta.roi_y) &&
+         is_plausible_px(meta.roi_width) && is_plausible_px(meta.roi_height);
 }
 
 void cover_ellipse(Canvas& canvas, const Ellipse& e, double width_px) {
@@ -58,7 +60,9 @@ class Outline {
     const gsize k = i % size_;
     return {meta_.outline[2 * k], meta_.outline[2 * k + 1]};
   }
-  [[nodiscard]] bool has(guint i) const { return is_near(at(i).x()) && is_near(at(i).y()); }
+  [[nodiscard]] bool has(guint i) const {
+    return is_plausible_px(at(i).x()) && is_plausible_px(at(i).y());
+  }
 
   // The axis-aligned ellipse of the same extent.
   [[nodiscard]] Ellipse extent() const {
@@ -149,7 +153,8 @@ void cover_region(Canvas& canvas, const GstEllipseMeta& meta, double width_px) {
 // The projected centre of the circle if the camera is known; otherwise the centre of the distorted
 // outline, if there is one, or of the ellipse.
 Vector2d centre_of(const GstEllipseMeta& meta) {
-  const bool is_known = meta.has_pose && is_near(meta.centre_x) && is_near(meta.centre_y);
+  const bool is_known =
+      meta.has_pose && is_plausible_px(meta.centre_x) && is_plausible_px(meta.centre_y);
   if (is_known) return {meta.centre_x, meta.centre_y};
   const Outline outline(meta);
   return outline.empty() ? Vector2d(meta.cx, meta.cy) : outline.extent().center();
@@ -175,7 +180,7 @@ void Overlay::begin(int width, int height) {
 }
 
 void Overlay::cover_parts(const GstEllipseMeta& meta, const OverlayStyle& style, double wider_px) {
-  const Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
+  const Ellipse e = ellipse_of(meta);
   const double width = style.line_width_px;
   const double axes_width = 0.5 * width + wider_px;
   const auto has = [&](GstEllipseOverlayFlags part) { return (style.parts & part) != 0; };
@@ -207,9 +212,7 @@ void Overlay::draw(const GstEllipseMeta& meta, const OverlayStyle& style) {
 
 void Overlay::draw_label(const GstEllipseMeta& meta, const OverlayStyle& style) {
   const Outline outline(meta);
-  const Ellipse e =
-      outline.empty() ? Ellipse{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad}
-                      : outline.extent();
+  const Ellipse e = outline.empty() ? ellipse_of(meta) : outline.extent();
   const ellipse::Rect frame{0, 0, canvas_.width(), canvas_.height()};
   std::optional<Label> label = make_label(label_of(meta), frame.width, frame.height);
   if (!label) return;

@@ -31,7 +31,7 @@
 #include "core/scene/renderer.hpp"
 #include "core/scene/true_ellipses.hpp"
 #include "gst/ellipse/gstellipsemeta.h"
-#include "gst/overlay/meta_outline.hpp"
+#include "gst/meta_ellipse.hpp"
 #include "gst/testsrc/scene_properties.hpp"
 #include "gst/track/video_view.hpp"
 
@@ -168,36 +168,29 @@ static void fill_chroma(GstVideoFrame& frame) {
   }
 }
 
-static void attach_ellipse(GstEllipseTestSrc* self,
-                           GstBuffer* buffer,
-                           const ellipse::Ellipse& ellipse,
-                           double visible_fraction) {
-  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, GST_ELLIPSE_ROLE_TRUTH);
-  meta->cx = ellipse.cx;
-  meta->cy = ellipse.cy;
-  meta->semi_major = ellipse.semi_major;
-  meta->semi_minor = ellipse.semi_minor;
-  meta->angle_rad = ellipse.angle_rad;
+static void attach_true_ellipse(GstEllipseTestSrc* self,
+                                GstBuffer* buffer,
+                                const ellipse::Ellipse& ellipse,
+                                double visible_fraction) {
+  const ellipse::Lens* lens = self->renderer->distorting_lens();
+  const ellipse::LensView view = lens != nullptr ? ellipse::LensView(*lens) : ellipse::LensView();
+  GstEllipseMeta* meta = attach_ellipse(buffer, GST_ELLIPSE_ROLE_TRUTH, ellipse, view, self->info);
   meta->visible_fraction = visible_fraction;
-  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&self->info));
-  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&self->info));
-  meta->pts = GST_BUFFER_PTS(buffer);
-  const ellipse::Lens* distortion = self->renderer->distorting_lens();
-  if (distortion != nullptr) write_outline(meta, *distortion);
 }
 
 // The pad's outer edge; for a random scene all its ellipses, targets first.
 static void attach_truth(GstEllipseTestSrc* self, GstBuffer* buffer, const ellipse::Truth& truth) {
   const ellipse::Scene& scene = self->renderer->scene();
   if (scene.sheets.empty()) {
-    if (truth.outer_edge) attach_ellipse(self, buffer, *truth.outer_edge, truth.visible_fraction);
+    if (truth.outer_edge)
+      attach_true_ellipse(self, buffer, *truth.outer_edge, truth.visible_fraction);
     return;
   }
   const double time_s = static_cast<double>(GST_BUFFER_PTS(buffer)) / GST_SECOND;
   const gint width = GST_VIDEO_INFO_WIDTH(&self->info);
   const gint height = GST_VIDEO_INFO_HEIGHT(&self->info);
   for (const ellipse::TrueEllipse& one : true_ellipses(scene, time_s, width, height)) {
-    attach_ellipse(self, buffer, one.ellipse, one.visible_fraction);
+    attach_true_ellipse(self, buffer, one.ellipse, one.visible_fraction);
   }
 }
 

@@ -8,7 +8,7 @@
 
 #include "gst/ellipse/enum_nick.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
-#include "gst/overlay/meta_outline.hpp"
+#include "gst/meta_ellipse.hpp"
 
 static GstEllipseTrackerState in_metadata(ellipse::TrackerState state) {
   switch (state) {
@@ -27,22 +27,6 @@ static GstEllipseTrackerState in_metadata(ellipse::TrackerState state) {
 const gchar* nick_of(ellipse::TrackerState state) {
   const GstEllipseTrackerState value = in_metadata(state);
   return nick_of(GST_TYPE_ELLIPSE_TRACKER_STATE, &value);
-}
-
-static GstEllipseMeta* attach(GstBuffer* buffer,
-                              GstEllipseRole role,
-                              const ellipse::Ellipse& e,
-                              const GstVideoInfo& info) {
-  GstEllipseMeta* meta = gst_buffer_add_ellipse_meta(buffer, role);
-  meta->cx = e.cx;
-  meta->cy = e.cy;
-  meta->semi_major = e.semi_major;
-  meta->semi_minor = e.semi_minor;
-  meta->angle_rad = e.angle_rad;
-  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
-  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
-  meta->pts = GST_BUFFER_PTS(buffer);
-  return meta;
 }
 
 static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
@@ -80,7 +64,8 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
                                                 const ellipse::LensView& lens,
                                                 const GstVideoInfo& info,
                                                 GstClockTime processing_time) {
-  GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, info);
+  GstEllipseMeta* meta =
+      attach_ellipse(buffer, GST_ELLIPSE_ROLE_TARGET, target.ellipse, lens, info);
   meta->state = static_cast<GstEllipseState>(target.state);
   meta->id = target.id;
   meta->contour_overlap = target.contour_overlap;
@@ -95,13 +80,12 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->processing_time = processing_time;
   write_covariance(meta, target.covariance);
   if (target.pose) write_pose(meta, *target.pose);
-  write_outline(meta, lens);
   return meta;
 }
 
 // The bounding box in image coordinates.
 static Eigen::AlignedBox2d box_of(const GstEllipseMeta& meta) {
-  const ellipse::Ellipse e{meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
+  const ellipse::Ellipse e = ellipse_of(meta);
   const Eigen::Vector2d half = ellipse::half_extent(e);
   if (meta.n_outline == 0) return {e.center() - half, e.center() + half};
   Eigen::AlignedBox2d box;
@@ -153,7 +137,8 @@ static void attach_candidate_metas(GstBuffer* buffer,
     const bool is_target =
         target && ellipse::max_difference_px(candidate.ellipse, target->ellipse) < kSameEllipsePx;
     if (is_target) continue;
-    GstEllipseMeta* meta = attach(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, info);
+    GstEllipseMeta* meta =
+        attach_ellipse(buffer, GST_ELLIPSE_ROLE_CANDIDATE, candidate.ellipse, tracker.lens(), info);
     meta->contour_overlap = candidate.contour_overlap;
     meta->ellipse_overlap = candidate.ellipse_overlap;
     meta->probability = candidate.probability;
@@ -161,7 +146,6 @@ static void attach_candidate_metas(GstBuffer* buffer,
                                                        candidate.ellipse,
                                                        GST_VIDEO_INFO_WIDTH(&info),
                                                        GST_VIDEO_INFO_HEIGHT(&info));
-    write_outline(meta, tracker.lens());
     if (properties.attach_analytics) attach_object(buffer, *meta, box_in_frame(*meta), {});
   }
 }
