@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "core/camera/lens_model.hpp"
 
@@ -31,7 +30,7 @@ LensPoint distorted(const Camera& camera, const Vector2d& p) {
   return point;
 }
 
-Vector2d beside_radial(const Camera& camera, const Vector2d& p) {
+Vector2d tangential_part(const Camera& camera, const Vector2d& p) {
   if (camera.lens == LensModel::kFisheye) return {0.0, 0.0};
   const Distorted<double> aside = tangential(camera.distortion, p.x(), p.y());
   return {aside.x, aside.y};
@@ -176,7 +175,7 @@ double Lens::farthest_radius() const {
     for (const double y : {-1.0, 1.0 * camera_.height}) {
       const auto ideal = ideal_from_picture({x, y});
       if (!ideal) return largest_picture_;
-      const double aside = beside_radial(camera_, ray(*ideal)).norm();
+      const double aside = tangential_part(camera_, ray(*ideal)).norm();
       farthest = std::max(farthest, ray({x, y}).norm() + aside);
     }
   }
@@ -216,7 +215,7 @@ Vector2d Lens::approximate_ideal(const Vector2d& picture_px) const {
   if (!(table_scale_ > 0.0)) return picture_px;
   const Vector2d distorted_ray = ray(picture_px);
   const Vector2d first = from_table(distorted_ray);
-  const Vector2d aside = beside_radial(camera_, first);
+  const Vector2d aside = tangential_part(camera_, first);
   return pixel(aside.isZero(0.0) ? first : from_table(distorted_ray - aside));
 }
 

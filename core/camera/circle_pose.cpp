@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kMemory_s = 1.7;      // of the inner edges' evidence
+constexpr double kInnerEdgeMemory_s = 1.7;
 constexpr double kInnerBiasPx = 0.02;  // standard deviation of an edge's systematic error
 constexpr double kLevelRad = 0.1;      // standard deviation of a level target's normal
 
@@ -91,7 +91,7 @@ void add_misfit(const Camera& camera,
   const auto measured = ring_change(view, inner.ellipse);
   const auto outer_ellipse = project_circle(outer.view, 1.0);
   if (!measured || !outer_ellipse) return;
-  const double size_px = std::sqrt(inner.ellipse.semi_major * inner.ellipse.semi_minor);
+  const double size_px = mean_radius_px(inner.ellipse);
   // An error of the outer edge shifts the prediction.
   const RingMatrix along = ring_changes(outer.view, view);
   RingMatrix covariance = inner.uncertainty.information.inverse() +
@@ -99,7 +99,7 @@ void add_misfit(const Camera& camera,
   covariance.diagonal().array() += std::pow(kInnerBiasPx / size_px, 2);
   const RingMatrix information = covariance.inverse();
 
-  const double ratio = size_px / std::sqrt(outer_ellipse->semi_major * outer_ellipse->semi_minor);
+  const double ratio = size_px / mean_radius_px(*outer_ellipse);
   const auto first =
       fit_radius(image_from_pad(camera, poses[0]), view, *measured, information, ratio);
   const auto second =
@@ -260,7 +260,7 @@ double PoseEstimator::OddsAverage::add(double frame_odds,
                                        double deviation,
                                        double separation,
                                        double elapsed_s) {
-  const double kept = std::exp(-elapsed_s / kMemory_s);
+  const double kept = std::exp(-elapsed_s / kInnerEdgeMemory_s);
   if (information > 0.0) {
     differences += 1.0;
     const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));

@@ -42,10 +42,10 @@ struct CirclePose {
 /// Covariance of a circle's position [radii^2], from the uncertainty of its image. Wider near a
 /// frontal view, where the ellipse determines the tilt to second order only.
 ///
-/// @param tilt_sigma_rad  Standard deviation of the tilt that is known otherwise.
+/// @param tilt_sigma_rad  Prior standard deviation of the tilt.
 [[nodiscard]] Eigen::Matrix3d position_covariance(const Camera& camera,
                                                   const CirclePose& pose,
-                                                  const RingUncertainty& picture,
+                                                  const RingUncertainty& image,
                                                   double tilt_sigma_rad = 1.0);
 
 /// The target's pose in the camera frame.
@@ -69,7 +69,7 @@ struct PatternView {
       Eigen::Matrix2d::Identity();  ///< Of the centre, relative to the outer edge [radii^2].
 };
 
-/// What tells the two solutions of a target's pose apart. Each part may be missing.
+/// Evidence that selects one of the two solutions of a target's pose. Each part is optional.
 struct PoseEvidence {
   std::span<const FittedEllipse> inner_edges =
       {};  ///< Measured images of concentric circles inside
@@ -91,6 +91,7 @@ class PoseEstimator {
   /// @param uncertainty  Of the outer edge.
   /// @param radius_m     0 = unknown.
   /// @param elapsed_s    Since the last call.
+  /// @return nullopt if no circle in front of the camera projects to the ellipse.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
                                                    const RingUncertainty& uncertainty,

@@ -67,8 +67,9 @@ struct TracedCandidate {
 /// object serves one thread at a time.
 class DetectionTrace {
  public:
-  /// In order of the search. `contours` makes one pass; `arcs` one per scale, a quarter of the size
-  /// first. Before some of them it makes one around the ellipses so far only.
+  /// In order of the search. `contours` makes one pass; `arcs` makes one per scale, a quarter of
+  /// the size first. Before a finer scale it may make one restricted to the surroundings of the
+  /// ellipses found so far.
   [[nodiscard]] std::span<const TracedPass> passes() const { return passes_; }
   [[nodiscard]] std::span<const TracedCandidate> candidates() const { return candidates_; }
 

@@ -57,7 +57,8 @@ class Detector {
   [[nodiscard]] virtual bool has_probability() const { return false; }
 
   /// Log odds that the outline `e` of this picture is an ellipse, by the same evidence as detect();
-  /// nullopt if the detector cannot compute them. Cheaper than detect(): no search.
+  /// nullopt if the detector cannot compute them, -infinity if the edges do not support the outline
+  /// at all. Cheaper than detect(): no search.
   ///
   /// @param e           The outline, as Detection::ellipse.
   /// @param thresholds  Only the edge and overlap thresholds apply.

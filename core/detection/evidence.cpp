@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/detection/evidence.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>

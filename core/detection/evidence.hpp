@@ -21,7 +21,7 @@ namespace ellipse {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-/// From these log odds on an ellipse is certain, and below their negative it is ruled out.
+/// An ellipse with at least these log odds is certain; one below their negative is ruled out.
 inline constexpr double kCertainLogOdds = 3.0;
 
 [[nodiscard]] inline bool is_certain(double probability) {
@@ -72,7 +72,8 @@ struct EvidenceTable {
 [[nodiscard]] const EvidenceTable& built_in_evidence();
 
 /// Reads lines "FEATURE WEIGHT MEAN" and "bias VALUE"; # begins a comment. Throws
-/// std::invalid_argument that names the file if an entry is wrong, missing or duplicate.
+/// std::invalid_argument that names the file if it cannot be read, or if an entry is wrong, missing
+/// or duplicate.
 [[nodiscard]] EvidenceTable read_evidence(const std::filesystem::path& file);
 
 /// Writes the format of read_evidence().

@@ -1,6 +1,5 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
-#include <span>
 #include <string>
 
 namespace ellipse {
@@ -21,6 +20,7 @@ enum class Reason {
   // Further tests of the arc detector.
   kPoorFit,              ///< RMS distance of its arcs from the ellipse too large.
   kFarOutside,           ///< Its centre is more than one picture size outside.
+  kCut,                  ///< Reaches beyond the searched region; judged again in the whole picture.
   kDuplicateOfRejected,  ///< Duplicates a candidate rejected before.
   kTooFewEdges,          ///< Too few edges match its outline.
   kUnlikely,             ///< Probability of an ellipse too low.

@@ -14,7 +14,7 @@ class ChainTracer {
  public:
   static constexpr std::size_t kMinLength = 14;  ///< Shortest chain kept [pixels].
 
-  /// Reserves capacity for chains. Otherwise capacity grows to the largest count seen.
+  /// Reserves capacity for chains. Otherwise capacity grows to the largest count so far.
   void reserve(std::size_t chains);
 
   /// Marks the gradient maxima of chains with maximum::kChained. Allocates only when the picture

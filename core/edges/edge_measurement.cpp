@@ -83,7 +83,7 @@ EdgePosition position_of(const OutlineSamples& outline,
                          float variance) {
   const Eigen::Vector2f normal = outline.normal(k);
   Eigen::Vector2f from_sample = outline.nearest(k).cast<float>() - outline.point(k);
-  from_sample[outline.is_flat(k) ? 0 : 1] += along_px;
+  from_sample[outline.is_along_row(k) ? 0 : 1] += along_px;
   // The outline curves away from its tangent to both sides of the sample.
   const float aside = from_sample.y() * normal.x() - from_sample.x() * normal.y();
   const float curvature = outline.curvature(k);
@@ -148,9 +148,9 @@ class MapSearch {
         reach_(reach_px) {}
 
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
-                                                 bool is_flat,
+                                                 bool is_along_row,
                                                  const SignedNormal& normal) const {
-    const std::ptrdiff_t step = is_flat ? 1 : stride_;
+    const std::ptrdiff_t step = is_along_row ? 1 : stride_;
     const std::ptrdiff_t at = origin_ + std::ptrdiff_t(pixel.y()) * stride_ + pixel.x();
     for (std::ptrdiff_t k = 0; k <= 2 * reach_; ++k) {
       const std::ptrdiff_t offset = (k & 1) != 0 ? (k + 1) / 2 : -(k / 2);
@@ -182,13 +182,13 @@ class PictureSearch {
         min_gradient_(static_cast<float>(min_gradient)) {}
 
   [[nodiscard]] std::optional<FoundMaximum> find(const Eigen::Vector2i& pixel,
-                                                 bool is_flat,
+                                                 bool is_along_row,
                                                  const SignedNormal& normal) const {
     const int first = -kReachOnPicture - 1;
-    const int x = pixel.x() + origin_.x() + (is_flat ? first : 0);
-    const int y = pixel.y() + origin_.y() + (is_flat ? 0 : first);
+    const int x = pixel.x() + origin_.x() + (is_along_row ? first : 0);
+    const int y = pixel.y() + origin_.y() + (is_along_row ? 0 : first);
     std::array<Gradient, 2 * kReachOnPicture + 3> line;
-    gradients_along(luma_, x, y, is_flat, line);
+    gradients_along(luma_, x, y, is_along_row, line);
     const auto top = std::max_element(
         line.begin() + 1, line.end() - 1, [&](const Gradient& a, const Gradient& b) {
           return normal.component(a) < normal.component(b);
@@ -197,10 +197,10 @@ class PictureSearch {
     const std::ptrdiff_t offset = top - line.begin();
     FoundMaximum found = maximum_at(&*top, 1, offset + first);
     if (!(found.sharpness > 0.0F)) return std::nullopt;
-    // The brightest pixel in the reach of the kernels.
-    const bool is_brighter_before = (is_flat ? top->x : top->y) < 0;
+    // The pixel at the bright end of the kernels.
+    const bool is_brighter_before = (is_along_row ? top->x : top->y) < 0;
     const int bright = static_cast<int>(offset) + (is_brighter_before ? -2 : 2);
-    const std::uint8_t level = is_flat ? luma_.row(y)[x + bright] : luma_.row(y + bright)[x];
+    const std::uint8_t level = is_along_row ? luma_.row(y)[x + bright] : luma_.row(y + bright)[x];
     found.sigma_px = is_saturated(level) ? kPixelError : kVertexError;
     return found;
   }
@@ -218,16 +218,16 @@ class PictureSearch {
 // @param half_px  The line of pixels extends so far to both sides.
 std::optional<float> centroid_along(const ImageView& luma,
                                     const Eigen::Vector2i& pixel,
-                                    bool is_flat,
+                                    bool is_along_row,
                                     const SignedNormal& normal,
                                     int half_px) {
   float sum = 0.0F;
   float moment = 0.0F;
   for (int i = -half_px; i <= half_px; ++i) {
     std::array<Gradient, 1> gradient;
-    const int x = pixel.x() + (is_flat ? i : 0);
-    const int y = pixel.y() + (is_flat ? 0 : i);
-    gradients_along(luma, x, y, is_flat, gradient);
+    const int x = pixel.x() + (is_along_row ? i : 0);
+    const int y = pixel.y() + (is_along_row ? 0 : i);
+    gradients_along(luma, x, y, is_along_row, gradient);
     const float height = std::max(0.0F, normal.component(gradient[0]));
     sum += height;
     moment += height * static_cast<float>(i);
@@ -321,13 +321,13 @@ void EdgeMeasurer::move_to_centroids(const Picture& picture,
     if (!area.has(outline.nearest(k))) continue;
     const auto along_px = centroid_along(picture.luma,
                                          outline.nearest(k) + outline.origin(),
-                                         outline.is_flat(k),
+                                         outline.is_along_row(k),
                                          {edge.normal, polarity},
                                          half_px);
     if (!along_px) continue;
     const float squared_along = motion_blur_.px.squaredNorm() - across_px * across_px;
     const auto [point, distance_px] =
-        position_of(outline, k, *along_px, kSharpVariance + even_variance(squared_along));
+        position_of(outline, k, *along_px, kSharpVariance + uniform_variance(squared_along));
     edge.point = point;
     edge.offset.distance_px = distance_px;
   }
@@ -355,7 +355,7 @@ OutlineSupport EdgeMeasurer::measure_along(const OutlineSamples& outline,
     inside += length;
     inside_turn += outline.turn(k);
     const Eigen::Vector2f normal = outline.normal(k);
-    const auto maximum = search.find(pixel, outline.is_flat(k), {normal, polarity});
+    const auto maximum = search.find(pixel, outline.is_along_row(k), {normal, polarity});
     if (!maximum) continue;
     matched += length;
     matched_turn += outline.turn(k);

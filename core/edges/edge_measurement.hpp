@@ -23,7 +23,7 @@ inline constexpr std::size_t kMinEdgesOfEllipse = 8;
 /// normal: 30 degrees.
 inline constexpr float kMinSquaredCosine = 0.75F;
 
-/// Standard deviation of an edge in focus without noise [px].
+/// Standard deviation of the position of an edge in focus without noise [px].
 inline constexpr float kVertexError = 0.017F;
 
 /// Standard deviation of a position that is known to a pixel: 1 / sqrt(12) [px].

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
@@ -57,13 +56,11 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
 std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
                                                 const Ellipse& e,
                                                 Polarity polarity,
-                                                const EdgeLimits& limits,
+                                                double min_gradient,
                                                 std::size_t samples,
                                                 const Eigen::Vector2d& motion_px) {
   EdgeMeasurer measurer;
-  const OutlineSupport found =
-      measurer.measure(picture, e, polarity, samples, limits.min_gradient, motion_px.cast<float>());
-  if (found.support < limits.min_support) return std::nullopt;
+  (void)measurer.measure(picture, e, polarity, samples, min_gradient, motion_px.cast<float>());
   return fitted_to_edges(measurer, picture.lens, e);
 }
 

@@ -13,26 +13,21 @@ namespace ellipse {
 /// Samples of the outline, as of OutlineSamples.
 inline constexpr std::size_t kRefinementSamples = 96;
 
-/// What an outline's edges must have for a refinement.
-struct EdgeLimits {
-  double min_gradient = 0.0;  ///< Of each edge [units of Gradient].
-  double min_support = 0.0;   ///< Matched share of the outline inside the picture.
-};
-
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient
 /// maximum across its perimeter at each sample and computes no gradient elsewhere.
 ///
 /// @param picture    Its lens distorts the perimeter for the search; `e` and the result are in the
 ///                   ideal plane.
+/// @param min_gradient  Smallest gradient of an edge [units of Gradient].
 /// @param samples    As of OutlineSamples. Fewer samples are faster and noisier.
 /// @param motion_px  As of motion_blur(); zero = unknown.
-/// @return nullopt if fewer edges than the limits are near, too few for a fit, or the fit fails.
-///         Allocates nothing; O(samples).
+/// @return nullopt if too few edges for a fit are near, or the fit fails. Allocates nothing;
+/// O(samples).
 [[nodiscard]] std::optional<FittedEllipse> refined_on_picture(
     const Picture& picture,
     const Ellipse& e,
     Polarity polarity,
-    const EdgeLimits& limits,
+    double min_gradient,
     std::size_t samples = kRefinementSamples,
     const Eigen::Vector2d& motion_px = {0.0, 0.0});
 

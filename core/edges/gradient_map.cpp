@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
@@ -81,8 +80,9 @@ struct Levels {
   Int high;
 };
 
-// The direction of the edge, as maximum::kOctant. `is_flat`: -1 if the gradient is along the row.
-ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_flat) {
+// The direction of the edge, as maximum::kOctant. `is_along_row`: -1 if the gradient is along the
+// row.
+ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_along_row) {
   const Int larger = ax > ay ? ax : ay;
   const Int smaller = ax > ay ? ay : ax;
   // tan(22.5 degrees) = 0.414; 1/2 - 1/16 - 1/64 = 0.422
@@ -91,7 +91,8 @@ ELLIPSE_INLINE Int octant_of(Int gx, Int gy, Int ax, Int ay, Int is_flat) {
   const Int is_left = static_cast<Int>(gx < 0 ? -1 : 0);
   const Int is_down = static_cast<Int>(gy > 0 ? -1 : 0);
   const Int slanted = static_cast<Int>(((is_left & 6) ^ (is_down & 2)) + 1);
-  const Int straight = static_cast<Int>((is_flat & (2 + (is_left & 4))) | (~is_flat & is_down & 4));
+  const Int straight =
+      static_cast<Int>((is_along_row & (2 + (is_left & 4))) | (~is_along_row & is_down & 4));
   return static_cast<Int>((is_diagonal & slanted) | (~is_diagonal & straight));
 }
 
@@ -120,10 +121,10 @@ ELLIPSE_INLINE int mark_maxima_body(
     for (int i = 0; i < GradientMap::kBlock; ++i) {
       const Int ax = static_cast<Int>(gx[i] < 0 ? -gx[i] : gx[i]);
       const Int ay = static_cast<Int>(gy[i] < 0 ? -gy[i] : gy[i]);
-      const Int is_flat = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient is along the row
-      const Int before = static_cast<Int>((m[i - 1] & is_flat) | (up[i] & ~is_flat));
-      const Int after = static_cast<Int>((m[i + 1] & is_flat) | (down[i] & ~is_flat));
-      const Int octant = octant_of(gx[i], gy[i], ax, ay, is_flat);
+      const Int is_along_row = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient is along the row
+      const Int before = static_cast<Int>((m[i - 1] & is_along_row) | (up[i] & ~is_along_row));
+      const Int after = static_cast<Int>((m[i + 1] & is_along_row) | (down[i] & ~is_along_row));
+      const Int octant = octant_of(gx[i], gy[i], ax, ay, is_along_row);
       const Int is_maximum = static_cast<Int>((m[i] > low ? -1 : 0) & (m[i] >= before ? -1 : 0) &
                                               (m[i] > after ? -1 : 0));
       const Int seed = static_cast<Int>((m[i] > high ? -1 : 0) & maximum::kSeed);

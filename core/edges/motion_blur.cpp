@@ -116,7 +116,7 @@ MotionBlur motion_blur(std::span<const EdgeMeasurement> edges, const Eigen::Vect
   double loss = 0.0;
   LinearFit fit(loss, edges, motion_px);
   for (int step = 0; step < 3; ++step) {
-    const double max_loss = even_variance(std::max(0.0, fit.sharpest()));
+    const double max_loss = uniform_variance(std::max(0.0, fit.sharpest()));
     loss = std::clamp(loss + fit.change(), 0.0, max_loss);
     if (loss == 0.0) break;
     fit = LinearFit(loss, edges, motion_px);
@@ -126,7 +126,7 @@ MotionBlur motion_blur(std::span<const EdgeMeasurement> edges, const Eigen::Vect
     const double squared_motion = motion_px.squaredNorm();
     return {none, std::min(squared_motion, squared_length(edges))};
   }
-  const double share = std::sqrt(loss / even_variance(fit.sharpest()));
+  const double share = std::sqrt(loss / uniform_variance(fit.sharpest()));
   const Eigen::Vector2f px = static_cast<float>(share) * motion_px;
   // Blur that leaves the edges more than half of their sharpness does not hide their maxima.
   return {loss * motion_px.squaredNorm() > 1.0 ? px : none, px.squaredNorm()};

@@ -17,9 +17,9 @@ struct MotionBlur {
   double squared_length = 0.0;
 };
 
-/// Variance of even blur over a length, such as that of steady motion.
+/// Variance of uniform blur over a length, such as that of steady motion.
 template <class Number>
-[[nodiscard]] constexpr Number even_variance(Number squared_length) {
+[[nodiscard]] constexpr Number uniform_variance(Number squared_length) {
   return squared_length / Number(12);
 }
 

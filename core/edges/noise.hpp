@@ -52,7 +52,7 @@ inline constexpr int kNoiseRows = 16;
 
 /// Standard deviation of the pixels' noise [grey levels], from second differences
 /// [Immerkaer1996]: zero on planes and on straight edges along an axis. At least that of rounding
-/// to grey levels. O(pixels / height).
+/// to grey levels. O(width).
 [[nodiscard]] double pixel_noise(const ImageView& luma);
 
 }  // namespace ellipse

@@ -40,7 +40,9 @@ class OutlineSamples {
     return {static_cast<int>(std::lrint(x_[k])), static_cast<int>(std::lrint(y_[k]))};
   }
   /// Whether the normal is closer to the row than to the column.
-  [[nodiscard]] bool is_flat(std::size_t k) const { return std::abs(nx_[k]) > std::abs(ny_[k]); }
+  [[nodiscard]] bool is_along_row(std::size_t k) const {
+    return std::abs(nx_[k]) > std::abs(ny_[k]);
+  }
   /// Cosine and sine of the eccentric anomaly.
   [[nodiscard]] Eigen::Vector2d anomaly(std::size_t k) const { return around_[k].cast<double>(); }
   /// Length of the outline that the sample represents.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/geometry/ellipse.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

@@ -25,11 +25,17 @@ struct Ellipse {
   bool operator==(const Ellipse&) const = default;
 };
 
+/// Radius of the circle with the same area [px].
+[[nodiscard]] inline double mean_radius_px(const Ellipse& e) {
+  return std::sqrt(e.semi_major * e.semi_minor);
+}
+
 /// A short piece of an ellipse's perimeter.
 struct PerimeterStep {
   Eigen::Vector2d point;    ///< [px]
   Eigen::Vector2d tangent;  ///< Unit vector.
   double length_px = 0.0;
+  /// Outward unit normal.
   [[nodiscard]] Eigen::Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
 };
 

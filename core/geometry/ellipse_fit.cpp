@@ -264,8 +264,8 @@ RingUncertainty expected_uncertainty(const Ellipse& e,
     const double length = step * std::hypot(e.semi_major * std::sin(t), e.semi_minor * std::cos(t));
     fit.add(point, length / (kIndependentPx * sigma_px * sigma_px));
   }
-  // If little of the outline is inside, its points do not determine all parameters: the prior of a
-  // radius does.
+  // If little of the outline is inside, its points do not determine all parameters. A prior with a
+  // standard deviation of one radius does.
   return {image_from_pad(e), fit.information() + RingMatrix::Identity()};
 }
 

@@ -104,8 +104,8 @@ struct FittedEllipse {
   RingUncertainty uncertainty;
 };
 
-/// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame; a radius
-/// if nothing is inside.
+/// Expected uncertainty of a fit to the edges along the part of an ellipse inside a frame; a
+/// standard deviation of one radius if nothing is inside.
 /// @param sigma_px  Standard deviation of an edge position, independent every 8 px.
 [[nodiscard]] RingUncertainty expected_uncertainty(const Ellipse& e,
                                                    double width,

@@ -41,6 +41,7 @@ using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
   return row.dot(covariance.lazyProduct(row));
 }
 
+/// The view after a change with the generator A: H exp(A) to fourth order, scaled to H(2, 2) = 1.
 [[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
                                     const HomographyChange& change);
 
@@ -100,8 +101,8 @@ struct ProjectedPoint {
 struct EdgeView {
   Eigen::Vector2d point;   ///< [px]
   Eigen::Vector2d normal;  ///< Unit normal of the edge.
-  double px_per_unit;      ///< Edge displacement along it per unit along the normal on the pad.
-  HomographyChange row;    ///< The same per HomographyChange [px].
+  double px_per_unit;      ///< Displacement along `normal` per unit on the pad.
+  HomographyChange row;    ///< Displacement along `normal` per unit of each component [px].
 };
 
 /// Projects a point on an edge of the pad.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <span>
 
 namespace ellipse {
@@ -48,8 +47,8 @@ class ResidualSums {
   /// @param precision  Weight of the sample without Tukey's; the unit does not matter.
   void add(int sample, double distance, double reach, double precision);
 
-  /// Number of samples within the reach; those of unequal precision count as fewer equal ones
-  /// [Kish1965]. 0 if there are none.
+  /// Effective number of samples within the reach, given their precisions [Kish1965]. 0 if there
+  /// are none.
   [[nodiscard]] double samples() const;
 
   /// Factor from the fit's information, in which each sample has the weight precision x

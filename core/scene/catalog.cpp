@@ -104,9 +104,9 @@ Scene bullseye(std::uint64_t seed) {
   return scene;
 }
 
-Scene crumpled(std::uint64_t seed) {
+Scene deformed(std::uint64_t seed) {
   Scene scene = seeded(seed);
-  scene.pad.crumple = 0.02;
+  scene.pad.deformation = 0.02;
   return scene;
 }
 
@@ -166,7 +166,7 @@ constexpr std::array kCatalog = {
     NamedScene{"thin", "Thin ring of 0.055 pad radii", thin},
     NamedScene{"disc", "Bright disc without a plate", disc},
     NamedScene{"bullseye", "Concentric bright rings on a dark plate", bullseye},
-    NamedScene{"crumpled", "Edge deviates from the ellipse by 2 % of the radius", crumpled},
+    NamedScene{"crumpled", "Edge deviates from the ellipse by 2 % of the radius", deformed},
     NamedScene{"noise", "Noise of 14 grey levels and JPEG at quality 45", noise},
     NamedScene{"negative", "No pad; squares, flowers, rounded rectangles and arcs", negative},
     NamedScene{"orbit", "Orbit around a ring with an H, at 45 degrees", orbit},

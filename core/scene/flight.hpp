@@ -14,7 +14,8 @@ struct CameraPose {
   double roll_rad = 0.0;  ///< About the optical axis.
 };
 
-/// Path of a camera. All paths are periodic and include the small motions of a flying vehicle.
+/// Path of a camera, with the small motions of a flying vehicle. kDash, kShake and kHover have
+/// their own periods instead of Flight::period_s.
 enum class Path {
   kApproach,  ///< From `highest` down to `lowest` and up again, with lateral drift.
   kOblique,   ///< At 60 degrees from the vertical, from distance `highest` to `lowest` and back.

@@ -2,7 +2,6 @@
 #include "core/scene/foreground.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 
 namespace ellipse {
 
-/// Ground around the pad. Most kinds show shapes that resemble ellipses; only kCircles shows
+/// Ground around the pad. Some kinds show shapes that resemble ellipses; only kCircles shows
 /// ellipses.
 enum class GroundKind {
   kPlain,

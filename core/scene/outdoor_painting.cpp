@@ -2,15 +2,14 @@
 #include "core/scene/outdoor_painting.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "core/geometry/ellipse.hpp"
 
 namespace ellipse {
 namespace {
 
 constexpr int kSize = kGroundTileSize;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 // Four to six corners at uneven distances: no ellipse fits it well.
 std::vector<cv::Point2d> stone(const cv::Point2d& center, double size, Random& random) {
   const int corners = 4 + random.below(3);

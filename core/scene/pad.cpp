@@ -2,7 +2,6 @@
 #include "core/scene/pad.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,7 +63,7 @@ std::vector<double> edge_radii(const Pad& pad) {
 
 PadPicture::PadPicture(const Pad& pad, double blur_px, std::uint64_t seed)
     : pad_(pad), blur_px_(blur_px) {
-  if (pad_.crumple > 0.0) deform_edges(seed);
+  if (pad_.deformation > 0.0) deform_edges(seed);
 }
 
 // A smooth random deviation from the circle, scaled to the given amplitude.
@@ -85,8 +84,8 @@ void PadPicture::deform_edges(std::uint64_t seed) {
     largest = std::max(largest, std::abs(value));
   }
   for (std::size_t k = 0; k < kHarmonics; ++k) {
-    cosines_[k] *= pad_.crumple / largest;
-    sines_[k] *= pad_.crumple / largest;
+    cosines_[k] *= pad_.deformation / largest;
+    sines_[k] *= pad_.deformation / largest;
   }
 }
 
@@ -160,7 +159,7 @@ double PadPicture::mark(const Vector2d& pixel) const {
 }
 
 double PadPicture::inside(const CircularEdge& circle, const Vector2d& pixel) const {
-  if (!(pad_.crumple > 0.0)) return circle.coverage(pixel, blur_px_);
+  if (!(pad_.deformation > 0.0)) return circle.coverage(pixel, blur_px_);
   const Vector3d q = plane_from_image_ * pixel.homogeneous();
   const Vector2d p = q.head<2>() / q.z();
   const double r = p.norm();
@@ -193,17 +192,17 @@ bool PadPicture::is_uniform(const Vector2d& center_px,
   // The margin allows for a change of scale within the block.
   const double reach = 1.2 * half * reach_px / half_px;
   const double outermost =
-      std::max(1.0 + pad_.crumple, pad_.plate_half_width * std::numbers::sqrt2);
+      std::max(1.0 + pad_.deformation, pad_.plate_half_width * std::numbers::sqrt2);
   const double r = center.norm();
   if (r > outermost + reach) return true;
   for (const CircularEdge& circle : circles_) {
-    if (std::abs(r - circle.radius()) <= reach + pad_.crumple) return false;
+    if (std::abs(r - circle.radius()) <= reach + pad_.deformation) return false;
   }
   if (pad_.plate_half_width > 0.0 && r > pad_.plate_half_width - kRimWidth - reach) {
     if (!rim_.is_clear_of(center_px, reach_px)) return false;
     if (!plate_.is_clear_of(center_px, reach_px)) return false;
   }
-  if (r - reach > 1.0 + pad_.crumple) return true;
+  if (r - reach > 1.0 + pad_.deformation) return true;
   for (const Box& bar : bars_) {
     if (!bar.is_clear_of(center_px, reach_px)) return false;
   }

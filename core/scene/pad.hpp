@@ -32,7 +32,8 @@ struct Pad {
   double paint_level = 55.0;
   double plate_level = 225.0;
   double rim_level = 75.0;  ///< Of the plate's painted rim.
-  double crumple = 0.0;     ///< Largest smooth deviation of an edge from its circle; up to 0.1.
+  /// Largest smooth deviation of an edge from its circle, relative to its radius; up to 0.1.
+  double deformation = 0.0;
   std::vector<double> gaps_rad;  ///< Gaps in the ring, by angle on the pad.
   double gap_width_rad = 0.1;
 };

@@ -28,7 +28,8 @@ class SceneRenderer {
 
   /// Renders the frame with its exposure centred at a time; returns the truth at that time.
   /// @param frame  Its number: seeds the noise.
-  /// Allocates only when frames grow. O(pixels) times the length of the motion blur.
+  /// Without sheets, and with progressive readout, allocates only when frames grow. O(pixels) times
+  /// the length of the motion blur.
   Truth render(double time_s, std::uint64_t frame, const MutableImage& picture);
 
   /// Renders one instant in any view, with sheets and bars at time 0; returns the truth of the pad

@@ -34,9 +34,9 @@ class DistortedOutline {
 
   [[nodiscard]] double share_in_frame() {
     constexpr int kPieces = 64;
-    Place begin = at(0.0);
+    Sample begin = at(0.0);
     for (int i = 1; i <= kPieces; ++i) {
-      const Place end = at(2.0 * std::numbers::pi * i / kPieces);
+      const Sample end = at(2.0 * std::numbers::pi * i / kPieces);
       add(begin, end, kMaxHalvings);
       begin = end;
     }
@@ -46,13 +46,13 @@ class DistortedOutline {
  private:
   static constexpr int kMaxHalvings = 16;
 
-  struct Place {
+  struct Sample {
     double anomaly_rad;
     Vector2d picture_px;
     bool is_shown;
   };
 
-  [[nodiscard]] Place at(double anomaly_rad) const {
+  [[nodiscard]] Sample at(double anomaly_rad) const {
     const Vector2d ideal = ideal_.point_at(anomaly_rad);
     if (const auto point = lens_.picture_from_ideal(ideal)) {
       return {anomaly_rad, point->picture_px, true};
@@ -76,10 +76,10 @@ class DistortedOutline {
   }
 
   // Bisects, since evenly spaced anomalies are unevenly spaced in the picture of a wide lens.
-  void add(const Place& begin, const Place& end, int halvings) {
+  void add(const Sample& begin, const Sample& end, int halvings) {
     const double length = (end.picture_px - begin.picture_px).norm();
     if (length > 1.0 && halvings > 0) {
-      const Place middle = at(0.5 * (begin.anomaly_rad + end.anomaly_rad));
+      const Sample middle = at(0.5 * (begin.anomaly_rad + end.anomaly_rad));
       add(begin, middle, halvings - 1);
       add(middle, end, halvings - 1);
       return;
@@ -90,8 +90,7 @@ class DistortedOutline {
 
   [[nodiscard]] bool is_in_frame(const Vector2d& p) const {
     const Camera& camera = lens_.camera();
-    return p.x() >= -0.5 && p.y() >= -0.5 && p.x() < camera.width - 0.5 &&
-           p.y() < camera.height - 0.5;
+    return is_in_picture(p, camera.width, camera.height);
   }
 
   Lens lens_;

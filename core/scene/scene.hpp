@@ -73,9 +73,9 @@ struct Scene {
   std::uint64_t seed = 1;          ///< Of all random content.
 };
 
-/// Ground truth of a frame's target: the pad or, if the scene has none, the largest of the sheets'
-/// targets in the frame. The ellipses are in the ideal plane, which is the picture itself without
-/// distortion. See true_ellipses() for all ellipses of a frame.
+/// Ground truth of a frame's target: the pad in a scene without sheets, otherwise the largest
+/// target in the frame, without inner_edge. The ellipses are in the ideal plane, which is the
+/// picture itself without distortion. See true_ellipses() for all ellipses of a frame.
 struct Truth {
   std::optional<Ellipse> outer_edge;  ///< The exact image of the painted circle [px].
   std::optional<Ellipse> inner_edge;  ///< Of the next edge inside it [px].

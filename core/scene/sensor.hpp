@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace ellipse {
 
@@ -30,7 +29,7 @@ struct Sensor {
   int jpeg_quality = 0;     ///< 1 to 100: quality of JPEG compression; 0 = none.
 };
 
-/// Converts light to grey levels. Holds only a noise table.
+/// Converts light to grey levels. Holds only tables of the gamma curve and of the noise.
 class SensorReader {
  public:
   explicit SensorReader(const Sensor& sensor);

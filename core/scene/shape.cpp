@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/geometry/ellipse.hpp"
 #include "core/scene/edge.hpp"
 #include "core/scene/random.hpp"
 
@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 double superellipse_radius(double angle_rad, double power) {
   const double c = std::pow(std::abs(std::cos(angle_rad)), power);

@@ -9,7 +9,7 @@ namespace ellipse {
 
 /// The outline of a shape, in its own frame.
 enum class Outline {
-  kEllipse,       ///< The unit circle; `place` makes it any ellipse.
+  kEllipse,       ///< The unit circle; `sheet_from_shape` makes it any ellipse.
   kSuperellipse,  ///< |x|^amount + |y|^amount = 1.
   kEgg,           ///< The unit circle, wider towards +x: y is multiplied by 1 + amount x.
   kWavy,          ///< The unit circle with smooth random deviations up to `amount`.

@@ -87,12 +87,11 @@ class Visibility {
   [[nodiscard]] bool is_in_frame(const Vector2d& ideal) const {
     Vector2d px = ideal;
     if (camera_.is_distorted()) {
-      const auto bent = lens_.picture_from_ideal(ideal);
-      if (!bent) return false;
-      px = bent->picture_px;
+      const auto point = lens_.picture_from_ideal(ideal);
+      if (!point) return false;
+      px = point->picture_px;
     }
-    return px.x() >= -0.5 && px.y() >= -0.5 && px.x() < camera_.width - 0.5 &&
-           px.y() < camera_.height - 0.5;
+    return is_in_picture(px, camera_.width, camera_.height);
   }
 
   [[nodiscard]] bool is_hidden(const Vector2d& px, std::size_t sheet, std::size_t shape) const {
@@ -185,7 +184,8 @@ std::vector<TrueEllipse> true_ellipses(
   const Visibility visibility(camera, viewed);
   std::vector<TrueEllipse> found;
   add_sheet(viewed, 0, visibility, found);
-  for (TrueEllipse& edge : found) edge.deviation_px += scene.pad.crumple * edge.ellipse.semi_major;
+  for (TrueEllipse& edge : found)
+    edge.deviation_px += scene.pad.deformation * edge.ellipse.semi_major;
   for (std::size_t i = 1; i < viewed.size(); ++i) add_sheet(viewed, i, visibility, found);
   std::erase_if(found, [&](const TrueEllipse& e) {
     return !(e.visible_fraction > 0.0) || !(e.ellipse.semi_minor >= min_semi_minor_px);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Clutter and occluders for any wild scene.
-#include <algorithm>
-#include <numbers>
 
 #include "core/scene/wild_draft.hpp"
 
@@ -10,8 +8,6 @@ namespace ellipse::wild {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 void Draft::limb() {
   note("hand");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string_view>
 
 #include "core/scene/random.hpp"
@@ -9,6 +10,9 @@
 #include "core/scene/wild_shapes.hpp"
 
 namespace ellipse::wild {
+
+/// Azimuth from which the horizon is level [rad].
+inline constexpr double kFacing = -0.5 * std::numbers::pi;
 
 /// Two grey levels of the picture.
 struct Greys {

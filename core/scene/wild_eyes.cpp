@@ -2,7 +2,6 @@
 //
 // Wild scenes of an eye. A unit is the radius of the iris.
 #include <algorithm>
-#include <numbers>
 
 #include "core/scene/wild_draft.hpp"
 
@@ -13,7 +12,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kHalfWidth = 12.0;  // of the modelled face
 
 // Grey levels of an eye in infrared light.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Wild scenes of landing pads, and of polygons that resemble one.
-#include <algorithm>
 #include <array>
 #include <numbers>
 
@@ -13,7 +12,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::array kGrounds = {GroundKind::kAsphalt,
                                  GroundKind::kGrass,
                                  GroundKind::kRoad,

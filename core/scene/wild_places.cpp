@@ -13,9 +13,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kFacing = -0.5 * std::numbers::pi;  // azimuth from which the horizon is level
-
 void add_board(Draft& draft, const Vector2d& at, int columns, int rows, const Greys& greys) {
   Random& random = draft.random;
   Sheet& sheet = draft.sheet(level_frame({at.x(), at.y(), 0.0}, 1.0, 0.0));

@@ -6,8 +6,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "core/scene/random.hpp"
-
 namespace ellipse::wild {
 
 using Eigen::Matrix3d;

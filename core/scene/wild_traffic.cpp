@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Wild scenes of roads. One unit is a metre.
-#include <algorithm>
 #include <numbers>
 
 #include "core/scene/wild_draft.hpp"
@@ -11,9 +10,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kFacing = -0.5 * std::numbers::pi;  // azimuth from which the horizon is level
 
 struct Vehicle {
   double length = 4.2;

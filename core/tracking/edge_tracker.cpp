@@ -202,7 +202,8 @@ bool EdgeTracker::is_too_large(const Ellipse& e, const ScopedFrame& frame) const
          2.0 * e.semi_major > std::max(frame.pixels.width, frame.pixels.height);
 }
 
-// Searches a lost pad where it is predicted. Only a certain detection spares the whole frame.
+// Searches a lost pad where it is predicted. A certain detection there makes a search of the whole
+// frame unnecessary.
 std::optional<Target> EdgeTracker::resume_nearby(const ScopedFrame& frame) {
   if (!pad_tracker_.is_locked() || settings_.wants_candidates) return std::nullopt;
   ScopedFrame nearby = frame;

@@ -23,7 +23,7 @@ class OutlineJudge {
   /// Starts a hypothesis from a new detection. See TargetOdds::start().
   void start(double log_odds, double prior);
   /// Adds a detection of the tracked hypothesis.
-  /// @param prior  Of a new hypothesis at its place. See TargetOdds::raise().
+  /// @param prior  Of a new hypothesis at its position. See TargetOdds::raise().
   void confirm(double log_odds, double prior);
 
   /// Call once per frame.

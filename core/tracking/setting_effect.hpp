@@ -26,8 +26,8 @@ enum class Acts {
 /// The property's blurb: the description followed by the condition.
 [[nodiscard]] std::string blurb_of(const std::string& description, const SettingEffect& effect);
 
-/// The settings with each 0 that stands for a default resolved: the detector's own overlaps; fx for
-/// fy.
+/// Replaces each 0 that stands for a default: overlaps by the detector's own, fy by fx. Allocates:
+/// creates the detector.
 [[nodiscard]] TrackerSettings in_force(const TrackerSettings& settings);
 
 }  // namespace ellipse

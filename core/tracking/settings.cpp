@@ -18,8 +18,8 @@ constexpr Range kMaxScaleRange{1.0, 128.0};
 constexpr Range kRoiExpansionRange{1.0, 10.0};
 constexpr Range kRingRatioRange{0.0, kMaxRingRatio};
 constexpr Range kFieldOfViewRange{0.0, 3.0};
-constexpr Range kFocalRangePx{0.0, 1e6};
-constexpr Range kCoordinateRangePx{-1e6, 1e6};
+constexpr Range kFocalRangePx{0.0, kFarPx};
+constexpr Range kCoordinateRangePx{-kFarPx, kFarPx};
 constexpr Range kDiameterRange{0.0, 1e4};
 
 template <auto kMember, auto... kRest>
@@ -55,7 +55,8 @@ constexpr auto kTrack = &TrackerSettings::track_overlaps;
 constexpr auto kLimits = &TrackerSettings::limits;
 
 // Lower bound on the contour overlap of ellipses reported by `arcs`: thresholds below it reject
-// none. The lowest of 333 ellipses (all scenes of the catalog, one frame per second) is .953.
+// none. The lowest of 333 ellipses (all scenes of the catalog, one frame per second) is .953;
+// the bound leaves a margin of .3.
 constexpr double kMinOnEllipse = 0.65;
 
 // Tests compare each effect with the tracker's behaviour.

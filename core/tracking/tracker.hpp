@@ -33,7 +33,8 @@ class Tracker {
  public:
   /// Throws std::invalid_argument for invalid settings.
   explicit Tracker(const TrackerSettings& settings = {});
-  /// Uses the given detector instead of settings.detector.
+  /// Uses the given detector, which is not null, instead of settings.detector. Throws like the
+  /// first.
   Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector);
   ~Tracker();
 
@@ -42,7 +43,7 @@ class Tracker {
 
   /// @param frame   Borrowed for the call only. A change of its size resets the tracker.
   /// @param pts_ns  Its time stamp, negative if it has none; copied into the target.
-  /// @return The target, or nullopt if none was found.
+  /// @return The target, or nullopt if none was found. No content of a frame throws.
   [[nodiscard]] std::optional<Target> process(const PixelView& frame, std::int64_t pts_ns);
 
   /// The same within a scope: no pixel outside is read, and a tracked target is searched inside
@@ -59,8 +60,8 @@ class Tracker {
   [[nodiscard]] std::span<const Detection> candidates() const;
 
   /// Records each further detector search in `trace`: its stages, and why candidates are rejected,
-  /// in frame pixels. Edge tracking is not recorded. If a frame is searched twice, the trace holds
-  /// the second search. nullptr stops recording. Borrowed.
+  /// in frame pixels. Edge tracking is not recorded. If a frame is searched several times,
+  /// the trace holds the last search. nullptr stops recording. Borrowed.
   void set_trace(DetectionTrace* trace);
 
   /// State after the last frame.

@@ -37,7 +37,7 @@ void on(Scene& scene) {
 
 template <int kPercent>
 void crumpled(Scene& scene) {
-  scene.pad.crumple = 0.01 * kPercent;
+  scene.pad.deformation = 0.01 * kPercent;
 }
 
 template <int kLevels>
@@ -109,7 +109,7 @@ Sequence make_sequence(const Clip& clip, const cv::Mat& ground) {
   }
   Conditions conditions;
   if ((clip.family & kNoise) != 0) conditions.noise = scene.sensor.read_noise;
-  if ((clip.family & kCrumple) != 0) conditions.crumple = scene.pad.crumple;
+  if ((clip.family & kCrumple) != 0) conditions.crumple = scene.pad.deformation;
   const FrameTimes times{clip.from_s, clip.frames, clip.stride};
   return make_rendered(clip.dataset, clip.name, scene, times, conditions);
 }

@@ -61,8 +61,8 @@ GType gst_ellipse_state_get_type(void);
  * @scale: frame scale at which it was found, a power of two
  * @roi_x: left edge of the search region, in px
  * @roi_y: upper edge of that region, in px
- * @roi_width: width of that region, in px
- * @roi_height: height of that region, in px
+ * @roi_width: width of that region, in px; 0 = unknown
+ * @roi_height: height of that region, in px; 0 = unknown
  * @frame_width: width in px of the frame to which the coordinates refer
  * @frame_height: height in px of the frame to which the coordinates refer
  * @pts: presentation time stamp of the analysed frame, in ns; or `GST_CLOCK_TIME_NONE`

@@ -304,8 +304,8 @@ static void append_tracker_state(GString* json, const GstEllipseSearchMeta* sear
  * @height: height of the frame in px
  *
  * Writes all ellipses of a frame as a JSON object on one line, without a newline: frame, pts_ns,
- * width, height, processing_ns, the state of the tracker, and the array targets, which may be
- * empty. The element ellipsejson writes these lines.
+ * width, height, processing_ns, tracker (its state), and the array targets, which may be empty.
+ * Unknown times and an unknown state are null. The element ellipsejson writes these lines.
  *
  * Returns: (transfer full): a new string; free it with `g_free()`
  *

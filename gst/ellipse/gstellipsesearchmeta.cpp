@@ -82,7 +82,8 @@ const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
  * @buffer: (transfer none): a writable #GstBuffer
  * @processing_time: processing time of the frame, in ns; %GST_CLOCK_TIME_NONE if unknown
  *
- * Marks the frame of a buffer as searched. The tracker's state is
+ * Marks the frame of a buffer as searched. Allocates the metadata; one thread at a time, like all
+ * writing to a buffer. The tracker's state is
  * `GST_ELLIPSE_TRACKER_STATE_UNKNOWN` until the caller sets it.
  *
  * Returns: (transfer none): the #GstEllipseSearchMeta, owned by the buffer
@@ -102,7 +103,7 @@ GstEllipseSearchMeta* gst_buffer_add_ellipse_search_meta(GstBuffer* buffer,
  * gst_buffer_get_ellipse_search_meta:
  * @buffer: (transfer none): a #GstBuffer
  *
- * Returns the search metadata of a buffer, which marks its frame as searched.
+ * Returns the search metadata of a buffer, which marks its frame as searched. Allocates nothing.
  *
  * Returns: (transfer none) (nullable): the metadata, %NULL if the frame was not searched or an
  * element has dropped the metadata

@@ -137,8 +137,8 @@ static bool downstream_composes(GstBaseTransform* base, GstCaps* caps) {
   return composes;
 }
 
-// Like textoverlay: beside the pixels if downstream has the feature in its caps and also requests
-// the metadata. The metadata alone is not enough: scalers pass it on unscaled.
+// Like textoverlay, attaches the drawing as metadata if downstream has the feature in its caps and
+// also requests the metadata. The metadata alone is not enough: scalers pass it on unscaled.
 static GstCaps* gst_ellipse_overlay_fixate_caps(GstBaseTransform* base,
                                                 GstPadDirection direction,
                                                 GstCaps* caps,

@@ -159,10 +159,10 @@ static gboolean gst_ellipse_track_stop(GstBaseTransform* base) {
 static GstStateChangeReturn gst_ellipse_track_change_state(GstElement* element,
                                                            GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_NULL_TO_READY) {
-    const std::string obstacle = obstacle_to_start(GST_ELLIPSE_TRACK(element));
-    if (!obstacle.empty()) {
+    const std::string error = start_error(GST_ELLIPSE_TRACK(element));
+    if (!error.empty()) {
       GST_ELEMENT_ERROR(
-          element, LIBRARY, SETTINGS, ("Setting rejected: %s", obstacle.c_str()), (nullptr));
+          element, LIBRARY, SETTINGS, ("Setting rejected: %s", error.c_str()), (nullptr));
       return GST_STATE_CHANGE_FAILURE;
     }
   }
@@ -174,7 +174,7 @@ static gboolean gst_ellipse_track_propose_allocation(GstBaseTransform* base,
                                                      GstQuery* query) {
   GstCaps* caps = nullptr;
   gst_query_parse_allocation(query, &caps, nullptr);
-  if (caps != nullptr && is_mosaic(caps)) return TRUE;  // no video metadata describe one
+  if (caps != nullptr && is_mosaic(caps)) return TRUE;  // video metadata cannot describe one
   gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
   return GST_BASE_TRANSFORM_CLASS(gst_ellipse_track_parent_class)
       ->propose_allocation(base, decide_query, query);

@@ -2,10 +2,11 @@
 
 #include <gst/gst.h>
 
-/// Keeps the analysis within a time per frame. Three frames over the limit make the search coarser
-/// by a factor of two, down to an eighth; after that every second frame passes without analysis,
-/// then three of four. 128 frames under half the limit, about four seconds, undo one step; times in
-/// between change nothing. A value type without a lock; reads no clock.
+/// Keeps the analysis within a time per frame. Three frames over the limit, with none under half of
+/// it between them, make the search coarser by a factor of two, down to an eighth; after that every
+/// second frame passes without analysis, then three of four. 128 frames under half the limit, about
+/// four seconds, undo one step; times in between change nothing. A value type without a lock; reads
+/// no clock.
 class LoadWatch {
  public:
   /// @param processing_time  Processing time of an analysed frame [ns].

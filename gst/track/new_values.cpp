@@ -25,11 +25,11 @@ bool is_stopped(GstEllipseTrack* self) {
 }
 
 // @param kept  What keeps its value.
-void warn_rejected(GstEllipseTrack* self, const std::string& refusal, const char* kept) {
-  if (refusal.empty()) return;
-  GST_WARNING_OBJECT(self, "setting rejected: %s", refusal.c_str());
+void warn_rejected(GstEllipseTrack* self, const std::string& error, const char* kept) {
+  if (error.empty()) return;
+  GST_WARNING_OBJECT(self, "setting rejected: %s", error.c_str());
   GST_ELEMENT_WARNING(
-      self, LIBRARY, SETTINGS, ("Setting rejected: %s", refusal.c_str()), ("unchanged: %s", kept));
+      self, LIBRARY, SETTINGS, ("Setting rejected: %s", error.c_str()), ("unchanged: %s", kept));
 }
 
 // @return Why the values are not valid together; empty if they are.
@@ -57,9 +57,9 @@ std::string changed(TrackShared& shared, const PropertyChange& change, bool is_s
     change.apply_to(*shared.pending);
     if (validation_error(*shared.pending).empty()) next = *shared.pending;
   }
-  std::string misfit = validation_error(next);
-  if (misfit.empty()) shared.properties = next;
-  return misfit;
+  std::string error = validation_error(next);
+  if (error.empty()) shared.properties = next;
+  return error;
 }
 
 bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {
@@ -86,9 +86,9 @@ std::string try_set(GstEllipseTrack* self, const char* name, const GValue* value
   try {
     const PropertyChange change(name, value);  // may read a file
     const ObjectLock lock(self);
-    std::string misfit = changed(shared, change, is_stopped(self));
+    std::string error = changed(shared, change, is_stopped(self));
     shared.value_errors.erase(name);
-    return misfit;
+    return error;
   } catch (const std::exception& error) {
     const ObjectLock lock(self);
     if (is_stopped(self)) shared.value_errors[name] = error.what();
@@ -99,9 +99,8 @@ std::string try_set(GstEllipseTrack* self, const char* name, const GValue* value
 }  // namespace
 
 void set_value(GstEllipseTrack* self, const GParamSpec* pspec, const GValue* value) {
-  const std::string refusal = try_set(self, pspec->name, value);
-  if (!is_already_reported(self, pspec, !refusal.empty()))
-    warn_rejected(self, refusal, pspec->name);
+  const std::string error = try_set(self, pspec->name, value);
+  if (!is_already_reported(self, pspec, !error.empty())) warn_rejected(self, error, pspec->name);
 }
 
 gboolean load_together(GstEllipseTrack* self, const gchar* name, PresetLoader load_one_by_one) {
@@ -111,28 +110,28 @@ gboolean load_together(GstEllipseTrack* self, const gchar* name, PresetLoader lo
     shared.preset = shared.properties;
   }
   gboolean is_loaded = load_one_by_one(GST_PRESET(self), name);
-  std::string refusal;
+  std::string error;
   {
     const ObjectLock lock(self);
     const TrackProperties loaded = shared.preset.value_or(shared.properties);
     shared.preset.reset();
-    refusal = validation_error(loaded);
-    if (!refusal.empty()) is_loaded = FALSE;
+    error = validation_error(loaded);
+    if (!error.empty()) is_loaded = FALSE;
     if (is_loaded != FALSE) {
       shared.properties = loaded;
       shared.pending.reset();
       shared.value_errors.clear();
     }
   }
-  warn_rejected(self, refusal, "all settings");
+  warn_rejected(self, error, "all settings");
   return is_loaded;
 }
 
-std::string obstacle_to_start(GstEllipseTrack* self) {
+std::string start_error(GstEllipseTrack* self) {
   TrackShared& shared = *self->shared;
   const ObjectLock lock(self);
-  std::string obstacle = shared.pending ? validation_error(*shared.pending) : "";
-  if (!shared.value_errors.empty()) obstacle = shared.value_errors.begin()->second;
-  if (obstacle.empty()) shared.pending.reset();
-  return obstacle;
+  std::string error = shared.pending ? validation_error(*shared.pending) : "";
+  if (!shared.value_errors.empty()) error = shared.value_errors.begin()->second;
+  if (error.empty()) shared.pending.reset();
+  return error;
 }

@@ -22,4 +22,4 @@ using PresetLoader = gboolean (*)(GstPreset* preset, const gchar* name);
 gboolean load_together(GstEllipseTrack* self, const gchar* name, PresetLoader load_one_by_one);
 
 /// @return Why the settings do not allow a start; empty if they do.
-[[nodiscard]] std::string obstacle_to_start(GstEllipseTrack* self);
+[[nodiscard]] std::string start_error(GstEllipseTrack* self);

@@ -159,7 +159,7 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
   return std::nullopt;
 }
 
-// Warns once until a frame has pixels to search. Metadata may well name no region.
+// Warns once until a frame has pixels to search. With roi-source=meta an empty region is normal.
 static void warn_of_empty_region(GstEllipseTrack* self, const TrackProperties& properties) {
   if (self->stream->is_region_empty || properties.roi_source != ROI_SOURCE_PROPERTY) return;
   self->stream->is_region_empty = true;

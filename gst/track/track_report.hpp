@@ -31,7 +31,8 @@ void post_target_message(GstElement* element,
                          const GstEllipseMeta* meta,
                          const gchar* tracker_state);
 
-/// Posts the element message "ellipse-load": the measures against analyses that take too long.
+/// Posts the element message "ellipse-load": how the search is coarsened and frames are skipped
+/// to keep the time limit.
 /// @param processing_time  Of the last frame [ns].
 /// @param limit            Its maximum [ns].
 void post_load_message(GstElement* element,

@@ -109,8 +109,8 @@ TEST_P(DistortedPicture, IsRefinedInTheIdealPlane) {
   Ellipse guess = translated(*frame.truth.outer_edge, 0.4, -0.3);
   guess.semi_major += 0.3;
   const ellipse::Picture picture(frame.picture.view(), lens_);
-  const auto refined = refined_on_picture(picture, guess, Polarity::kBrightInside, {200.0});
-  const auto other = refined_on_picture(picture, guess, Polarity::kDarkInside, {200.0});
+  const auto refined = refined_on_picture(picture, guess, Polarity::kBrightInside, 200.0);
+  const auto other = refined_on_picture(picture, guess, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined || other);
   const Ellipse& e = refined ? refined->ellipse : other->ellipse;
   EXPECT_LT(max_difference_px(e, *frame.truth.outer_edge), 0.1);

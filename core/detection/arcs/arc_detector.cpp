@@ -33,7 +33,8 @@ bool is_same_inside(const Ellipse& a, const Ellipse& b, const GradientMap& map) 
   return iou_inside(a, b, map.width(), map.height()) >= kSameInside;
 }
 
-// Edges of both polarities may make an outline more probable that is unlikely with those of one.
+// Whether the probability is at least one half. Less likely outlines are also measured with mixed
+// polarity.
 bool is_likely(const MeasuredEllipse& measured) {
   return log_odds(measured.probability) >= 0.0;
 }
@@ -43,8 +44,8 @@ bool is_large_enough(const Ellipse& e, int scale) {
   return scale == 1 || e.semi_minor >= scale * kMinReducedPx;
 }
 
-// The finer scales decide about an ellipse of a reduced picture, unless it is ruled out. A minimum
-// of 1 accepts none.
+// Minimum probability in a reduced picture: excludes only ellipses that are ruled out, since the
+// finer scales judge the others. A minimum of 1 accepts none.
 double required_when_reduced(const Thresholds& thresholds) {
   const double required = thresholds.min_probability;
   return required < 1.0 ? std::min(required, probability_of(-kCertainLogOdds)) : required;
@@ -69,8 +70,8 @@ std::span<const Detection> ArcDetector::detect(const Picture& picture,
   return detections_;
 }
 
-// From the coarsest scale at which the outline is large enough, until it is certain at one; may be
-// -infinity.
+// Evaluates the outline from the coarsest scale at which it is large enough to finer ones, until it
+// is certain. -infinity if it is accepted at no scale.
 std::optional<double> ArcDetector::log_odds_of(const Picture& picture,
                                                const Ellipse& e,
                                                const Thresholds& thresholds) {
@@ -170,9 +171,9 @@ void ArcDetector::search(int scale, const Rect& region, const Thresholds& full) 
 
 // Bounds the cost in a picture full of ellipses, each of which is measured and refined.
 void ArcDetector::try_single_arcs(const Thresholds& thresholds) {
-  const std::size_t of_coarser_scales = found_.size();
+  const std::size_t found_before = found_.size();
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
-    if (!thresholds.wants_all && found_.size() >= of_coarser_scales + kMaxPerScale) return;
+    if (!thresholds.wants_all && found_.size() >= found_before + kMaxPerPass) return;
     if (is_used_[i] == 0) try_arcs({&arcs_[i]}, thresholds);
   }
 }
@@ -222,7 +223,11 @@ void ArcDetector::try_guess(const Guess& guess,
                       evidence_);
     }
   }
-  if (verdict.is_accepted() && !is_cut(measured.ellipse)) add(measured);
+  if (verdict.is_accepted() && !is_cut(measured.ellipse)) {
+    add(measured);
+  } else if (verdict.is_accepted() && trace_ != nullptr) {
+    trace_->revise(measured.candidate, {Reason::kCut});
+  }
   // Edges of both polarities count only if they make the outline likely.
   const bool is_measured = measured.probability > 0.0 && measured.polarity != Polarity::kMixed;
   if (thresholds.min_probability < 1.0 && is_measured && !is_likely(measured)) {
@@ -345,7 +350,7 @@ void ArcDetector::refine(int scale, MeasuredEllipse& measured) const {
   const auto refined = refined_on_picture(pyramid_.picture_at(scale),
                                           to_region(measured.ellipse, {}, scale),
                                           measured.polarity,
-                                          {scale * min_gradient_});
+                                          scale * min_gradient_);
   if (refined) measured.ellipse = to_frame(refined->ellipse, {}, scale);
 }
 

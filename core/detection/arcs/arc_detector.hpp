@@ -27,10 +27,10 @@ struct TracedPiece;
 /// polarity is also measured with edges of both.
 ///
 /// Searches at a quarter of the frame's size, then at half, then at full size, and stops early if
-/// the best target is certain. Before a finer size it searches around the ellipses of the coarser
-/// ones only. Otherwise the finer sizes decide about the ellipses of a reduced picture that
-/// are not ruled out. Merges duplicates across sizes. Refines ellipses from reduced pictures on
-/// each finer one.
+/// the best target is certain. Before each finer size it first searches only around the ellipses
+/// found so far. If no size gives a certain target, the ellipses found in reduced pictures are
+/// judged again at the finer sizes. Merges duplicates across sizes. Refines ellipses from reduced
+/// pictures on each finer one.
 ///
 /// Allocates nothing in the steady state. The work on one image is bounded by its pixels, by
 /// ArcSplitter::kMaxArcs, and by fixed numbers of fitted and of measured pairs. A search

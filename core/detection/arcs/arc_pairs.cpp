@@ -52,7 +52,7 @@ std::span<const ArcPair> ArcPairs::find(std::span<const Arc> arcs,
 
 // In ascending sum of ranks, so that the best arcs come first.
 void ArcPairs::fit(std::span<const Arc> arcs, std::span<const std::uint8_t> is_used) {
-  const std::size_t n = std::min(arcs.size(), kMaxPerScale);
+  const std::size_t n = std::min(arcs.size(), kMaxPerPass);
   for (std::size_t sum = 1; sum < 2 * n; ++sum) {
     for (std::size_t i = sum >= n ? sum - n + 1 : 0; 2 * i < sum; ++i) {
       const std::size_t k = sum - i;
@@ -62,7 +62,7 @@ void ArcPairs::fit(std::span<const Arc> arcs, std::span<const std::uint8_t> is_u
       if (!is_inside_of(a, b) || !is_inside_of(b, a)) continue;
       const auto ellipse = fit_ellipse(moments_of({&a, &b}));
       if (ellipse) pairs_.push_back({i, k, direction_error({&a, &b}, *ellipse)});
-      if (pairs_.size() == kMaxPerScale) return;
+      if (pairs_.size() == kMaxPerPass) return;
     }
   }
 }

@@ -11,9 +11,9 @@
 
 namespace ellipse {
 
-/// Max number per scale of arcs considered for pairs, of pairs fitted, and of ellipses of single
+/// Max number per pass of arcs considered for pairs, of pairs fitted, and of ellipses of single
 /// arcs in a target search.
-inline constexpr std::size_t kMaxPerScale = 50;
+inline constexpr std::size_t kMaxPerPass = 50;
 
 /// Two arcs on one convex curve.
 struct ArcPair {
@@ -26,7 +26,7 @@ struct ArcPair {
 /// Finds pairs of arcs that may belong to one ellipse. The arcs may differ in polarity.
 class ArcPairs {
  public:
-  /// Fits an ellipse to each pair of the best arcs, up to kMaxPerScale pairs.
+  /// Fits an ellipse to each pair of the best arcs, up to kMaxPerPass pairs.
   /// @param arcs     The best first.
   /// @param is_used  Per arc: whether to leave it out.
   /// @return The pairs whose directions agree best with their ellipse first; valid until the next

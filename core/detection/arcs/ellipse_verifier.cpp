@@ -45,10 +45,6 @@ constexpr std::array<Step, 4> kSteps = {{{kSamples / 2, 1.0, 7.0},
                                          {kSamples / 2, 0.5, 2.5},
                                          {kSamples, 0.5, 1.0}}};
 
-double radius_of(const Ellipse& e) {
-  return std::sqrt(e.semi_major * e.semi_minor);
-}
-
 // Longest run of samples without an edge, as a share of all samples.
 double longest_gap(std::span<const EdgeMeasurement> edges, std::size_t samples) {
   const int count = static_cast<int>(samples);
@@ -123,7 +119,7 @@ double turn_in_corners(std::span<const EdgeMeasurement> edges, std::size_t sampl
 }  // namespace
 
 double EllipseVerifier::deformation_px(const Ellipse& e) {
-  return kBasePx + kDeformation * radius_of(e);
+  return kBasePx + kDeformation * mean_radius_px(e);
 }
 
 Verdict EllipseVerifier::judge_shape(const Ellipse& e,
@@ -230,7 +226,7 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   // A long ellipse whose ends are outside has short gaps, but shows little of its turn.
   const double coverage =
       turn_support * std::min(1.0 - longest_gap(edges, samples), found.inside_turn_fraction);
-  const double deviation = std::min(1.0, sums.rms_px() / radius_of(measured.ellipse));
+  const double deviation = std::min(1.0, sums.rms_px() / mean_radius_px(measured.ellipse));
   const double signal_to_noise =
       std::clamp(measured.gradient / texture, kSignalToNoise.min, kSignalToNoise.max);
   const auto set = [&](Feature feature, double value) {

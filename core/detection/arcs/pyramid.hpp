@@ -21,7 +21,7 @@ class Pyramid {
   /// Reduces a picture down to coarsest_scale().
   void reduce(const Picture& picture);
 
-  /// kCoarsestScale of the frame: less of a picture that is reduced already.
+  /// Coarsest scale of this picture: kCoarsestScale over the picture's own scale, at least 1.
   [[nodiscard]] int coarsest_scale() const;
   [[nodiscard]] const Picture& picture_at(int scale) const { return pictures_[level_of(scale)]; }
   /// Of any part of the picture at this scale: reduce() does not compute it.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/pad/edge_search.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <bitset>
-#include <cstddef>
 #include <span>
 #include <vector>
 

@@ -115,7 +115,7 @@ std::optional<FittedEllipse> OuterEdge::on_maxima(const ImageView& luma,
     ring.edges = without_motion_blur(maxima, blur_px);
   }
   exact->ellipse = ring.edges.outer;
-  const double radius_px = std::sqrt(exact->ellipse.semi_major * exact->ellipse.semi_minor);
+  const double radius_px = mean_radius_px(exact->ellipse);
   exact->uncertainty = {image_from_pad(exact->ellipse),
                         widened(exact->uncertainty.information,
                                 ring.sigma_px / radius_px,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/pad/pad_tracker.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -170,7 +169,7 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   view_ = matched_view_ = attempt.view;
   is_locked_ = true;
   unmatched_s_ = 0.0;
-  innovation_ratio_ = 1.0;
+  noise_factor_ = 1.0;
   squared_acceleration_.reset();
   motion_ = {};
   motion_.velocity = velocity;
@@ -179,8 +178,8 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   propagate_errors(attempt, HomographyCovariance::Zero());
 }
 
-HomographyFilter PadTracker::predicted(double elapsed_s, double looseness) const {
-  return motion_.after(elapsed_s, looseness * camera_noise(view_, camera_));
+HomographyFilter PadTracker::predicted(double elapsed_s, double noise_factor) const {
+  return motion_.after(elapsed_s, noise_factor * camera_noise(view_, camera_));
 }
 
 PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
@@ -205,8 +204,8 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
   // A single edge in shadow cannot be told from an edge of the object that casts it.
   const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
   const ImageLevels levels{gain_, pixel_noise(window.luma), relative_gain};
-  // Lines match texture by chance. Circles alone scatter by their deformation, to which the prior
-  // must not yield.
+  // Lines match texture by chance, so the scatter of the matches lowers their weight against the
+  // prior. Circles alone scatter because the pad is deformed: their matches keep the full weight.
   MatchLimits limits{
       .reach_px = kReachPx, .min_sigma_px = kEdgeSigmaPx, .uses_scatter = !model_.lines.empty()};
   std::optional<Attempt> attempt;
@@ -240,13 +239,13 @@ std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elaps
   if (!is_locked_) return std::nullopt;
   begin_frame(window);
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
-  double looseness = innovation_ratio_;
-  HomographyFilter before = predicted(elapsed_s, looseness);
+  double noise_factor = noise_factor_;
+  HomographyFilter before = predicted(elapsed_s, noise_factor);
   auto attempt = search_from(window, prediction, before.covariance);
   last_coverage_ = attempt ? attempt->support.coverage : 0.0;
   if (!is_good(attempt)) {
-    looseness = kUnknownMotion;
-    before = predicted(elapsed_s, looseness);
+    noise_factor = kUnknownMotion;
+    before = predicted(elapsed_s, noise_factor);
     attempt = search_from(window, prediction, before.covariance);
   }
   if (!is_good(attempt)) {
@@ -256,7 +255,7 @@ std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elaps
   if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
   const Eigen::Matrix3d last_view = view_;
   const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
-  accept(*attempt, before, looseness, adaptation);
+  accept(*attempt, before, noise_factor, adaptation);
   measure_edges(window, attempt->visible, adaptation);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
   learn_lines(window, *attempt);
@@ -287,7 +286,7 @@ void PadTracker::forget_lines(Attempt& attempt) {
 
 void PadTracker::accept(const Attempt& attempt,
                         const HomographyFilter& before,
-                        double looseness,
+                        double noise_factor,
                         double adaptation) {
   motion_ = before.corrected(attempt.estimate);
   if (model_.lines.empty()) motion_.fix_rotation();  // rings have no orientation
@@ -298,9 +297,9 @@ void PadTracker::accept(const Attempt& attempt,
     moved_px += std::pow(sample.predicted_px(attempt.estimate.change), 2);
     expected_px += variance_along(sample.view.row, before.covariance);
   }
-  const double needed = looseness * moved_px / expected_px;
-  innovation_ratio_ = std::clamp(
-      innovation_ratio_ + adaptation * (needed - innovation_ratio_), 1.0, kUnknownMotion);
+  const double needed = noise_factor * moved_px / expected_px;
+  noise_factor_ =
+      std::clamp(noise_factor_ + adaptation * (needed - noise_factor_), 1.0, kUnknownMotion);
   const double gain = std::clamp(attempt.support.gain, kMinContrastShare, 1.0 / kMinContrastShare);
   gain_ += adaptation * (gain - gain_);
   relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);

@@ -101,7 +101,7 @@ class PadTracker {
   };
 
   void begin_frame(const LumaWindow& window);
-  [[nodiscard]] HomographyFilter predicted(double elapsed_s, double looseness) const;
+  [[nodiscard]] HomographyFilter predicted(double elapsed_s, double noise_factor) const;
   [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
                                                    const Eigen::Matrix3d& start,
                                                    const HomographyCovariance& covariance);
@@ -113,7 +113,7 @@ class PadTracker {
   void forget_lines(Attempt& attempt);
   void accept(const Attempt& attempt,
               const HomographyFilter& before,
-              double looseness,
+              double noise_factor,
               double adaptation);
   [[nodiscard]] Eigen::Vector2d motion_to(const Eigen::Matrix3d& view) const;
   void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
@@ -150,7 +150,7 @@ class PadTracker {
   Camera camera_;
   LensView lens_;
   std::optional<double> squared_acceleration_;  // of the centre, adaptive [(px / frame^2)^2]
-  double innovation_ratio_ = 1.0;               // adaptive factor of the motion noise
+  double noise_factor_ = 1.0;                   // adaptive factor of the motion noise
   double gain_ = 1.0;                           // ratio of image contrast to model contrast
   double relative_gain_ = 0.0;                  // the same of relative contrast [1 / grey level]
   double unmatched_s_ = 0.0;                    // since the last match

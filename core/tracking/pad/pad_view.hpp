@@ -1,7 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
-#include <cmath>
 #include <limits>
 #include <optional>
 

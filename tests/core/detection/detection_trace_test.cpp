@@ -395,6 +395,25 @@ TEST(DetectionTrace, OfArcsLooksAroundUncertainEllipsesFirst) {
   }
 }
 
+// The ring is found in the reduced picture, the disc around it reaches beyond the ring's
+// surroundings.
+TEST(DetectionTrace, OfArcsReportsEllipsesThatTheSearchedRegionCuts) {
+  GrayPicture picture = rendered(plain_ring(), {100.3, 90.7, 28.0, 21.0, 0.4});
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double inside_px = 44.0 - std::hypot(x - 96.8, y - 130.8);
+      const double covered = std::clamp(inside_px + 0.5, 0.0, 1.0);
+      picture.at(x, y) =
+          static_cast<std::uint8_t>(std::max(0.0, picture.at(x, y) - 31.0 * covered));
+    }
+  }
+  const Look look = look_at(DetectorKind::kArcs, picture);
+  const TracedCandidate* cut = first_with(look.trace, Reason::kCut);
+  ASSERT_NE(cut, nullptr);
+  EXPECT_FALSE(cut->is_detection);
+  EXPECT_EQ(first_with(look.trace, Reason::kCrowdedOut), nullptr);
+}
+
 TEST(DetectionTrace, OfATrackerIsInFramePixels) {
   const GrayPicture picture = rendered(plain_ring(), kRing);
   TrackerSettings settings;

@@ -89,7 +89,7 @@ CentreErrors errors_of(double radius, double blur_px, double noise) {
     if (!refined) continue;
     const Ellipse& found = refined->ellipse;
     errors.rms_px += 0.5 * (found.center() - truth.center()).squaredNorm() / pictures;
-    errors.radius_px += (std::sqrt(found.semi_major * found.semi_minor) - radius) / pictures;
+    errors.radius_px += (mean_radius_px(found) - radius) / pictures;
     errors.bound_px += bound_px(truth, blur_px, noise) / pictures;
   }
   errors.rms_px = std::sqrt(errors.rms_px);

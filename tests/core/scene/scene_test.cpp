@@ -257,7 +257,7 @@ TEST(Renderer, GradientBrightensOneSide) {
 
 TEST(Renderer, CrumpledEdgeDeviatesByItsAmplitude) {
   Scene scene = clean_disc();
-  scene.pad.crumple = 0.03;
+  scene.pad.deformation = 0.03;
   const double radius = 200.0;
   GrayPicture picture = support::rendered(scene, {256.0, 256.0, radius, radius, 0.0}, 513, 513);
   double largest = 0.0;

@@ -269,7 +269,7 @@ TEST(ArcDetector, FindsCrumpledRings) {
   const Ellipse truth{160.0, 120.0, 90.0, 70.0, 0.2};
   for (const double deviation : {0.01, 0.02, 0.03}) {
     Scene scene = plain_ring();
-    scene.pad.crumple = deviation;
+    scene.pad.deformation = deviation;
     EXPECT_GT(best_iou<ArcDetector>(rendered(scene, truth), truth, detecting<ArcDetector>()), 0.93)
         << deviation;
   }

@@ -329,10 +329,10 @@ TEST(PictureRefinement, FindsTheEdgeFromAPixelAway) {
   const GrayPicture picture = rendered(disc(), truth, 200, 160);
   Ellipse start = translated(truth, 0.8, -0.7);
   start.semi_major += 0.8;
-  const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, {200.0});
+  const auto refined = refined_on_picture(picture.view(), start, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined);
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.03);
-  EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, {200.0}));
+  EXPECT_FALSE(refined_on_picture(picture.view(), start, Polarity::kBrightInside, 200.0));
 }
 
 // Glare on the right half clips the picture, which moves its edges towards the dark disc.
@@ -346,7 +346,7 @@ TEST(PictureRefinement, GivesEdgesBesideSaturatedPixelsLittleWeight) {
       level = static_cast<std::uint8_t>(std::min(255, level + glare));
     }
   }
-  const auto refined = refined_on_picture(picture.view(), truth, Polarity::kDarkInside, {200.0});
+  const auto refined = refined_on_picture(picture.view(), truth, Polarity::kDarkInside, 200.0);
   ASSERT_TRUE(refined);
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.1);
 }
@@ -363,7 +363,7 @@ TEST(PictureRefinement, FindsTheMeanPositionOfEdgesBlurredByMotion) {
     const Ellipse start = translated(truth, 0.8, -0.5);
     const auto error_px = [&](const Eigen::Vector2d& motion_px) {
       const auto refined = refined_on_picture(
-          picture.view(), start, Polarity::kDarkInside, {200.0}, kRefinementSamples, motion_px);
+          picture.view(), start, Polarity::kDarkInside, 200.0, kRefinementSamples, motion_px);
       return refined ? max_difference_px(refined->ellipse, truth) : 1e9;
     };
     EXPECT_LT(error_px({36.0, 0.0}), 0.15) << scene.seed;
@@ -379,7 +379,7 @@ TEST(PictureRefinement, SurvivesMotionBlurAtTheBorder) {
     return rendered(scene, e, 200, 160, std::uint64_t(k));
   });
   const auto refined = refined_on_picture(
-      picture.view(), truth, Polarity::kDarkInside, {200.0}, kRefinementSamples, {1e6, 0.0});
+      picture.view(), truth, Polarity::kDarkInside, 200.0, kRefinementSamples, {1e6, 0.0});
   ASSERT_TRUE(refined);
   EXPECT_LT(max_difference_px(refined->ellipse, truth), 0.5);
 }
