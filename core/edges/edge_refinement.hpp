@@ -16,13 +16,14 @@ inline constexpr std::size_t kRefinementSamples = 96;
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient
 /// maximum across its perimeter at each sample and computes no gradient elsewhere.
 ///
-/// @param picture    Its lens distorts the perimeter for the search; `e` and the result are in the
-///                   ideal plane.
+/// @param picture       Its lens distorts the perimeter for the search; `e` and the result are in
+/// the
+///                      ideal plane.
 /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
-/// @param samples    As of OutlineSamples. Fewer samples are faster and noisier.
-/// @param motion_px  As of motion_blur(); zero = unknown.
+/// @param samples       As of OutlineSamples. Fewer samples are faster and noisier.
+/// @param motion_px     As of motion_blur(); zero = unknown.
 /// @return nullopt if too few edges for a fit are near, or the fit fails. Allocates nothing;
-/// O(samples).
+///         O(samples).
 [[nodiscard]] std::optional<FittedEllipse> refined_on_picture(
     const Picture& picture,
     const Ellipse& e,

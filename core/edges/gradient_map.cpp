@@ -121,7 +121,7 @@ ELLIPSE_INLINE int mark_maxima_body(
     for (int i = 0; i < GradientMap::kBlock; ++i) {
       const Int ax = static_cast<Int>(gx[i] < 0 ? -gx[i] : gx[i]);
       const Int ay = static_cast<Int>(gy[i] < 0 ? -gy[i] : gy[i]);
-      const Int is_along_row = static_cast<Int>(ax > ay ? -1 : 0);  // the gradient is along the row
+      const Int is_along_row = static_cast<Int>(ax > ay ? -1 : 0);
       const Int before = static_cast<Int>((m[i - 1] & is_along_row) | (up[i] & ~is_along_row));
       const Int after = static_cast<Int>((m[i + 1] & is_along_row) | (down[i] & ~is_along_row));
       const Int octant = octant_of(gx[i], gy[i], ax, ay, is_along_row);

@@ -10,6 +10,7 @@ namespace ellipse {
 namespace {
 
 constexpr int kSize = kGroundTileSize;
+
 // Four to six corners at uneven distances: no ellipse fits it well.
 std::vector<cv::Point2d> stone(const cv::Point2d& center, double size, Random& random) {
   const int corners = 4 + random.below(3);

@@ -34,7 +34,7 @@ class Tracker {
   /// Throws std::invalid_argument for invalid settings.
   explicit Tracker(const TrackerSettings& settings = {});
   /// Uses the given detector, which is not null, instead of settings.detector. Throws like the
-  /// first.
+  /// constructor above.
   Tracker(const TrackerSettings& settings, std::unique_ptr<Detector> detector);
   ~Tracker();
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMaxFrames = 1e6;
 
-[[noreturn]] void refuse_scenes(const std::string& text, const std::string& what) {
+[[noreturn]] void reject_scenes(const std::string& text, const std::string& what) {
   throw std::invalid_argument(text + ": " + what);
 }
 
@@ -24,7 +24,7 @@ constexpr double kMaxFrames = 1e6;
 std::uint64_t take_seed(std::string_view& rest, const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), seed);
-  if (error != std::errc{}) refuse_scenes(text, "expected a SEED, FROM-TO, or a list of them");
+  if (error != std::errc{}) reject_scenes(text, "expected a SEED, FROM-TO, or a list of them");
   rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
   return seed;
 }
@@ -80,12 +80,12 @@ std::optional<std::vector<std::uint64_t>> scene_seeds(const std::string& text,
   do {
     const std::uint64_t from = take_seed(rest, text);
     const std::uint64_t to = take(rest, '-') ? take_seed(rest, text) : from;
-    if (to < from) refuse_scenes(text, "expected FROM <= TO");
+    if (to < from) reject_scenes(text, "expected FROM <= TO");
     if (to - from >= limit - seeds.size())
-      refuse_scenes(text, format("more than %zu seeds", limit));
+      reject_scenes(text, format("more than %zu seeds", limit));
     for (std::uint64_t i = 0; i <= to - from; ++i) seeds.push_back(from + i);
   } while (take(rest, ','));
-  if (!rest.empty()) refuse_scenes(text, format("\"%s\" is not a seed", std::string(rest).c_str()));
+  if (!rest.empty()) reject_scenes(text, format("\"%s\" is not a seed", std::string(rest).c_str()));
   return seeds;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxValues = 200;
 
-[[noreturn]] void refuse_sweep(const std::string& text, const std::string& what) {
+[[noreturn]] void reject_sweep(const std::string& text, const std::string& what) {
   throw std::invalid_argument("--sweep " + text + ": " + what);
 }
 
@@ -30,17 +30,17 @@ std::optional<double> number_in(const std::string& text) {
 }
 
 std::vector<std::string> range(const std::vector<std::string>& parts, const std::string& all) {
-  if (parts.size() != 3) refuse_sweep(all, "expected PROPERTY=FROM:TO:STEP");
+  if (parts.size() != 3) reject_sweep(all, "expected PROPERTY=FROM:TO:STEP");
   std::array<double, 3> numbers{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = number_in(parts[i]);
-    if (!value) refuse_sweep(all, "\"" + parts[i] + "\" is not a number");
+    if (!value) reject_sweep(all, "\"" + parts[i] + "\" is not a number");
     numbers[i] = *value;
   }
   const auto [from, to, step] = numbers;
-  if (!(step > 0.0) || !(to >= from)) refuse_sweep(all, "expected from <= to and a step above 0");
+  if (!(step > 0.0) || !(to >= from)) reject_sweep(all, "expected from <= to and a step above 0");
   const double steps = std::floor((to - from) / step + 1e-9);
-  if (steps >= static_cast<double>(kMaxValues)) refuse_sweep(all, "more than 200 values");
+  if (steps >= static_cast<double>(kMaxValues)) reject_sweep(all, "more than 200 values");
   std::vector<std::string> values;
   // Rounds to nine digits, so that 0.3 + 5 x 0.05 is printed as 0.55.
   for (int i = 0; i <= static_cast<int>(steps); ++i) {
@@ -114,7 +114,7 @@ Panel panel_of(const Sweep& sweep,
 Sweep parse_sweep(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    refuse_sweep(text, "expected PROPERTY=FROM:TO:STEP");
+    reject_sweep(text, "expected PROPERTY=FROM:TO:STEP");
   const std::string values = text.substr(equals + 1);
   Sweep sweep{text.substr(0, equals), {}};
   sweep.values =

@@ -4,7 +4,7 @@
 
 namespace live {
 
-/// Interval of the checks below [ms].
+/// Interval of periodic checks [ms].
 inline constexpr guint kTickMs = 1000;
 /// A connection without a TCP acknowledgement for this time [ms] ends.
 inline constexpr gint kAckTimeoutMs = 30'000;

@@ -82,9 +82,9 @@ const GstMetaInfo* gst_ellipse_search_meta_get_info(void) {
  * @buffer: (transfer none): a writable #GstBuffer
  * @processing_time: processing time of the frame, in ns; %GST_CLOCK_TIME_NONE if unknown
  *
- * Marks the frame of a buffer as searched. Allocates the metadata; one thread at a time, like all
- * writing to a buffer. The tracker's state is
- * `GST_ELLIPSE_TRACKER_STATE_UNKNOWN` until the caller sets it.
+ * Marks the frame of a buffer as searched. The tracker's state is
+ * `GST_ELLIPSE_TRACKER_STATE_UNKNOWN` until the caller sets it. Allocates the metadata; one thread
+ * at a time, like all writing to a buffer.
  *
  * Returns: (transfer none): the #GstEllipseSearchMeta, owned by the buffer
  *

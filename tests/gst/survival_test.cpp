@@ -16,6 +16,7 @@
 
 #include "core/tracking/tracker.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
+#include "gst/meta_ellipse.hpp"
 #include "tests/gst/support.hpp"
 
 namespace {
@@ -84,8 +85,7 @@ std::string verdict_on(double error_px, double tolerance_px = kRightPx) {
 }
 
 double difference_px(const GstEllipseMeta& meta, const ellipse::Ellipse& detected) {
-  const ellipse::Ellipse carried{
-      meta.cx, meta.cy, meta.semi_major, meta.semi_minor, meta.angle_rad};
+  const ellipse::Ellipse carried = ellipse_of(meta);
   double farthest = 0.0;
   for (int i = 0; i < 32; ++i) {
     const double distance = ellipse::sampson_distance(detected, carried.point_at(0.2 * i));

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "gst/meta_ellipse.hpp"
 #include "tests/gst/support.hpp"
 #include "tests/gst/tracker_harness.hpp"
 
@@ -130,8 +131,7 @@ ellipse::Ellipse found_in(const std::string& format, int width) {
   const auto harness = tracker("", caps_of(format, width, 240));
   const auto out = push(harness, buffer_of(ring_picture(width, 240), info_of(format, width, 240)));
   const GstEllipseMeta* meta = target_on(out);
-  if (meta == nullptr) return {};
-  return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
+  return meta != nullptr ? ellipse_of(*meta) : ellipse::Ellipse{};
 }
 
 class Formats : public testing::TestWithParam<int> {};

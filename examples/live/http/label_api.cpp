@@ -12,7 +12,7 @@
 #include "examples/live/json_writer.hpp"
 #include "examples/live/outputs/label_store.hpp"
 #include "examples/live/request_json.hpp"
-#include "gst/ellipse/gstellipsemeta.h"
+#include "gst/meta_ellipse.hpp"
 
 namespace live {
 namespace {
@@ -23,7 +23,7 @@ ellipse::Ellipse shown_ellipse(const Frame& frame, double index) {
   double number = 0.0;
   while (const GstEllipseMeta* meta = gst_buffer_iterate_ellipse_meta(buffer, &state)) {
     if (number++ != index) continue;
-    return {meta->cx, meta->cy, meta->semi_major, meta->semi_minor, meta->angle_rad};
+    return ellipse_of(*meta);
   }
   throw std::invalid_argument("choice: the frame has no ellipse with this number");
 }
