@@ -1,5 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 
@@ -8,12 +9,13 @@
 
 namespace ellipse {
 
-/// The luma of a picture, the lens that distorts it, and its scale. A value; borrows the pixels and
-/// the lens.
+/// The luma of a picture, the lens that distorts it, its scale, and its position in the frame.
+/// A value; borrows the pixels and the lens.
 struct Picture {
   ImageView luma;
-  LensView lens;  ///< None by default.
-  int scale = 1;  ///< By which the frame was reduced.
+  LensView lens;                        ///< None by default.
+  int scale = 1;                        ///< By which the frame was reduced.
+  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the whole picture.
 
   Picture() = default;
   Picture(const ImageView& image,  // NOLINT(google-explicit-constructor): a picture without a lens
@@ -26,7 +28,10 @@ struct Picture {
 
   /// The part inside a rectangle that begins in the picture; its end is clipped.
   [[nodiscard]] Picture part(const Rect& rect) const {
-    return {luma.region(rect), lens.part({double(rect.x), double(rect.y)}), scale};
+    const Eigen::Vector2d begin(rect.x, rect.y);
+    Picture result(luma.region(rect), lens.part(begin), scale);
+    result.origin_px = origin_px + begin;
+    return result;
   }
 };
 

@@ -86,14 +86,14 @@ std::optional<Target> EdgeTracker::follow_edges(const ScopedFrame& frame, double
   const Rect region =
       intersect(pad_tracker_.region_after(elapsed_s, frame.pixels.width, frame.pixels.height),
                 frame.searchable);
-  const LumaWindow window = window_on(frame, region);
-  const auto track = pad_tracker_.track(window, elapsed_s);
+  const PadFrame part = pad_frame_of(frame, region);
+  const auto track = pad_tracker_.track(part, elapsed_s);
   const std::optional<Target> target = track ? target_of(*track, frame, region) : std::nullopt;
   // At most one of the periodic evaluation and the periodic detection runs per frame; is_better()
   // may add an evaluation.
   const bool is_deferred = judge_.is_certain() && is_detection_due() && !settings_.wants_candidates;
   if (target && track->is_visible && !is_deferred) {
-    judge_.judge(search_.detector(), window, *target, settings_.limits);
+    judge_.judge(search_.detector(), part.picture, *target, settings_.limits);
   }
   return target;
 }
@@ -155,7 +155,7 @@ bool EdgeTracker::is_better(const Target& candidate,
   const bool seems_better = is_better_target(candidate.ellipse, known, search_.candidates());
   if (!seems_better || !search_.detector().has_probability()) return seems_better;
   known.score = judge_.evaluate(
-      search_.detector(), window_on(frame, frame.searchable), followed, settings_.limits);
+      search_.detector(), picture_of(frame, frame.searchable), followed, settings_.limits);
   return is_better_target(candidate.ellipse, known, search_.candidates());
 }
 
@@ -217,8 +217,7 @@ std::optional<Target> EdgeTracker::resume_nearby(const ScopedFrame& frame) {
 std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target& detection) {
   const bool is_elsewhere = !hypothesis_ || !is_near(*hypothesis_, detection.ellipse);
   if (pad_tracker_.is_locked() && is_elsewhere) return std::nullopt;
-  const LumaWindow window = window_on(frame, frame.searchable);
-  const auto track = pad_tracker_.resume(window, detection.ellipse);
+  const auto track = pad_tracker_.resume(pad_frame_of(frame, frame.searchable), detection.ellipse);
   if (!track) return std::nullopt;
   add_detection(track->ellipse, log_odds(detection.probability));
   std::optional<Target> target = target_of(*track, frame, detection.search_region);
@@ -234,7 +233,7 @@ Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
   target.id = id_;
   is_pad_ = target.visible_fraction >= kMajority;
   if (is_pad_) {
-    (void)pad_tracker_.lock(window_on(frame, frame.searchable), target.ellipse);
+    (void)pad_tracker_.lock(pad_frame_of(frame, frame.searchable), target.ellipse);
   } else if (!is_confirmed) {
     pad_tracker_.release();
   }
@@ -254,11 +253,16 @@ bool EdgeTracker::add_detection(const Ellipse& outline, double detected_log_odds
   return is_confirmed;
 }
 
-LumaWindow EdgeTracker::window_on(const ScopedFrame& frame, const Rect& region) {
-  return {search_.read(region),
-          Eigen::Vector2d(region.x, region.y),
+Picture EdgeTracker::picture_of(const ScopedFrame& frame, const Rect& region) {
+  const Eigen::Vector2d origin_px(region.x, region.y);
+  Picture picture(search_.read(region), frame.lens.part(origin_px));
+  picture.origin_px = origin_px;
+  return picture;
+}
+
+PadFrame EdgeTracker::pad_frame_of(const ScopedFrame& frame, const Rect& region) {
+  return {picture_of(frame, region),
           Eigen::Vector2d(frame.pixels.width, frame.pixels.height),
-          frame.lens,
           frame.camera};
 }
 

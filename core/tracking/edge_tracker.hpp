@@ -65,7 +65,8 @@ class EdgeTracker {
   [[nodiscard]] std::optional<Target> resume(const ScopedFrame& frame, const Target& detection);
   [[nodiscard]] Target acquire(const ScopedFrame& frame, Target target);
   bool add_detection(const Ellipse& outline, double detected_log_odds);
-  [[nodiscard]] LumaWindow window_on(const ScopedFrame& frame, const Rect& region);
+  [[nodiscard]] Picture picture_of(const ScopedFrame& frame, const Rect& region);
+  [[nodiscard]] PadFrame pad_frame_of(const ScopedFrame& frame, const Rect& region);
 
   FrameSearch& search_;
   const TargetMemory& last_;

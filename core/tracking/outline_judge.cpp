@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
+#include "core/detection/evidence.hpp"
+#include "core/edges/outline_samples.hpp"
 #include "core/image/roi.hpp"
 
 namespace ellipse {
@@ -12,23 +14,17 @@ namespace {
 
 constexpr double kLessMatched = 0.1;  // drop of the matched share that triggers an evaluation
 
-// Crops a window to an ellipse and its surroundings.
-LumaWindow part_around(const LumaWindow& window, const Ellipse& outline) {
-  const Rect whole{static_cast<int>(window.origin_px.x()),
-                   static_cast<int>(window.origin_px.y()),
-                   window.luma.width,
-                   window.luma.height};
-  const Rect around = intersect(calculate_roi(outline,
-                                              kRoiExpansion,
-                                              kCoarsestScale,
-                                              static_cast<int>(window.frame_px.x()),
-                                              static_cast<int>(window.frame_px.y())),
-                                whole);
-  LumaWindow part = window;
-  part.luma =
-      window.luma.region({around.x - whole.x, around.y - whole.y, around.width, around.height});
-  part.origin_px = Eigen::Vector2d(around.x, around.y);
-  return part;
+// Crops a picture to an ellipse of its frame and the surroundings.
+Picture part_around(const Picture& picture, const Ellipse& outline) {
+  const Rect whole{static_cast<int>(picture.origin_px.x()),
+                   static_cast<int>(picture.origin_px.y()),
+                   picture.luma.width,
+                   picture.luma.height};
+  const Rect around = intersect(
+      calculate_roi(
+          outline, kRoiExpansion, kCoarsestScale, whole.x + whole.width, whole.y + whole.height),
+      whole);
+  return picture.part({around.x - whole.x, around.y - whole.y, around.width, around.height});
 }
 
 }  // namespace
@@ -48,29 +44,27 @@ void OutlineJudge::confirm(double log_odds, double prior) {
 }
 
 void OutlineJudge::judge(Detector& detector,
-                         const LumaWindow& window,
+                         const Picture& picture,
                          const Target& target,
                          const Thresholds& limits) {
   max_visible_ = std::max(max_visible_, target.visible_fraction);
-  if (is_due(target)) (void)evaluate(detector, window, target, limits);
+  if (is_due(target)) (void)evaluate(detector, picture, target, limits);
 }
 
 std::optional<double> OutlineJudge::evaluate(Detector& detector,
-                                             const LumaWindow& window,
+                                             const Picture& picture,
                                              const Target& target,
                                              const Thresholds& limits) {
   if (since_judged_s_ == 0.0) return odds_.last();  // already in this frame
-  const auto outline = distorted(window.lens, target.ellipse);
+  const auto outline = distorted(picture.lens.part(-picture.origin_px), target.ellipse);
   if (!outline || is_short_arc(target)) return std::nullopt;
   judged_overlap_ = target.ellipse_overlap;
-  const LumaWindow part = part_around(window, *outline);
-  const Eigen::Vector2d& origin = part.origin_px;
+  const Picture part = part_around(picture, *outline);
   Thresholds thresholds = limits;
   thresholds.contour_overlap = detector.tracking_overlaps().contour;
   thresholds.ellipse_overlap = detector.tracking_overlaps().ellipse;
-  const auto judged = detector.log_odds_of({part.luma, window.lens.part(origin)},
-                                           translated(target.ellipse, -origin.x(), -origin.y()),
-                                           thresholds);
+  const auto judged = detector.log_odds_of(
+      part, translated(target.ellipse, -part.origin_px.x(), -part.origin_px.y()), thresholds);
   if (!judged) return std::nullopt;
   add(*judged);
   return odds_.last();

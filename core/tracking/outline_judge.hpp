@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "core/camera/picture.hpp"
 #include "core/detection/detector.hpp"
 #include "core/detection/thresholds.hpp"
-#include "core/tracking/pad/pad_tracker.hpp"
 #include "core/tracking/target.hpp"
 #include "core/tracking/target_odds.hpp"
 
@@ -32,9 +32,10 @@ class OutlineJudge {
   /// Evaluates the outline of a visible target with the detector: at once while the odds are
   /// uncertain or when the matched share drops, else periodically.
   ///
-  /// @param limits  Edge thresholds; the overlaps are replaced by the detector's own.
+  /// @param picture  The frame, or the part of it that shows the target.
+  /// @param limits   Edge thresholds; the overlaps are replaced by the detector's own.
   void judge(Detector& detector,
-             const LumaWindow& window,
+             const Picture& picture,
              const Target& target,
              const Thresholds& limits);
 
@@ -43,7 +44,7 @@ class OutlineJudge {
   /// @return Its log odds in this frame, bounded as in TargetOdds; nullopt if they are unknown, or
   ///         if only a short arc of a certain outline is visible.
   std::optional<double> evaluate(Detector& detector,
-                                 const LumaWindow& window,
+                                 const Picture& picture,
                                  const Target& target,
                                  const Thresholds& limits);
 

@@ -241,13 +241,13 @@ TEST_F(Allocations, NoneInPadTrackerOnceItIsLocked) {
   for (const Film& film : kFilms) {
     PadTracker tracker;
     show(film, [&](int i, const ImageView& luma, const Truth& truth) {
-      const LumaWindow window{luma, {0.0, 0.0}, {320.0, 180.0}};
+      const PadFrame frame{luma, {320.0, 180.0}};
       if (i == 0) {
-        EXPECT_TRUE(tracker.lock(window, *truth.outer_edge)) << film.scene;
+        EXPECT_TRUE(tracker.lock(frame, *truth.outer_edge)) << film.scene;
         return;
       }
       std::optional<PadTrack> track;
-      EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0)
+      EXPECT_EQ(allocations_of([&] { track = tracker.track(frame, ellipse::kFrame_s); }), 0)
           << film.scene << ' ' << i;
       EXPECT_TRUE(track && track->is_visible) << film.scene << ' ' << i;
     });
@@ -258,11 +258,11 @@ TEST_F(Allocations, NoneWhereEdgesAreNotMatched) {
   const GrayPicture ring = ring_picture();
   const GrayPicture ground(320, 240, 90);
   PadTracker tracker;
-  ASSERT_TRUE(tracker.lock({ring.view(), {0.0, 0.0}, {320.0, 240.0}}, kRing));
+  ASSERT_TRUE(tracker.lock({ring.view(), {320.0, 240.0}}, kRing));
   for (int i = 0; i < 20; ++i) {
     std::optional<PadTrack> track;
-    const LumaWindow window{ground.view(), {0.0, 0.0}, {320.0, 240.0}};
-    EXPECT_EQ(allocations_of([&] { track = tracker.track(window, ellipse::kFrame_s); }), 0) << i;
+    const PadFrame frame{ground.view(), {320.0, 240.0}};
+    EXPECT_EQ(allocations_of([&] { track = tracker.track(frame, ellipse::kFrame_s); }), 0) << i;
     EXPECT_FALSE(track && track->is_visible) << i;
   }
 }

@@ -36,8 +36,8 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_p
   return result;
 }
 
-PadView view_in(const LumaWindow& window, const Eigen::Matrix3d& view) {
-  return {shifted(view, -window.origin_px), window.lens.part(window.origin_px)};
+PadView view_in(const Picture& picture, const Eigen::Matrix3d& view) {
+  return {shifted(view, -picture.origin_px), picture.lens};
 }
 
 // RMS displacement of the edges by a change.
@@ -69,11 +69,11 @@ double PadTracker::radius_px() const {
 // The outer edge leaves the tilt ambiguous, and a wrong tilt blurs the inner circles in the radial
 // profile. With a camera, compares the affine view and both poses of the circle, and keeps the view
 // with the highest total contrast.
-bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) {
+bool PadTracker::learn_pad(const Picture& picture, const Ellipse& outer_edge) {
   std::array<Eigen::Matrix3d, 3> views;
   std::size_t count = 0;
   views[count++] = image_from_pad(outer_edge);
-  const auto poses = window.camera ? circle_poses(camera_, outer_edge) : std::nullopt;
+  const auto poses = is_camera_known_ ? circle_poses(camera_, outer_edge) : std::nullopt;
   if (poses) {
     for (const CirclePose& pose : *poses) {
       const Eigen::Matrix3d view = image_from_pad(camera_, pose);
@@ -82,9 +82,9 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
   }
   double max_contrast = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const PadView view = view_in(window, views[i]);
+    const PadView view = view_in(picture, views[i]);
     const double min_apart = tolerance_px(view.radius_px()) / view.radius_px();
-    auto model = learn_circles(window.luma, view, ring_ratio_, min_apart);
+    auto model = learn_circles(picture.luma, view, ring_ratio_, min_apart);
     if (!model) continue;
     double contrast = 0.0;
     for (const PadCircle& circle : model->circles) contrast += circle.contrast;
@@ -96,19 +96,20 @@ bool PadTracker::learn_pad(const LumaWindow& window, const Ellipse& outer_edge) 
   return max_contrast > 0.0;
 }
 
-void PadTracker::begin_frame(const LumaWindow& window) {
-  camera_ = window.camera.value_or(default_camera(window.frame_px));
-  lens_ = window.lens;
+void PadTracker::begin_frame(const PadFrame& frame) {
+  camera_ = frame.camera.value_or(default_camera(frame.frame_px));
+  is_camera_known_ = frame.camera.has_value();
+  lens_ = frame.picture.lens.part(-frame.picture.origin_px);
   last_motion_px_ = motion_px_;
   motion_px_.setZero();
   refined_.reset();
   inner_count_ = 0;
 }
 
-bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
+bool PadTracker::lock(const PadFrame& frame, const Ellipse& outer_edge) {
   forget();
-  begin_frame(window);
-  if (!learn_pad(window, outer_edge)) return false;
+  begin_frame(frame);
+  if (!learn_pad(frame.picture, outer_edge)) return false;
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
@@ -117,7 +118,7 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   const HomographyCovariance covariance = detected_covariance();
   std::optional<Attempt> attempt;
   for (int step = 0; step < kMaxSteps; ++step) {
-    attempt = search_from(window, view_, covariance);
+    attempt = search_from(frame.picture, view_, covariance);
     if (!is_good(attempt)) return false;
     view_ = attempt->view;
     update_radii(model_, search_.samples(), attempt->last, 1.0, kReachPx);
@@ -127,17 +128,17 @@ bool PadTracker::lock(const LumaWindow& window, const Ellipse& outer_edge) {
   begin_motion(*attempt, HomographyChange::Zero());
   is_known_ = true;
   outer_edge_.restart();
-  if (window.camera) measure_edges(window, attempt->visible, 1.0);
+  if (is_camera_known_) measure_edges(frame.picture, attempt->visible, 1.0);
   return true;
 }
 
-std::optional<PadTrack> PadTracker::resume(const LumaWindow& window, const Ellipse& edge) {
+std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse& edge) {
   if (!is_known_ || (is_locked_ && unmatched_s_ == 0.0)) return std::nullopt;
-  begin_frame(window);
+  begin_frame(frame);
   for (const PadCircle& circle : model_.circles) {
     const auto start = with_circle(view_, edge, circle.radius);
     if (!start) continue;
-    const auto attempt = search_from(window, *start, detected_covariance());
+    const auto attempt = search_from(frame.picture, *start, detected_covariance());
     if (!is_good(attempt) || !has_circle(attempt->view, circle.radius, edge)) continue;
     // Two detections determine the shift and the scale; other changes are slower than their errors.
     HomographyChange velocity = HomographyChange::Zero();
@@ -146,7 +147,7 @@ std::optional<PadTrack> PadTracker::resume(const LumaWindow& window, const Ellip
       velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
     }
     begin_motion(*attempt, velocity);
-    measure_edges(window, attempt->visible, 1.0);
+    measure_edges(frame.picture, attempt->visible, 1.0);
     return make_track(&*attempt);
   }
   return std::nullopt;
@@ -196,14 +197,14 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
 }
 
 // Searches as far as the covariance says, and again around the result until samples stay in place.
-std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& window,
+std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& picture,
                                                            const Eigen::Matrix3d& start,
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
   const double max_reach_px = kReachPx + kMaxReach * radius_px();
   // A single edge in shadow cannot be told from an edge of the object that casts it.
   const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
-  const ImageLevels levels{gain_, pixel_noise(window.luma), relative_gain};
+  const ImageLevels levels{gain_, pixel_noise(picture.luma), relative_gain};
   // Lines match texture by chance, so the scatter of the matches lowers their weight against the
   // prior. Circles alone scatter because the pad is deformed: their matches keep the full weight.
   MatchLimits limits{
@@ -212,11 +213,11 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const LumaWindow& win
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix3d view = moved(start, change);
-    search_.sample(model_, view_in(window, view), window.luma);
+    search_.sample(model_, view_in(picture, view), picture.luma);
     if (step == 0) {
-      search_.search(window.luma, levels, kReachPx, &covariance, max_reach_px);
+      search_.search(picture.luma, levels, kReachPx, &covariance, max_reach_px);
     } else {
-      search_.search(window.luma, levels, kReachPx);
+      search_.search(picture.luma, levels, kReachPx);
     }
     const HomographyPrior prior{-change, information};
     limits.first_reach_px = step == 0 ? max_reach_px : kReachPx;
@@ -235,18 +236,18 @@ bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
          attempt->support.matched >= HomographyChange::SizeAtCompileTime;
 }
 
-std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elapsed_s) {
+std::optional<PadTrack> PadTracker::track(const PadFrame& frame, double elapsed_s) {
   if (!is_locked_) return std::nullopt;
-  begin_frame(window);
+  begin_frame(frame);
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
   double noise_factor = noise_factor_;
   HomographyFilter before = predicted(elapsed_s, noise_factor);
-  auto attempt = search_from(window, prediction, before.covariance);
+  auto attempt = search_from(frame.picture, prediction, before.covariance);
   last_coverage_ = attempt ? attempt->support.coverage : 0.0;
   if (!is_good(attempt)) {
     noise_factor = kUnknownMotion;
     before = predicted(elapsed_s, noise_factor);
-    attempt = search_from(window, prediction, before.covariance);
+    attempt = search_from(frame.picture, prediction, before.covariance);
   }
   if (!is_good(attempt)) {
     coast(prediction, before, elapsed_s);
@@ -256,9 +257,9 @@ std::optional<PadTrack> PadTracker::track(const LumaWindow& window, double elaps
   const Eigen::Matrix3d last_view = view_;
   const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   accept(*attempt, before, noise_factor, adaptation);
-  measure_edges(window, attempt->visible, adaptation);
+  measure_edges(frame.picture, attempt->visible, adaptation);
   motion_.velocity = carried(motion_.velocity, last_view, view_, camera_);
-  learn_lines(window, *attempt);
+  learn_lines(frame.picture, *attempt);
   return make_track(&*attempt);
 }
 
@@ -334,27 +335,27 @@ HomographyCovariance PadTracker::covariance() const {
   return motion_.covariance + model_error_covariance(model_);
 }
 
-void PadTracker::measure_edges(const LumaWindow& window, double visible, double adaptation) {
-  refine(window, visible, adaptation);
+void PadTracker::measure_edges(const Picture& picture, double visible, double adaptation) {
+  refine(picture, visible, adaptation);
   // Rings alone hardly determine the tilt: it would drift, and lines would be learned in a wrong
   // view.
-  if (window.camera && model_.lines.empty()) view_ = with_nearer_pose(camera_, view_);
-  if (window.camera) measure_inner_edges(window);
+  if (is_camera_known_ && model_.lines.empty()) view_ = with_nearer_pose(camera_, view_);
+  if (is_camera_known_) measure_inner_edges(picture);
   matched_view_ = view_;
 }
 
 // Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
-void PadTracker::refine(const LumaWindow& window, double visible, double adaptation) {
+void PadTracker::refine(const Picture& picture, double visible, double adaptation) {
   if (visible < kEnoughVisible) return;
   const auto exact = outer_edge_.refine(
-      window.luma, view_in(window, view_), model_, gain_, motion_px_, adaptation);
+      picture.luma, view_in(picture, view_), model_, gain_, motion_px_, adaptation);
   if (!exact) return;
   const auto view =
-      with_circle(view_, translated(exact->ellipse, window.origin_px.x(), window.origin_px.y()));
+      with_circle(view_, translated(exact->ellipse, picture.origin_px.x(), picture.origin_px.y()));
   if (!view) return;
   view_ = *view;
   clear_ring_errors(model_);
-  refined_ = {shifted(exact->uncertainty.view, window.origin_px),
+  refined_ = {shifted(exact->uncertainty.view, picture.origin_px),
               with_centre_error(exact->uncertainty.information,
                                 exposure_error_px(adaptation) / radius_px())};
 }
@@ -370,23 +371,23 @@ double PadTracker::exposure_error_px(double adaptation) {
   return outer_edge_.squared_exposure() / 24.0 * std::sqrt(squared_acceleration_.value_or(0.0));
 }
 
-void PadTracker::measure_inner_edges(const LumaWindow& window) {
+void PadTracker::measure_inner_edges(const Picture& picture) {
   if (!refined_) return;
-  const PadView view = view_in(window, view_);
+  const PadView view = view_in(picture, view_);
   for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
-    const auto edge = refined_circle(window.luma, view, model_.circles[i], gain_, motion_px_);
+    const auto edge = refined_circle(picture.luma, view, model_.circles[i], gain_, motion_px_);
     if (!edge) continue;
     inner_edges_[inner_count_++] = {
-        translated(edge->ellipse, window.origin_px.x(), window.origin_px.y()),
-        {shifted(edge->uncertainty.view, window.origin_px), edge->uncertainty.information}};
+        translated(edge->ellipse, picture.origin_px.x(), picture.origin_px.y()),
+        {shifted(edge->uncertainty.view, picture.origin_px), edge->uncertainty.information}};
   }
 }
 
 // Learns the lines again as the pad grows in the image and shows finer ones.
-void PadTracker::learn_lines(const LumaWindow& window, const Attempt& attempt) {
+void PadTracker::learn_lines(const Picture& picture, const Attempt& attempt) {
   const double radius = radius_px();
   if (radius < kGrowthToLearn * learned_radius_px_ || attempt.visible < kMajority) return;
-  line_learner_.take(window.luma, view_in(window, view_));
+  line_learner_.take(picture.luma, view_in(picture, view_));
   if (!line_learner_.is_ready()) return;
   line_learner_.learn(model_, gain_);
   line_learner_.start();

@@ -9,8 +9,8 @@
 #include "core/camera/camera.hpp"
 #include "core/camera/circle_pose.hpp"
 #include "core/camera/lens_view.hpp"
+#include "core/camera/picture.hpp"
 #include "core/geometry/homography.hpp"
-#include "core/image/image_view.hpp"
 #include "core/tracking/pad/edge_search.hpp"
 #include "core/tracking/pad/homography_filter.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
@@ -20,13 +20,11 @@
 
 namespace ellipse {
 
-/// The luma of a frame region.
-struct LumaWindow {
-  ImageView luma;
-  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the frame.
-  Eigen::Vector2d frame_px{0.0, 0.0};   ///< Width and height of the frame.
-  LensView lens{};                      ///< Of whole frames; its lens must outlive the tracker.
-  std::optional<Camera> camera{};       ///< If known.
+/// A frame, or the part of it that is searched.
+struct PadFrame {
+  Picture picture;                     ///< Its lens must outlive the tracker.
+  Eigen::Vector2d frame_px{0.0, 0.0};  ///< Width and height of the whole frame.
+  std::optional<Camera> camera{};      ///< If known.
 };
 
 /// Tracking result of one frame.
@@ -46,17 +44,17 @@ class PadTracker {
  public:
   /// Learns a pad from its outer edge.
   /// @return Whether the learned edges match the image.
-  [[nodiscard]] bool lock(const LumaWindow& window, const Ellipse& outer_edge);
+  [[nodiscard]] bool lock(const PadFrame& frame, const Ellipse& outer_edge);
 
   /// Continues with the pad that was locked last where the detector found one of its circles. While
   /// locked, the distance from the last match gives its velocity.
   /// @return nullopt if no pad is known, the last call of track() matched it, or its edges do not
   ///         match the image.
-  [[nodiscard]] std::optional<PadTrack> resume(const LumaWindow& window, const Ellipse& edge);
+  [[nodiscard]] std::optional<PadTrack> resume(const PadFrame& frame, const Ellipse& edge);
 
   /// @param elapsed_s  Since the last call.
   /// @return nullopt if the pad is lost.
-  [[nodiscard]] std::optional<PadTrack> track(const LumaWindow& window, double elapsed_s);
+  [[nodiscard]] std::optional<PadTrack> track(const PadFrame& frame, double elapsed_s);
 
   /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
@@ -100,9 +98,9 @@ class PadTracker {
     double visible = 0.0;
   };
 
-  void begin_frame(const LumaWindow& window);
+  void begin_frame(const PadFrame& frame);
   [[nodiscard]] HomographyFilter predicted(double elapsed_s, double noise_factor) const;
-  [[nodiscard]] std::optional<Attempt> search_from(const LumaWindow& window,
+  [[nodiscard]] std::optional<Attempt> search_from(const Picture& picture,
                                                    const Eigen::Matrix3d& start,
                                                    const HomographyCovariance& covariance);
   [[nodiscard]] static bool is_good(const std::optional<Attempt>& attempt);
@@ -123,12 +121,12 @@ class PadTracker {
                                        double radius,
                                        const Ellipse& detected);
   void begin_motion(const Attempt& attempt, const HomographyChange& velocity);
-  void measure_edges(const LumaWindow& window, double visible, double adaptation);
-  void refine(const LumaWindow& window, double visible, double adaptation);
+  void measure_edges(const Picture& picture, double visible, double adaptation);
+  void refine(const Picture& picture, double visible, double adaptation);
   [[nodiscard]] double exposure_error_px(double adaptation);
-  void measure_inner_edges(const LumaWindow& window);
-  [[nodiscard]] bool learn_pad(const LumaWindow& window, const Ellipse& outer_edge);
-  void learn_lines(const LumaWindow& window, const Attempt& attempt);
+  void measure_inner_edges(const Picture& picture);
+  [[nodiscard]] bool learn_pad(const Picture& picture, const Ellipse& outer_edge);
+  void learn_lines(const Picture& picture, const Attempt& attempt);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
   [[nodiscard]] double radius_px() const;
@@ -147,7 +145,8 @@ class PadTracker {
   HomographyFilter motion_;
   std::array<FittedEllipse, 2> inner_edges_;
   std::size_t inner_count_ = 0;
-  Camera camera_;
+  Camera camera_;  // of the last frame; assumed if unknown
+  bool is_camera_known_ = false;
   LensView lens_;
   std::optional<double> squared_acceleration_;  // of the centre, adaptive [(px / frame^2)^2]
   double noise_factor_ = 1.0;                   // adaptive factor of the motion noise

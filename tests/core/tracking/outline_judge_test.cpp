@@ -44,13 +44,13 @@ class OutlineJudgeTest : public testing::Test {
     const int before = detector_.calls;
     for (int frame = 0; frame < 30; ++frame) {
       judge_.advance(1.0 / 30.0);
-      judge_.judge(detector_, window_, target_, {});
+      judge_.judge(detector_, part_, target_, {});
     }
     return detector_.calls - before;
   }
 
-  support::GrayPicture picture_{200, 160};
-  LumaWindow window_{picture_.view(), {40.0, 20.0}, {640.0, 360.0}};
+  support::GrayPicture frame_{640, 360};
+  Picture part_ = Picture(frame_.view()).part({40, 20, 200, 160});
   Target target_;
   CountingDetector detector_;
   OutlineJudge judge_;
@@ -67,22 +67,22 @@ TEST_F(OutlineJudgeTest, JudgesEveryFrameUntilItIsCertain) {
 
 TEST_F(OutlineJudgeTest, EvaluatesOnRequestAtMostOncePerFrame) {
   judge_.start(5.0, -0.4);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   judge_.advance(1.0 / 30.0);
   detector_.answer = -2.0;
-  EXPECT_EQ(judge_.evaluate(detector_, window_, target_, {}), -2.0);
+  EXPECT_EQ(judge_.evaluate(detector_, part_, target_, {}), -2.0);
   EXPECT_LT(judge_.log_odds(), 4.6);
   const int before = detector_.calls;
-  EXPECT_EQ(judge_.evaluate(detector_, window_, target_, {}), -2.0);
+  EXPECT_EQ(judge_.evaluate(detector_, part_, target_, {}), -2.0);
   EXPECT_EQ(detector_.calls, before);
 }
 
 TEST_F(OutlineJudgeTest, DoesNotEvaluateAShortArcOfACertainOutline) {
   judge_.start(5.0, -0.4);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   judge_.advance(1.0 / 30.0);
   target_.visible_fraction = 0.2;
-  EXPECT_FALSE(judge_.evaluate(detector_, window_, target_, {}));
+  EXPECT_FALSE(judge_.evaluate(detector_, part_, target_, {}));
   EXPECT_EQ(judge_.log_odds(), 4.6);
 }
 
@@ -90,27 +90,27 @@ TEST_F(OutlineJudgeTest, HasNoEvidenceIfTheDetectorGivesNone) {
   judge_.start(5.0, -0.4);
   judge_.advance(1.0 / 30.0);
   detector_.answer = {};
-  EXPECT_FALSE(judge_.evaluate(detector_, window_, target_, {}));
+  EXPECT_FALSE(judge_.evaluate(detector_, part_, target_, {}));
   EXPECT_EQ(judge_.log_odds(), 4.6);
 }
 
 TEST_F(OutlineJudgeTest, JudgesAtOnceIfLessIsMatched) {
   judge_.start(5.0, -0.4);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   judge_.advance(1.0);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   const int before = detector_.calls;
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   EXPECT_EQ(detector_.calls, before);
   judge_.advance(1.0 / 30.0);
   target_.ellipse_overlap = 0.8;
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   EXPECT_EQ(detector_.calls, before + 1);
 }
 
 TEST_F(OutlineJudgeTest, IgnoresShortArcsOfSureTargetsSeenWhole) {
   judge_.start(5.0, 0.0);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 0);
   judge_.start(5.0, 0.0);  // a new target, of which no more has been visible
@@ -120,7 +120,7 @@ TEST_F(OutlineJudgeTest, IgnoresShortArcsOfSureTargetsSeenWhole) {
 TEST_F(OutlineJudgeTest, JudgesShortArcsOfUncertainTargets) {
   detector_.answer = 0.0;
   judge_.start(0.0, -0.4);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   target_.visible_fraction = 0.3;
   EXPECT_EQ(calls_in_a_second(), 30);
 }
@@ -128,7 +128,7 @@ TEST_F(OutlineJudgeTest, JudgesShortArcsOfUncertainTargets) {
 TEST_F(OutlineJudgeTest, PassesOnlyTheSurroundingsOfTheOutline) {
   judge_.start(0.0, -0.4);
   judge_.advance(1.0 / 30.0);
-  judge_.judge(detector_, window_, target_, {});
+  judge_.judge(detector_, part_, target_, {});
   // 120 px +- 2 x 20 px, and the last pixel, on a grid of 4 px: [80, 164).
   EXPECT_EQ(detector_.size.width, 84);
   EXPECT_DOUBLE_EQ(detector_.outline.cx, 40.0);

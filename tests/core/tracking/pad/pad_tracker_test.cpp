@@ -24,14 +24,12 @@ using support::rendered;
 
 const Ellipse kTrackedPad{300.3, 180.6, 60.0, 48.0, 0.4};
 
-LumaWindow whole(const GrayPicture& picture) {
-  return {picture.view(), {0.0, 0.0}, Vector2d(picture.width, picture.height)};
+PadFrame whole(const GrayPicture& picture) {
+  return {picture.view(), Vector2d(picture.width, picture.height)};
 }
 
-LumaWindow part(const GrayPicture& picture, const Rect& region) {
-  return {picture.view().region(region),
-          Vector2d(region.x, region.y),
-          Vector2d(picture.width, picture.height)};
+PadFrame part(const GrayPicture& picture, const Rect& region) {
+  return {Picture(picture.view()).part(region), Vector2d(picture.width, picture.height)};
 }
 
 Scene pad_scene(Pattern pattern = Pattern::kRing) {
@@ -258,15 +256,15 @@ TEST(PadTracker, LearnsLinesUnderTheTiltOfTheRing) {
     return Ellipse{320.0 + 60.0 * std::sin(0.1 * i), 180.0, radius, radius, 0.0};
   };
   PadTracker tracker;
-  const auto window_of = [&](const GrayPicture& picture) {
-    LumaWindow window = whole(picture);
-    window.camera = camera;
-    return window;
+  const auto calibrated = [&](const GrayPicture& picture) {
+    PadFrame frame = whole(picture);
+    frame.camera = camera;
+    return frame;
   };
   for (int i = 0; i < 100; ++i) {
     const GrayPicture picture = frame_of(truth_at(i), i < 80 ? ring : lines, std::uint64_t(i));
-    const bool is_found = i == 0 ? tracker.lock(window_of(picture), truth_at(0))
-                                 : tracker.track(window_of(picture), kFrame_s).has_value();
+    const bool is_found = i == 0 ? tracker.lock(calibrated(picture), truth_at(0))
+                                 : tracker.track(calibrated(picture), kFrame_s).has_value();
     ASSERT_TRUE(is_found) << i;
   }
   const auto pattern = tracker.pattern();
