@@ -52,7 +52,8 @@ using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 /// The change with this generator A, up to a multiple of the identity matrix.
 [[nodiscard]] HomographyChange change_of(const Eigen::Matrix3d& generator);
 
-/// Matrix over T, S and E, the part of a change that moves the outer circle.
+/// T, S and E, the part of a change that moves the outer circle, and a matrix over them.
+using RingChange = Eigen::Matrix<double, 5, 1>;
 using RingMatrix = Eigen::Matrix<double, 5, 5>;
 
 /// Uncertainty of the image of an outer circle.

@@ -79,6 +79,31 @@ HomographyFilter HomographyFilter::corrected(const HomographyEstimate& measured)
   return result;
 }
 
+// In the form of [BucyJoseph1968], because the considered errors [Schmidt1966] change the gain.
+RingGain HomographyFilter::correct_by_ring(const RingChange& change,
+                                           const RingMatrix& errors,
+                                           const HomographyCovariance& considered) {
+  const HomographyCovariance total = covariance + considered;
+  const RingMatrix inverse =
+      (total.topLeftCorner<5, 5>() + errors).ldlt().solve(RingMatrix::Identity());
+  const RingGain gain = total.leftCols<5>() * inverse;
+  const RingGain velocity_gain = cross_covariance.topRows<5>().transpose() * inverse;
+  HomographyCovariance kept = HomographyCovariance::Identity();
+  kept.leftCols<5>() -= gain;
+  const RingGain errors_of_change = gain * errors;
+  const HomographyCovariance learned = velocity_gain * cross_covariance.topRows<5>();
+
+  velocity += velocity_gain * change;
+  velocity_covariance +=
+      velocity_gain * (covariance.topLeftCorner<5, 5>() + errors) * velocity_gain.transpose() -
+      learned - learned.transpose();
+  cross_covariance =
+      kept * (cross_covariance - covariance.leftCols<5>() * velocity_gain.transpose()) +
+      errors_of_change * velocity_gain.transpose();
+  covariance = kept * covariance * kept.transpose() + errors_of_change * gain.transpose();
+  return gain;
+}
+
 void HomographyFilter::fix_rotation() {
   velocity(5) = 0.0;
   for (HomographyCovariance* part : {&covariance, &cross_covariance, &velocity_covariance}) {

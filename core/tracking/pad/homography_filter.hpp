@@ -17,6 +17,9 @@ namespace ellipse {
                                        const Eigen::Matrix3d& to,
                                        const Camera& camera);
 
+/// Change of the whole view per change of the outer circle.
+using RingGain = Eigen::Matrix<double, 8, 5>;
+
 /// Kalman filter [Kalman1960] of a moving view. The state is the view's change and its velocity,
 /// the change per second. A value.
 struct HomographyFilter {
@@ -33,6 +36,16 @@ struct HomographyFilter {
   /// Updates with a measurement of the view; the cross-covariance corrects the velocity.
   /// @param measured  Posterior change from the prediction: the prior is already included.
   [[nodiscard]] HomographyFilter corrected(const HomographyEstimate& measured) const;
+
+  /// Updates with a measurement of the outer circle whose errors are independent of the filter's.
+  /// @param change      T, S and E from the view to the measured circle.
+  /// @param errors      Covariance of the measurement.
+  /// @param considered  Covariance of errors of the view that the filter does not contain; it does
+  ///                    not contain them afterwards either.
+  /// @return The gain: times `change`, the correction of the view.
+  RingGain correct_by_ring(const RingChange& change,
+                           const RingMatrix& errors,
+                           const HomographyCovariance& considered);
 
   /// Fixes the rotation about the pad's normal, which rings do not determine.
   void fix_rotation();

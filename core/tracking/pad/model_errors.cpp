@@ -43,9 +43,10 @@ void propagate_model_errors(PadModel& model,
   multiply_sensitivities(model, correction.covariance);
 }
 
-void clear_ring_errors(PadModel& model) {
-  for (PadCircle& circle : model.circles) circle.sensitivity.head<5>().setZero();
-  for (PadLine& line : model.lines) line.sensitivity.head<5>().setZero();
+void reduce_model_errors(PadModel& model, const RingGain& gain) {
+  HomographyCovariance kept = HomographyCovariance::Identity();
+  kept.leftCols<5>() -= gain;
+  multiply_sensitivities(model, kept);
 }
 
 HomographyCovariance model_error_covariance(const PadModel& model) {

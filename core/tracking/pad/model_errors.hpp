@@ -4,6 +4,7 @@
 
 #include "core/geometry/homography.hpp"
 #include "core/tracking/pad/edge_search.hpp"
+#include "core/tracking/pad/homography_filter.hpp"
 #include "core/tracking/pad/pad_model.hpp"
 
 namespace ellipse {
@@ -27,8 +28,10 @@ void propagate_model_errors(PadModel& model,
                             std::span<const EdgeSample> samples,
                             const ViewCorrection& correction);
 
-/// Call after the view was moved to a measured outer edge, which does not depend on the model.
-void clear_ring_errors(PadModel& model);
+/// Updates the sensitivities after a measurement of the outer edge, which does not depend on the
+/// model, has corrected the view.
+/// @param gain  See HomographyFilter::correct_by_ring().
+void reduce_model_errors(PadModel& model, const RingGain& gain);
 
 /// Covariance of the view by the model's errors alone.
 [[nodiscard]] HomographyCovariance model_error_covariance(const PadModel& model);

@@ -26,7 +26,6 @@ constexpr double kDeformation = 0.012;     // distance of deformed edges from th
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
 constexpr double kMaxReach = 0.14;         // max search range beyond kReachPx [radii]
 constexpr int kMaxSteps = 3;               // max searches of a frame, and before a lock
-constexpr double kEnoughVisible = 0.3;     // share of the outer circle, to refine it
 constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
 
@@ -53,6 +52,12 @@ RingMatrix with_centre_error(const RingMatrix& information, double sigma) {
   RingMatrix covariance = information.inverse();
   covariance.diagonal().head<2>().array() += sigma * sigma;
   return covariance.inverse();
+}
+
+// Covariance of the measured ring in a view that maps the outer circle to it.
+RingMatrix covariance_in(const Eigen::Matrix3d& view, const RingUncertainty& ring) {
+  const RingMatrix to_view = ring_changes(ring.view, view);
+  return to_view * ring.information.ldlt().solve(RingMatrix(to_view.transpose()));
 }
 
 // Distance of a matched edge: its error, and the pad's deformation.
@@ -344,20 +349,35 @@ void PadTracker::measure_edges(const Picture& picture, double visible, double ad
   matched_view_ = view_;
 }
 
-// Snaps the view to the refined outer edge; constant-velocity prediction lags under acceleration.
+// While most of the outer edge is visible, its refinement alone determines the ring: it is more
+// exact than the matches, which contain the same errors. Constant-velocity prediction lags under
+// acceleration.
 void PadTracker::refine(const Picture& picture, double visible, double adaptation) {
-  if (visible < kEnoughVisible) return;
+  const Eigen::Vector2d& origin = picture.origin_px;
   const auto exact = outer_edge_.refine(
       picture.luma, view_in(picture, view_), model_, gain_, motion_px_, adaptation);
   if (!exact) return;
-  const auto view =
-      with_circle(view_, translated(exact->ellipse, picture.origin_px.x(), picture.origin_px.y()));
+  const auto view = with_circle(view_, translated(exact->ellipse, origin.x(), origin.y()));
   if (!view) return;
-  view_ = *view;
-  clear_ring_errors(model_);
-  refined_ = {shifted(exact->uncertainty.view, picture.origin_px),
-              with_centre_error(exact->uncertainty.information,
-                                exposure_error_px(adaptation) / radius_px())};
+  RingUncertainty ring{shifted(exact->uncertainty.view, origin), exact->uncertainty.information};
+  if (visible >= kMajority) {
+    view_ = *view;
+    reduce_model_errors(model_, RingGain::Identity());
+  } else {
+    correct_view(*view, covariance_in(*view, ring));
+    ring = {view_, covariance().topLeftCorner<5, 5>().inverse()};
+  }
+  refined_ = {ring.view,
+              with_centre_error(ring.information, exposure_error_px(adaptation) / radius_px())};
+}
+
+// Corrects the view by the refined outer edge, in proportion to the errors of both.
+void PadTracker::correct_view(const Eigen::Matrix3d& refined, const RingMatrix& errors) {
+  const HomographyChange change = change_between(view_, refined);
+  const RingGain gain =
+      motion_.correct_by_ring(change.head<5>(), errors, model_error_covariance(model_));
+  reduce_model_errors(model_, gain);
+  view_ = moved(refined, gain * change.head<5>() - change);
 }
 
 // Standard deviation of the mean position during the exposure from the position in its middle: for

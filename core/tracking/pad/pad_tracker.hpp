@@ -70,8 +70,8 @@ class PadTracker {
   /// Whether circles inside the outer one are known.
   [[nodiscard]] bool has_inner_edges() const { return model_.circles.size() > 1; }
 
-  /// Uncertainty of the outer edge in the last frame: from its refinement, else from all edges and
-  /// the motion.
+  /// Uncertainty of the outer edge in the last frame: from its refinement, if that determines it,
+  /// else also from all edges and the motion.
   [[nodiscard]] RingUncertainty uncertainty() const;
   /// Inner circles as measured in the last frame [px of its ideal plane]. Empty without a camera or
   /// a measurement. Valid until the next call.
@@ -123,6 +123,7 @@ class PadTracker {
   void begin_motion(const Attempt& attempt, const HomographyChange& velocity);
   void measure_edges(const Picture& picture, double visible, double adaptation);
   void refine(const Picture& picture, double visible, double adaptation);
+  void correct_view(const Eigen::Matrix3d& refined, const RingMatrix& errors);
   [[nodiscard]] double exposure_error_px(double adaptation);
   void measure_inner_edges(const Picture& picture);
   [[nodiscard]] bool learn_pad(const Picture& picture, const Ellipse& outer_edge);

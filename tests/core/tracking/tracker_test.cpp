@@ -570,6 +570,25 @@ TEST(FollowingTracker, KeepsTheIdThroughFramesWithoutTheTarget) {
   EXPECT_EQ(other->id, 2U);
 }
 
+// At the end, its outer edge is a short arc, which hardly determines the centre.
+TEST(FollowingTracker, KnowsTheCentreOfATargetThatLeavesThePicture) {
+  SceneRenderer renderer(scene_by_name("reenter", 962));
+  GrayPicture picture(640, 360);
+  Tracker tracker;
+  int short_arcs = 0;
+  for (int frame = 0; frame < 155; ++frame) {
+    const Truth truth =
+        renderer.render(frame / 30.0, static_cast<std::uint64_t>(frame), picture.writable());
+    const auto target = tracker.process(picture.view(), frame * kFrameNs);
+    if (frame < 130) continue;
+    ASSERT_TRUE(target) << frame;
+    const Ellipse& edge = truth.outer_edge.value();
+    EXPECT_LT((target->ellipse.center() - edge.center()).norm(), 0.045 * edge.semi_major) << frame;
+    short_arcs += truth.visible_fraction < 0.15 ? 1 : 0;
+  }
+  EXPECT_EQ(short_arcs, 6);
+}
+
 TEST(FollowingTracker, FollowsWithoutTimeStamps) {
   const Film film(plain_ring());
   Tracker tracker;

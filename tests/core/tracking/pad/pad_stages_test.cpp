@@ -885,8 +885,56 @@ TEST(ModelErrors, DoNotFallWithTheNumberOfSamplesOrFrames) {
     prior = {HomographyChange::Zero(), estimate->information};
   }
   EXPECT_NEAR(sigma, 0.0014 / model.circles[1].radius, 0.0001);
-  clear_ring_errors(model);
-  EXPECT_EQ(model_error_covariance(model)(2, 2), 0.0);
+  RingGain gain = RingGain::Zero();
+  gain.topRows<5>().diagonal().setConstant(0.75);
+  reduce_model_errors(model, gain);
+  EXPECT_NEAR(std::sqrt(model_error_covariance(model)(2, 2)), 0.25 * sigma, 1e-9);
+  gain.topRows<5>().setIdentity();
+  reduce_model_errors(model, gain);
+  EXPECT_EQ(model_error_covariance(model)(2, 2), 0.0) << "by an exact measurement";
+}
+
+// With an uncertain velocity; its position and velocity are correlated.
+HomographyFilter moving_filter() {
+  HomographyFilter filter;
+  filter.covariance.diagonal().setConstant(1e-6);
+  filter.covariance(0, 6) = filter.covariance(6, 0) = 5e-7;
+  filter.velocity_covariance.diagonal().setConstant(1e-2);
+  return filter.after(0.1, 1e-3 * HomographyCovariance::Identity());
+}
+
+// The Kalman filter in information form.
+TEST(HomographyFilter, CorrectsByTheRingLikeTheSumOfTheInformation) {
+  const HomographyFilter before = moving_filter();
+  RingChange change;
+  change << 0.02, -0.01, 0.005, 0.001, -0.002;
+  const RingMatrix errors = 4e-5 * RingMatrix::Identity();
+  HomographyCovariance measured = HomographyCovariance::Zero();
+  measured.topLeftCorner<5, 5>() = errors.inverse();
+  HomographyEstimate estimate;
+  estimate.information = inverse_of(before.covariance) + measured;
+  estimate.change = inverse_of(estimate.information).leftCols<5>() * errors.inverse() * change;
+  const HomographyFilter expected = before.corrected(estimate);
+
+  HomographyFilter filter = before;
+  const RingGain gain = filter.correct_by_ring(change, errors, HomographyCovariance::Zero());
+  EXPECT_TRUE((gain * change).isApprox(estimate.change, 1e-6));
+  EXPECT_GT(std::abs((gain * change)(6)), 1e-5) << "correlated with the ring";
+  EXPECT_TRUE(filter.velocity.isApprox(expected.velocity, 1e-6));
+  EXPECT_TRUE(filter.covariance.isApprox(expected.covariance, 1e-6));
+  EXPECT_TRUE(filter.cross_covariance.isApprox(expected.cross_covariance, 1e-6));
+  EXPECT_TRUE(filter.velocity_covariance.isApprox(expected.velocity_covariance, 1e-6));
+}
+
+TEST(HomographyFilter, TrustsTheRingMoreIfItsOwnViewHasOtherErrors) {
+  const RingChange change = RingChange::Constant(0.01);
+  const RingMatrix errors = 4e-5 * RingMatrix::Identity();
+  HomographyFilter filter = moving_filter();
+  const HomographyCovariance considered = 1e-2 * HomographyCovariance::Identity();
+  const RingGain gain = filter.correct_by_ring(change, errors, considered);
+  EXPECT_TRUE((gain * change).head<5>().isApprox(change, 0.01));
+  const RingMatrix covariance = filter.covariance.topLeftCorner<5, 5>();
+  EXPECT_TRUE(covariance.isApprox(errors, 0.02)) << "nearly the measurement";
 }
 
 TEST(Refuted, NeedsMoreThanAFewUnmatchedSamples) {
