@@ -9,13 +9,13 @@
 
 namespace ellipse {
 
-/// The luma of a picture, the lens that distorts it, its scale, and its position in the frame.
-/// A value; borrows the pixels and the lens.
+/// The luma of a picture, the lens that distorts it, its scale, and its position. A value;
+/// borrows the pixels and the lens.
 struct Picture {
   ImageView luma;
   LensView lens;                        ///< None by default.
   int scale = 1;                        ///< By which the frame was reduced.
-  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Its top-left pixel in the whole picture.
+  Eigen::Vector2d origin_px{0.0, 0.0};  ///< Of a part: its top-left pixel in the whole.
 
   Picture() = default;
   Picture(const ImageView& image,  // NOLINT(google-explicit-constructor): a picture without a lens

@@ -16,9 +16,8 @@ inline constexpr std::size_t kRefinementSamples = 96;
 /// Refines an ellipse that is known within a pixel or two on the picture itself: finds the gradient
 /// maximum across its perimeter at each sample and computes no gradient elsewhere.
 ///
-/// @param picture       Its lens distorts the perimeter for the search; `e` and the result are in
-/// the
-///                      ideal plane.
+/// @param picture       Its lens distorts the perimeter for the search; `e` and the result are of
+///                      the ideal plane.
 /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
 /// @param samples       As of OutlineSamples. Fewer samples are faster and noisier.
 /// @param motion_px     As of motion_blur(); zero = unknown.

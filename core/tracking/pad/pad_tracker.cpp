@@ -349,9 +349,9 @@ void PadTracker::measure_edges(const Picture& picture, double visible, double ad
   matched_view_ = view_;
 }
 
-// While most of the outer edge is visible, its refinement alone determines the ring: it is more
-// exact than the matches, which contain the same errors. Constant-velocity prediction lags under
-// acceleration.
+// Moves the view to the refined outer edge while most of it is visible: matches are less exact and
+// share its errors, and constant-velocity prediction lags under acceleration. A short arc hardly
+// determines the ring: its refinement is combined with the view.
 void PadTracker::refine(const Picture& picture, double visible, double adaptation) {
   const Eigen::Vector2d& origin = picture.origin_px;
   const auto exact = outer_edge_.refine(

@@ -56,7 +56,7 @@ class PadTracker {
   /// @return nullopt if the pad is lost.
   [[nodiscard]] std::optional<PadTrack> track(const PadFrame& frame, double elapsed_s);
 
-  /// @param refinement  Of the outer edge in each frame; the view is snapped to the refined edge.
+  /// @param refinement  Of the outer edge in each frame; it corrects the view.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
   void configure(Refinement refinement, double ring_ratio) {
     outer_edge_.configure(refinement);
