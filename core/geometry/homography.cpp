@@ -70,6 +70,20 @@ Matrix3d moved(const Matrix3d& image_from_pad, const HomographyChange& change) {
   return view / view(2, 2);
 }
 
+Matrix3d translated(const Matrix3d& image_from_pad, const Eigen::Vector2d& by_px) {
+  Matrix3d result = image_from_pad;
+  result.topRows<2>() += by_px * image_from_pad.row(2);
+  return result;
+}
+
+Matrix3d without_perspective(const Matrix3d& image_from_pad) {
+  Matrix3d affine = image_from_pad;
+  affine.topLeftCorner<2, 2>() -= affine.topRightCorner<2, 1>() * affine.row(2).head<2>();
+  affine.row(2) = Eigen::RowVector3d(0.0, 0.0, 1.0);
+  const auto outer = project_circle(image_from_pad, 1.0);
+  return outer ? with_circle(affine, *outer).value_or(image_from_pad) : image_from_pad;
+}
+
 HomographyChange change_between(const Matrix3d& from, const Matrix3d& to) {
   const Matrix3d change = from.inverse() * to;
   return change_of(change / change(2, 2) - Matrix3d::Identity());

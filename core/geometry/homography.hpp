@@ -45,6 +45,13 @@ using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 [[nodiscard]] Eigen::Matrix3d moved(const Eigen::Matrix3d& image_from_pad,
                                     const HomographyChange& change);
 
+/// The view of the same pad, shifted in the image.
+[[nodiscard]] Eigen::Matrix3d translated(const Eigen::Matrix3d& image_from_pad,
+                                         const Eigen::Vector2d& by_px);
+
+/// The view of the same outer circle without perspective: the pad is parallel to the image.
+[[nodiscard]] Eigen::Matrix3d without_perspective(const Eigen::Matrix3d& image_from_pad);
+
 /// The change that moves one view to another, to first order; exact for a shift.
 [[nodiscard]] HomographyChange change_between(const Eigen::Matrix3d& from,
                                               const Eigen::Matrix3d& to);

@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
+#include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/geometry/ellipse.hpp"
@@ -18,6 +21,8 @@ namespace {
 constexpr double kRadiusStep = 0.005;  // of the radial profile [radii]
 constexpr int kAngles = 128;           // per radius
 constexpr int kApart = 5;              // min distance between circles [steps]
+
+constexpr double kDeformation = 0.012;  // distance of deformed edges from the model [radii]
 
 double radius_at(int i) {
   return i * kRadiusStep;
@@ -123,6 +128,10 @@ std::optional<int> outer_circle(const RadialProfile& profile, double noise) {
 
 }  // namespace
 
+double match_tolerance_px(double radius_px) {
+  return kUnlikelySigmas * kEdgeSigmaPx + kDeformation * radius_px;
+}
+
 std::optional<PadModel> learn_circles(const ImageView& luma,
                                       const PadView& view,
                                       double ring_ratio,
@@ -152,6 +161,36 @@ std::optional<PadModel> learn_circles(const ImageView& luma,
     if (is_other_way || apart >= min_apart) add(i);
   }
   return model;
+}
+
+std::optional<LearnedPad> learn_pad(const Picture& picture,
+                                    const Ellipse& outer_edge,
+                                    const std::optional<Camera>& camera,
+                                    double ring_ratio) {
+  std::array<Eigen::Matrix3d, 3> views;
+  std::size_t count = 0;
+  views[count++] = image_from_pad(outer_edge);
+  const auto poses = camera ? circle_poses(*camera, outer_edge) : std::nullopt;
+  if (poses) {
+    for (const CirclePose& pose : *poses) {
+      const Eigen::Matrix3d view = image_from_pad(*camera, pose);
+      views[count++] = view / view(2, 2);
+    }
+  }
+  std::optional<LearnedPad> best;
+  double max_contrast = 0.0;
+  for (const Eigen::Matrix3d& frame_view : std::span(views.data(), count)) {
+    const PadView view = PadView::in(picture, frame_view);
+    const double min_apart = match_tolerance_px(view.radius_px()) / view.radius_px();
+    auto model = learn_circles(picture.luma, view, ring_ratio, min_apart);
+    if (!model) continue;
+    double contrast = 0.0;
+    for (const PadCircle& circle : model->circles) contrast += circle.contrast;
+    if (contrast <= max_contrast) continue;
+    max_contrast = contrast;
+    best = {std::move(*model), frame_view};
+  }
+  return best;
 }
 
 PadLine* line_of(PadModel& model, int feature) {

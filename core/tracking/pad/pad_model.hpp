@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/camera/camera.hpp"
+#include "core/camera/picture.hpp"
 #include "core/edges/outline_samples.hpp"
 #include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
@@ -51,6 +53,12 @@ struct PadModel {
 /// lines have been removed since.
 [[nodiscard]] PadLine* line_of(PadModel& model, int feature);
 
+inline constexpr double kEdgeSigmaPx = 0.6;  ///< Min, of one matched edge.
+
+/// Max distance of a matched edge from the model: its error, and the pad's deformation.
+/// @param radius_px  Of the pad.
+[[nodiscard]] double match_tolerance_px(double radius_px);
+
 /// Learns the circles of a pad: steps of the median brightness over all angles as a function of the
 /// radius.
 ///
@@ -65,5 +73,23 @@ struct PadModel {
                                                     const PadView& view,
                                                     double ring_ratio = 0.0,
                                                     double min_apart = 0.0);
+
+/// A pad that was learned, and its view.
+struct LearnedPad {
+  PadModel model;
+  Eigen::Matrix3d view;  ///< Frame from pad.
+};
+
+/// Learns a pad in the view in which its circles have the highest total contrast: the outer edge
+/// leaves the tilt ambiguous, and a wrong tilt blurs the inner circles in the radial profile. Tries
+/// the affine view, and with a camera both poses of the circle.
+///
+/// @param outer_edge  In the ideal plane of the frame.
+/// @param ring_ratio  As of learn_circles().
+/// @return nullopt if no view shows a step of one polarity at the outer edge. Allocates the models.
+[[nodiscard]] std::optional<LearnedPad> learn_pad(const Picture& picture,
+                                                  const Ellipse& outer_edge,
+                                                  const std::optional<Camera>& camera,
+                                                  double ring_ratio);
 
 }  // namespace ellipse

@@ -3,13 +3,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/camera/circle_pose.hpp"
 #include "core/edges/noise.hpp"
-#include "core/geometry/ellipse_fit.hpp"
 #include "core/image/roi.hpp"
 #include "core/tracking/frame_clock.hpp"
 #include "core/tracking/pad/model_errors.hpp"
@@ -21,23 +20,11 @@ namespace {
 // Found by experiment, see docs/provenance.md.
 constexpr double kUnknownMotion = 400.0;   // variance of an unknown motion over that of the noise
 constexpr double kAdaptation_s = 0.116;    // time constant of motion noise, contrast and radii
-constexpr double kEdgeSigmaPx = 0.6;       // min, of one matched edge
-constexpr double kDeformation = 0.012;     // distance of deformed edges from the model [radii]
 constexpr double kReachPx = 4.0;           // min search range, and reach of Tukey's weights
 constexpr double kMaxReach = 0.14;         // max search range beyond kReachPx [radii]
 constexpr int kMaxSteps = 3;               // max searches of a frame, and before a lock
 constexpr double kMaxCentreSigma = 0.033;  // [radii]: 90 % of the errors are below .05
 constexpr double kGrowthToLearn = 1.4;     // since the lines were learned
-
-Eigen::Matrix3d shifted(const Eigen::Matrix3d& view, const Eigen::Vector2d& by_px) {
-  Eigen::Matrix3d result = view;
-  result.topRows<2>() += by_px * view.row(2);
-  return result;
-}
-
-PadView view_in(const Picture& picture, const Eigen::Matrix3d& view) {
-  return {shifted(view, -picture.origin_px), picture.lens};
-}
 
 // RMS displacement of the edges by a change.
 double rms_px(std::span<const EdgeSample> samples, const HomographyChange& change) {
@@ -60,61 +47,27 @@ RingMatrix covariance_in(const Eigen::Matrix3d& view, const RingUncertainty& rin
   return to_view * ring.information.ldlt().solve(RingMatrix(to_view.transpose()));
 }
 
-// Distance of a matched edge: its error, and the pad's deformation.
-double tolerance_px(double radius_px) {
-  return kUnlikelySigmas * kEdgeSigmaPx + kDeformation * radius_px;
-}
-
 }  // namespace
 
 double PadTracker::radius_px() const {
   return PadView(view_, lens_).radius_px();
 }
 
-// The outer edge leaves the tilt ambiguous, and a wrong tilt blurs the inner circles in the radial
-// profile. With a camera, compares the affine view and both poses of the circle, and keeps the view
-// with the highest total contrast.
-bool PadTracker::learn_pad(const Picture& picture, const Ellipse& outer_edge) {
-  std::array<Eigen::Matrix3d, 3> views;
-  std::size_t count = 0;
-  views[count++] = image_from_pad(outer_edge);
-  const auto poses = is_camera_known_ ? circle_poses(camera_, outer_edge) : std::nullopt;
-  if (poses) {
-    for (const CirclePose& pose : *poses) {
-      const Eigen::Matrix3d view = image_from_pad(camera_, pose);
-      views[count++] = view / view(2, 2);
-    }
-  }
-  double max_contrast = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const PadView view = view_in(picture, views[i]);
-    const double min_apart = tolerance_px(view.radius_px()) / view.radius_px();
-    auto model = learn_circles(picture.luma, view, ring_ratio_, min_apart);
-    if (!model) continue;
-    double contrast = 0.0;
-    for (const PadCircle& circle : model->circles) contrast += circle.contrast;
-    if (contrast <= max_contrast) continue;
-    max_contrast = contrast;
-    model_ = std::move(*model);
-    view_ = views[i];
-  }
-  return max_contrast > 0.0;
-}
-
 void PadTracker::begin_frame(const PadFrame& frame) {
   camera_ = frame.camera.value_or(default_camera(frame.frame_px));
   is_camera_known_ = frame.camera.has_value();
   lens_ = frame.picture.lens.part(-frame.picture.origin_px);
-  last_motion_px_ = motion_px_;
-  motion_px_.setZero();
+  edges_.begin_frame();
   refined_.reset();
-  inner_count_ = 0;
 }
 
 bool PadTracker::lock(const PadFrame& frame, const Ellipse& outer_edge) {
   forget();
   begin_frame(frame);
-  if (!learn_pad(frame.picture, outer_edge)) return false;
+  auto learned = learn_pad(frame.picture, outer_edge, frame.camera, ring_ratio_);
+  if (!learned) return false;
+  model_ = std::move(learned->model);
+  view_ = learned->view;
   line_learner_.reserve(model_);
   line_learner_.start();
   gain_ = 1.0;
@@ -132,7 +85,7 @@ bool PadTracker::lock(const PadFrame& frame, const Ellipse& outer_edge) {
   relative_gain_ = attempt->support.relative_gain;
   begin_motion(*attempt, HomographyChange::Zero());
   is_known_ = true;
-  outer_edge_.restart();
+  edges_.restart();
   if (is_camera_known_) measure_edges(frame.picture, attempt->visible, 1.0);
   return true;
 }
@@ -148,7 +101,7 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
     // Two detections determine the shift and the scale; other changes are slower than their errors.
     HomographyChange velocity = HomographyChange::Zero();
     if (is_locked_) {
-      motion_px_ = motion_to(attempt->view);
+      edges_.set_motion(motion_to(attempt->view));
       velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
     }
     begin_motion(*attempt, velocity);
@@ -160,7 +113,7 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
 
 // Of the view of a detected pad.
 HomographyCovariance PadTracker::detected_covariance() const {
-  const double sigma = tolerance_px(radius_px()) / radius_px();
+  const double sigma = match_tolerance_px(radius_px()) / radius_px();
   return sigma * sigma * HomographyCovariance::Identity();
 }
 
@@ -176,7 +129,7 @@ void PadTracker::begin_motion(const Attempt& attempt, const HomographyChange& ve
   is_locked_ = true;
   unmatched_s_ = 0.0;
   noise_factor_ = 1.0;
-  squared_acceleration_.reset();
+  edges_.restart_motion();
   motion_ = {};
   motion_.velocity = velocity;
   motion_.covariance = inverse_of(attempt.estimate.information);
@@ -196,7 +149,7 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
           last,
           support_of(search_.samples(),
                      last,
-                     tolerance_px(radius_px()),
+                     match_tolerance_px(radius_px()),
                      static_cast<int>(model_.circles.size())),
           search_.visible_fraction()};
 }
@@ -218,7 +171,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
   HomographyChange change = HomographyChange::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix3d view = moved(start, change);
-    search_.sample(model_, view_in(picture, view), picture.luma);
+    search_.sample(model_, PadView::in(picture, view), picture.luma);
     if (step == 0) {
       search_.search(picture.luma, levels, kReachPx, &covariance, max_reach_px);
     } else {
@@ -231,7 +184,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
     change += estimate->change;
     attempt =
         attempt_of(view, {change, estimate->information, estimate->precision}, estimate->change);
-    if (rms_px(search_.samples(), estimate->change) <= tolerance_px(radius_px())) break;
+    if (rms_px(search_.samples(), estimate->change) <= match_tolerance_px(radius_px())) break;
   }
   return attempt;
 }
@@ -258,7 +211,11 @@ std::optional<PadTrack> PadTracker::track(const PadFrame& frame, double elapsed_
     coast(prediction, before, elapsed_s);
     return is_locked_ ? make_track(nullptr) : std::nullopt;
   }
-  if (!model_.lines.empty() && !is_possible(attempt->view)) forget_lines(*attempt);
+  // Lines that lead to an impossible view are not on the pad.
+  if (!model_.lines.empty() && !is_possible(attempt->view)) {
+    model_.lines.clear();
+    attempt->view = without_perspective(attempt->view);
+  }
   const Eigen::Matrix3d last_view = view_;
   const double adaptation = 1.0 - std::exp(-elapsed_s / kAdaptation_s);
   accept(*attempt, before, noise_factor, adaptation);
@@ -275,19 +232,6 @@ bool PadTracker::is_possible(const Eigen::Matrix3d& view) const {
   if (!outer) return false;
   const double angular_radius = outer->semi_major / std::max(camera_.fx, camera_.fy);
   return view.row(2).head<2>().norm() <= angular_radius * std::abs(view(2, 2));
-}
-
-// Lines that lead to an impossible view are not on the pad. Keeps the outer edge, without
-// perspective.
-void PadTracker::forget_lines(Attempt& attempt) {
-  model_.lines.clear();
-  const auto outer = project_circle(attempt.view, 1.0);
-  if (!outer) return;
-  const Eigen::Vector2d centre = attempt.view.topRightCorner<2, 1>();
-  Eigen::Matrix3d affine = attempt.view;
-  affine.topLeftCorner<2, 2>() -= centre * attempt.view.row(2).head<2>();
-  affine.row(2) = Eigen::RowVector3d(0.0, 0.0, 1.0);
-  attempt.view = with_circle(affine, *outer).value_or(attempt.view);
 }
 
 void PadTracker::accept(const Attempt& attempt,
@@ -310,11 +254,11 @@ void PadTracker::accept(const Attempt& attempt,
   gain_ += adaptation * (gain - gain_);
   relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);
   propagate_errors(attempt, inverse_of(before.covariance));
-  drop_refuted_lines(model_, search_.samples(), attempt.last, tolerance_px(radius_px()));
+  drop_refuted_lines(model_, search_.samples(), attempt.last, match_tolerance_px(radius_px()));
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
-  if (unmatched_s_ == 0.0) motion_px_ = motion_to(attempt.view);
+  if (unmatched_s_ == 0.0) edges_.set_motion(motion_to(attempt.view));
   view_ = attempt.view;
   unmatched_s_ = 0.0;
 }
@@ -345,7 +289,7 @@ void PadTracker::measure_edges(const Picture& picture, double visible, double ad
   // Rings alone hardly determine the tilt: it would drift, and lines would be learned in a wrong
   // view.
   if (is_camera_known_ && model_.lines.empty()) view_ = with_nearer_pose(camera_, view_);
-  if (is_camera_known_) measure_inner_edges(picture);
+  if (is_camera_known_ && refined_) edges_.refine_inner(picture, view_, model_, gain_);
   matched_view_ = view_;
 }
 
@@ -353,13 +297,11 @@ void PadTracker::measure_edges(const Picture& picture, double visible, double ad
 // share its errors, and constant-velocity prediction lags under acceleration. A short arc hardly
 // determines the ring: its refinement is combined with the view.
 void PadTracker::refine(const Picture& picture, double visible, double adaptation) {
-  const Eigen::Vector2d& origin = picture.origin_px;
-  const auto exact = outer_edge_.refine(
-      picture.luma, view_in(picture, view_), model_, gain_, motion_px_, adaptation);
+  const auto exact = edges_.refine_outer(picture, view_, model_, gain_, adaptation);
   if (!exact) return;
-  const auto view = with_circle(view_, translated(exact->ellipse, origin.x(), origin.y()));
+  const auto view = with_circle(view_, exact->ellipse);
   if (!view) return;
-  RingUncertainty ring{shifted(exact->uncertainty.view, origin), exact->uncertainty.information};
+  RingUncertainty ring = exact->uncertainty;
   if (visible >= kMajority) {
     view_ = *view;
     reduce_model_errors(model_, RingGain::Identity());
@@ -367,8 +309,9 @@ void PadTracker::refine(const Picture& picture, double visible, double adaptatio
     correct_view(*view, covariance_in(*view, ring));
     ring = {view_, covariance().topLeftCorner<5, 5>().inverse()};
   }
-  refined_ = {ring.view,
-              with_centre_error(ring.information, exposure_error_px(adaptation) / radius_px())};
+  refined_ = {
+      ring.view,
+      with_centre_error(ring.information, edges_.exposure_error_px(adaptation) / radius_px())};
 }
 
 // Corrects the view by the refined outer edge, in proportion to the errors of both.
@@ -380,34 +323,11 @@ void PadTracker::correct_view(const Eigen::Matrix3d& refined, const RingMatrix& 
   view_ = moved(refined, gain * change.head<5>() - change);
 }
 
-// Standard deviation of the mean position during the exposure from the position in its middle: for
-// a constant acceleration a, a t^2 / 24. Vibration changes it from frame to frame: its mean counts.
-double PadTracker::exposure_error_px(double adaptation) {
-  if (!motion_px_.isZero() && !last_motion_px_.isZero()) {
-    const double now = (motion_px_ - last_motion_px_).squaredNorm();
-    const double mean = squared_acceleration_.value_or(now);
-    squared_acceleration_ = mean + adaptation * (now - mean);
-  }
-  return outer_edge_.squared_exposure() / 24.0 * std::sqrt(squared_acceleration_.value_or(0.0));
-}
-
-void PadTracker::measure_inner_edges(const Picture& picture) {
-  if (!refined_) return;
-  const PadView view = view_in(picture, view_);
-  for (std::size_t i = 1; i < model_.circles.size() && inner_count_ < inner_edges_.size(); ++i) {
-    const auto edge = refined_circle(picture.luma, view, model_.circles[i], gain_, motion_px_);
-    if (!edge) continue;
-    inner_edges_[inner_count_++] = {
-        translated(edge->ellipse, picture.origin_px.x(), picture.origin_px.y()),
-        {shifted(edge->uncertainty.view, picture.origin_px), edge->uncertainty.information}};
-  }
-}
-
 // Learns the lines again as the pad grows in the image and shows finer ones.
 void PadTracker::learn_lines(const Picture& picture, const Attempt& attempt) {
   const double radius = radius_px();
   if (radius < kGrowthToLearn * learned_radius_px_ || attempt.visible < kMajority) return;
-  line_learner_.take(picture.luma, view_in(picture, view_));
+  line_learner_.take(picture.luma, PadView::in(picture, view_));
   if (!line_learner_.is_ready()) return;
   line_learner_.learn(model_, gain_);
   line_learner_.start();

@@ -1,8 +1,6 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -15,8 +13,8 @@
 #include "core/tracking/pad/homography_filter.hpp"
 #include "core/tracking/pad/homography_solver.hpp"
 #include "core/tracking/pad/line_learner.hpp"
-#include "core/tracking/pad/outer_edge.hpp"
 #include "core/tracking/pad/pad_model.hpp"
+#include "core/tracking/pad/refined_edges.hpp"
 
 namespace ellipse {
 
@@ -59,7 +57,7 @@ class PadTracker {
   /// @param refinement  Of the outer edge in each frame; it corrects the view.
   /// @param ring_ratio  Inner over outer radius of the pad's ring, for the next lock; 0 = learned.
   void configure(Refinement refinement, double ring_ratio) {
-    outer_edge_.configure(refinement);
+    edges_.configure(refinement);
     ring_ratio_ = ring_ratio;
   }
 
@@ -75,9 +73,7 @@ class PadTracker {
   [[nodiscard]] RingUncertainty uncertainty() const;
   /// Inner circles as measured in the last frame [px of its ideal plane]. Empty without a camera or
   /// a measurement. Valid until the next call.
-  [[nodiscard]] std::span<const FittedEllipse> inner_edges() const {
-    return {inner_edges_.data(), inner_count_};
-  }
+  [[nodiscard]] std::span<const FittedEllipse> inner_edges() const { return edges_.inner(); }
   /// The view by the lines of the pad's pattern; nullopt without lines.
   [[nodiscard]] std::optional<PatternView> pattern() const;
   /// Ends tracking. The pad stays known to resume().
@@ -108,7 +104,6 @@ class PadTracker {
                                    const HomographyEstimate& estimate,
                                    const HomographyChange& last) const;
   [[nodiscard]] bool is_possible(const Eigen::Matrix3d& view) const;
-  void forget_lines(Attempt& attempt);
   void accept(const Attempt& attempt,
               const HomographyFilter& before,
               double noise_factor,
@@ -124,9 +119,6 @@ class PadTracker {
   void measure_edges(const Picture& picture, double visible, double adaptation);
   void refine(const Picture& picture, double visible, double adaptation);
   void correct_view(const Eigen::Matrix3d& refined, const RingMatrix& errors);
-  [[nodiscard]] double exposure_error_px(double adaptation);
-  void measure_inner_edges(const Picture& picture);
-  [[nodiscard]] bool learn_pad(const Picture& picture, const Ellipse& outer_edge);
   void learn_lines(const Picture& picture, const Attempt& attempt);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
@@ -137,24 +129,19 @@ class PadTracker {
   PadModel model_;
   EdgeSearch search_;
   LineLearner line_learner_;
-  OuterEdge outer_edge_;
+  RefinedEdges edges_;
   double learned_radius_px_ = 0.0;  // of the pad when its lines were learned last
   Eigen::Matrix3d view_ = Eigen::Matrix3d::Identity();          // frame from pad
   Eigen::Matrix3d matched_view_ = Eigen::Matrix3d::Identity();  // of the last match
-  Eigen::Vector2d motion_px_{0.0, 0.0};       // of its centre in the picture; zero = unknown
-  Eigen::Vector2d last_motion_px_{0.0, 0.0};  // of the frame before
   HomographyFilter motion_;
-  std::array<FittedEllipse, 2> inner_edges_;
-  std::size_t inner_count_ = 0;
   Camera camera_;  // of the last frame; assumed if unknown
   bool is_camera_known_ = false;
   LensView lens_;
-  std::optional<double> squared_acceleration_;  // of the centre, adaptive [(px / frame^2)^2]
-  double noise_factor_ = 1.0;                   // adaptive factor of the motion noise
-  double gain_ = 1.0;                           // ratio of image contrast to model contrast
-  double relative_gain_ = 0.0;                  // the same of relative contrast [1 / grey level]
-  double unmatched_s_ = 0.0;                    // since the last match
-  double last_coverage_ = 0.0;                  // of the search near the prediction
+  double noise_factor_ = 1.0;   // adaptive factor of the motion noise
+  double gain_ = 1.0;           // ratio of image contrast to model contrast
+  double relative_gain_ = 0.0;  // the same of relative contrast [1 / grey level]
+  double unmatched_s_ = 0.0;    // since the last match
+  double last_coverage_ = 0.0;  // of the search near the prediction
   bool is_locked_ = false;
   bool is_known_ = false;  // the model is that of a pad that was locked
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
+#include "core/camera/picture.hpp"
 #include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
 
@@ -15,6 +16,11 @@ namespace ellipse {
 struct PadView {
   PadView(const Eigen::Matrix3d& view, const LensView& through = {})  // NOLINT: see above
       : ideal_from_pad(view), lens(through) {}
+
+  /// @param view  Into the ideal plane of the frame of which the picture is a part.
+  static PadView in(const Picture& picture, const Eigen::Matrix3d& view) {
+    return {translated(view, -picture.origin_px), picture.lens};
+  }
 
   Eigen::Matrix3d ideal_from_pad;
   LensView lens;
