@@ -101,8 +101,8 @@ const Table& table() {
 }
 
 BarMaxima between(const BarMaxima& a, const BarMaxima& b, double share) {
-  return {std::lerp(a.distance_px, b.distance_px, share),
-          std::lerp(a.sharpness, b.sharpness, share)};
+  return {a.distance_px + share * (b.distance_px - a.distance_px),
+          a.sharpness + share * (b.sharpness - a.sharpness)};
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ std::optional<Ellipse> ellipse_of(const PerDirection& tangents, const Eigen::Vec
 template <class Function>
 double falling_zero(double low, double high, double tolerance, const Function& f) {
   double at_low = f(low);
-  double at_high = f(high);
   if (!(at_low > 0.0)) return low;
+  double at_high = f(high);
   if (!(at_high < 0.0)) return high;
   double last = low;
   int side = 0;
@@ -104,6 +104,13 @@ class MiddleLine {
     return width_by(0, 1, bars);
   }
 
+  // Whether gap and sharpness show the width. Bars thinner than the gap of a bar without width,
+  // two standard deviations of the blur, all have nearly the same product of squared gap and
+  // sharpness.
+  [[nodiscard]] bool shows_width(double width, const BlurredBars& bars) const {
+    return width * mean_of(radii_px_) >= bars.maxima(0.0, 0).distance_px;
+  }
+
   // The same in the directions closest to the normal of a motion, which does not blur them.
   [[nodiscard]] double width_across(const Eigen::Vector2d& motion, const BlurredBars& bars) const {
     std::size_t across = 0;
@@ -129,6 +136,18 @@ class MiddleLine {
     return falling_zero(0.0, BlurredBars::max_defocus(), 1e-3, [&](double defocus) {
       const BlurredBars bars(defocus);
       return this->sharpness(bars, width(bars)) - sharpness;
+    });
+  }
+
+  // The defocus that separates the maxima of a ring of this width so far.
+  [[nodiscard]] double defocus_of(double width) const {
+    return falling_zero(0.0, BlurredBars::max_defocus(), 1e-3, [&](double defocus) {
+      const BlurredBars bars(defocus);
+      double too_far_px = 0.0;
+      for (std::size_t i = 0; i < kBarDirections; ++i) {
+        too_far_px += gaps_px_[i] - bars.maxima(width_px(width, i), i).distance_px;
+      }
+      return too_far_px;
     });
   }
 
@@ -192,6 +211,11 @@ class MiddleLine {
   PerDirection nearer_px_;  // difference of the width to that without perspective
 };
 
+// Width of a ring over the radius of its middle line.
+double width_of(double ratio) {
+  return 2.0 * (1.0 - ratio) / (1.0 + ratio);
+}
+
 // The width of a ring that may be thinner; thin ones have less contrast. RMS distance from the
 // upper end for a density that is 0 at the lower end and grows linearly.
 Estimate at_most(double width, double thinnest) {
@@ -219,20 +243,28 @@ RingEdges without_motion_blur(const RingEdges& maxima, const Eigen::Vector2d& bl
   return width_px > blur_px.norm() + bars.widest_px() ? maxima : middle.edges(maxima, width);
 }
 
-UnblurredRing without_blur_bias(const RingEdges& maxima, const Estimate& sharpness) {
+UnblurredRing without_blur_bias(const RingEdges& maxima,
+                                const Estimate& sharpness,
+                                std::optional<double> known_ratio) {
   const MiddleLine middle(maxima);
   if (!(middle.min_gap_px() > 0.0)) return {maxima, 0.0, {}};
-  BlurredBars bars(0.0);
-  Estimate width{middle.width(bars)};
-  if (sharpness.value + kAllSigmas * sharpness.sigma < middle.sharpness(bars, width.value)) {
-    const double error = kUnlikelySigmas * sharpness.sigma;
-    bars = BlurredBars(middle.defocus_at(sharpness.value + error));
-    const BlurredBars softest(middle.defocus_at(sharpness.value - error));
-    const double widest = middle.width(bars);
+  const double error = kUnlikelySigmas * sharpness.sigma;
+  const double least_defocus = middle.defocus_at(sharpness.value + error);
+  BlurredBars bars(least_defocus);
+  double widest = middle.width(bars);
+  if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, {widest}};
+  const BlurredBars softest(middle.defocus_at(sharpness.value - error));
+  double thinnest = middle.width(softest);
+  if (least_defocus > 0.0 && !middle.shows_width(thinnest, softest)) thinnest = 0.0;
+  if (widest == 0.0) {
     // Edges that are less sharp than those of any ring have another edge beside them.
-    width = widest > 0.0 ? at_most(widest, middle.width(softest)) : at_most(width.value, 0.0);
+    widest = middle.width(BlurredBars(0.0));
   }
-  if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, width};
+  Estimate width = at_most(widest, thinnest);
+  if (known_ratio) {
+    width = {std::clamp(width_of(*known_ratio), thinnest, widest)};
+    bars = BlurredBars(middle.defocus_of(width.value));
+  }
   const RingEdges edges = middle.edges(maxima, width.value, bars);
   return {edges, kBlurBiasShare * max_difference_px(edges.outer, maxima.outer), width};
 }

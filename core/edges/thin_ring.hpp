@@ -1,6 +1,7 @@
 #pragma once  // SPDX-License-Identifier: MIT
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "core/geometry/ellipse.hpp"
 #include "core/geometry/robust.hpp"
@@ -25,14 +26,17 @@ struct UnblurredRing {
 /// Blur separates the gradient maxima of a bar, more so for thinner bars: at zero width they are
 /// two standard deviations of the blur apart. Their middle line stays in place, and the width of
 /// the ring is a constant share of its radius, so that one parameter determines both edges. The
-/// lens is in focus as of kSharpVariance, unless the edges are less sharp than that. Then distance
-/// and sharpness determine both the blur and the width. For thin rings they hardly do: the largest
-/// possible width counts, and its standard deviation contains the others. Edges that are far apart
-/// stay in place. Assumes equal contrast on both sides of the ring.
+/// blur is at least that of a lens in focus, see kSharpVariance. Distance and sharpness determine
+/// the blur and the width within limits, which are far apart for thin rings: the largest width
+/// counts, and its standard deviation contains the others. A known width replaces it. Edges that
+/// are far apart stay in place. Assumes equal contrast on both sides of the ring.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
-/// @param sharpness  Of the edges.
-[[nodiscard]] UnblurredRing without_blur_bias(const RingEdges& maxima, const Estimate& sharpness);
+/// @param sharpness    Of the edges.
+/// @param known_ratio  Of inner to outer radius, if known: it determines the width.
+[[nodiscard]] UnblurredRing without_blur_bias(const RingEdges& maxima,
+                                              const Estimate& sharpness,
+                                              std::optional<double> known_ratio = {});
 
 /// The same for motion blur, which separates the edges across the motion if the ring is thinner
 /// than the blur: the width is that along the motion.

@@ -24,6 +24,12 @@ RingMatrix widened(const RingMatrix& information, double of_correction, double o
   return covariance.inverse();
 }
 
+// Whether the next circle is the other edge of a painted ring.
+bool is_ring(const PadModel& model) {
+  return model.circles.size() > 1 &&
+         model.circles[1].is_bright_outside != model.circles[0].is_bright_outside;
+}
+
 // The mean of a value that is measured frame by frame.
 Estimate averaged(const Estimate& mean, const Estimate& now, double adaptation) {
   return {std::lerp(mean.value, now.value, adaptation),
@@ -99,18 +105,18 @@ std::optional<FittedEllipse> OuterEdge::on_maxima(const ImageView& luma,
     squared_motions_ += motion_px.squaredNorm();
     squared_blurs_ += measurer.motion_blur().squared_length;
   }
-  const bool is_ring =
-      model.circles.size() > 1 && model.circles[1].is_bright_outside != outer.is_bright_outside;
-  if (!exact || !is_ring) return exact;
+  if (!exact || !is_ring(model)) return exact;
+  const PadCircle& next = model.circles[1];
   const Eigen::Vector2d blur_px = measurer.motion_blur().px.cast<double>();
   const Estimate now = measurer.sharpness();
-  const auto inner = fitted_maxima(measurer, luma, view, model.circles[1], min_contrast, motion_px);
+  const auto inner = fitted_maxima(measurer, luma, view, next, min_contrast, motion_px);
   if (!inner) return exact;
   const RingEdges maxima{exact->ellipse, inner->ellipse};
+  const auto known_ratio = next.is_given ? std::optional(next.radius) : std::nullopt;
   UnblurredRing ring;
   if (blur_px.isZero()) {
     sharpness_ = sharpness_ ? averaged(*sharpness_, now, adaptation) : now;
-    ring = without_blur_bias(maxima, *sharpness_);
+    ring = without_blur_bias(maxima, *sharpness_, known_ratio);
   } else {
     ring.edges = without_motion_blur(maxima, blur_px);
   }
