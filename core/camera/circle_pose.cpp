@@ -39,8 +39,6 @@ Matrix3d camera_from_plane(const CirclePose& pose) {
   return plane;
 }
 
-using RingChange = Eigen::Matrix<double, 5, 1>;
-
 // Change of a view's unit circle to a circle's image, to first order.
 std::optional<RingChange> ring_change(const Matrix3d& view, const std::optional<Ellipse>& image) {
   const auto there = image ? with_circle(view, *image) : std::nullopt;
@@ -71,7 +69,7 @@ std::optional<RadiusFit> fit_radius(const Matrix3d& predicted,
     const auto here = ring_change(view, project_circle(predicted, radius));
     if (!here) return std::nullopt;
     const Matrix3d circle = predicted * Vector3d(radius, radius, 1.0).asDiagonal();
-    const RingChange growth = ring_changes(circle, view).col(2);
+    const RingChange growth = ring_jacobian(circle, view).col(2);
     const RingChange weighted = information * growth;
     fit.residual = measured - *here;
     fit.weights = information - weighted * weighted.transpose() / weighted.dot(growth);
@@ -93,7 +91,7 @@ void add_misfit(const Camera& camera,
   if (!measured || !outer_ellipse) return;
   const double size_px = mean_radius_px(inner.ellipse);
   // An error of the outer edge shifts the prediction.
-  const RingMatrix along = ring_changes(outer.view, view);
+  const RingMatrix along = ring_jacobian(outer.view, view);
   RingMatrix covariance = inner.uncertainty.information.inverse() +
                           along * outer.information.inverse() * along.transpose();
   covariance.diagonal().array() += std::pow(kInnerBiasPx / size_px, 2);
@@ -219,7 +217,7 @@ Matrix3d position_covariance(const Camera& camera,
   const Eigen::RowVector3d second = Eigen::RowVector3d::UnitY();
   changes.col(3) = change_of(inverse * pose.normal * second).head<5>();
   changes.col(4) = change_of(-inverse * pose.normal * first).head<5>();
-  const RingMatrix from_here = ring_changes(camera.matrix() * plane, picture.view);
+  const RingMatrix from_here = ring_jacobian(camera.matrix() * plane, picture.view);
   RingMatrix covariance = (from_here.transpose() * picture.information * from_here).inverse();
   // Near a frontal view the stretch is quadratic in the tilt. The tilt's sigma grows as the stretch
   // comes within two sigma of its noise, up to the given one.

@@ -104,13 +104,6 @@ class MiddleLine {
     return width_by(0, 1, bars);
   }
 
-  // Whether gap and sharpness show the width. Bars thinner than the gap of a bar without width,
-  // two standard deviations of the blur, all have nearly the same product of squared gap and
-  // sharpness.
-  [[nodiscard]] bool shows_width(double width, const BlurredBars& bars) const {
-    return width * mean_of(radii_px_) >= bars.maxima(0.0, 0).distance_px;
-  }
-
   // The same in the directions closest to the normal of a motion, which does not blur them.
   [[nodiscard]] double width_across(const Eigen::Vector2d& motion, const BlurredBars& bars) const {
     std::size_t across = 0;
@@ -120,6 +113,13 @@ class MiddleLine {
       if (is_closer) across = i;
     }
     return width_by(across, kBarDirections / 2, bars);
+  }
+
+  // Whether gap and sharpness show the width. Bars thinner than the gap of a bar without width,
+  // two standard deviations of the blur, all have nearly the same product of squared gap and
+  // sharpness.
+  [[nodiscard]] bool shows_width(double width, const BlurredBars& bars) const {
+    return width * mean_of(radii_px_) >= bars.maxima(0.0, 0).distance_px;
   }
 
   // Mean sharpness of the edges of a ring of this width.
@@ -139,7 +139,7 @@ class MiddleLine {
     });
   }
 
-  // The defocus that separates the maxima of a ring of this width so far.
+  // The defocus at which the maxima of a ring of this width are as far apart as measured.
   [[nodiscard]] double defocus_of(double width) const {
     return falling_zero(0.0, BlurredBars::max_defocus(), 1e-3, [&](double defocus) {
       const BlurredBars bars(defocus);
@@ -254,15 +254,19 @@ UnblurredRing without_blur_bias(const RingEdges& maxima,
   double widest = middle.width(bars);
   if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, {widest}};
   const BlurredBars softest(middle.defocus_at(sharpness.value - error));
-  double thinnest = middle.width(softest);
+  double thinnest = std::min(widest, middle.width(softest));
+  // Out of focus, a ring whose width does not show may be as thin as a line.
   if (least_defocus > 0.0 && !middle.shows_width(thinnest, softest)) thinnest = 0.0;
   if (widest == 0.0) {
-    // Edges that are less sharp than those of any ring have another edge beside them.
+    // Edges that are less sharp than those of any ring have another edge beside them. The width in
+    // focus is the limit; the gap is corrected as out of focus.
     widest = middle.width(BlurredBars(0.0));
   }
   Estimate width = at_most(widest, thinnest);
   if (known_ratio) {
-    width = {std::clamp(width_of(*known_ratio), thinnest, widest)};
+    const double known = width_of(*known_ratio);
+    width.value = std::clamp(known, thinnest, widest);
+    width.sigma = std::abs(known - width.value);
     bars = BlurredBars(middle.defocus_of(width.value));
   }
   const RingEdges edges = middle.edges(maxima, width.value, bars);

@@ -28,12 +28,14 @@ struct UnblurredRing {
 /// the ring is a constant share of its radius, so that one parameter determines both edges. The
 /// blur is at least that of a lens in focus, see kSharpVariance. Distance and sharpness determine
 /// the blur and the width within limits, which are far apart for thin rings: the largest width
-/// counts, and its standard deviation contains the others. A known width replaces it. Edges that
-/// are far apart stay in place. Assumes equal contrast on both sides of the ring.
+/// counts, and its standard deviation contains the others. The lower limit is 0 if the ring is out
+/// of focus and too thin to show its width. If the ratio of the radii is known, the width closest
+/// to it counts instead. Edges that are far apart stay in place. Assumes equal contrast on both
+/// sides of the ring.
 ///
 /// Own derivation, see docs/provenance.md. Allocates nothing.
 /// @param sharpness    Of the edges.
-/// @param known_ratio  Of inner to outer radius, if known: it determines the width.
+/// @param known_ratio  Of inner to outer radius, if known.
 [[nodiscard]] UnblurredRing without_blur_bias(const RingEdges& maxima,
                                               const Estimate& sharpness,
                                               std::optional<double> known_ratio = {});
@@ -48,7 +50,7 @@ struct UnblurredRing {
 [[nodiscard]] bool is_thin(const RingEdges& maxima, double sharpness);
 
 /// Distance of the two gradient maxima of a very thin bar along an axis [px]. The first call of
-/// this or of without_blur_bias() computes a table, see BlurredBars.
+/// this or of the functions above computes a table in about 20 ms, see BlurredBars.
 [[nodiscard]] double min_maxima_distance();
 
 /// Largest ratio of inner to outer radius at which a ring is distinguished from a line.

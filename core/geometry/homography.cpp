@@ -97,7 +97,7 @@ HomographyChange change_of(const Matrix3d& generator) {
   return d;
 }
 
-RingMatrix ring_changes(const Matrix3d& from_view, const Matrix3d& to_view) {
+RingMatrix ring_jacobian(const Matrix3d& from_view, const Matrix3d& to_view) {
   const Matrix3d between = to_view.inverse() * from_view;
   const Matrix3d back = between.inverse();
   RingMatrix changes;
@@ -118,7 +118,7 @@ RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge) {
   parameters.row(2) << 0.0, 0.0, a, a, 0.0;
   parameters.row(3) << 0.0, 0.0, b, -b, 0.0;
   parameters(4, 4) = 1.0;
-  const RingMatrix jacobian = parameters * ring_changes(edge.view, view);
+  const RingMatrix jacobian = parameters * ring_jacobian(edge.view, view);
   const RingMatrix changes = edge.information.ldlt().solve(RingMatrix::Identity());
   RingMatrix covariance = jacobian * changes * jacobian.transpose();
   const double difference = a * a - b * b;

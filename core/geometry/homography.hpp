@@ -49,7 +49,8 @@ using HomographyCovariance = Eigen::Matrix<double, 8, 8>;
 [[nodiscard]] Eigen::Matrix3d translated(const Eigen::Matrix3d& image_from_pad,
                                          const Eigen::Vector2d& by_px);
 
-/// The view of the same outer circle without perspective: the pad is parallel to the image.
+/// The affine view with the same image of the outer circle; the view itself if this image is not
+/// an ellipse. Needs H(2, 2) = 1.
 [[nodiscard]] Eigen::Matrix3d without_perspective(const Eigen::Matrix3d& image_from_pad);
 
 /// The change that moves one view to another, to first order; exact for a shift.
@@ -77,9 +78,9 @@ struct RingUncertainty {
 /// @param edge  Uncertainty of this ellipse as the image of an outer circle.
 [[nodiscard]] RingMatrix parameter_covariance(const Ellipse& e, const RingUncertainty& edge);
 
-/// Transforms T, S and E from one view to another with the same image of the outer circle.
-[[nodiscard]] RingMatrix ring_changes(const Eigen::Matrix3d& from_view,
-                                      const Eigen::Matrix3d& to_view);
+/// Jacobian of T, S and E from one view to another with the same image of the outer circle.
+[[nodiscard]] RingMatrix ring_jacobian(const Eigen::Matrix3d& from_view,
+                                       const Eigen::Matrix3d& to_view);
 
 /// Jacobian of a view by camera motion: columns are rotations about the axes x, y, z [rad] and
 /// shifts along them [radii of the pad].

@@ -43,9 +43,9 @@ struct HomographyFilter {
   /// @param considered  Covariance of errors of the view that the filter does not contain; it does
   ///                    not contain them afterwards either.
   /// @return The gain: times `change`, the correction of the view.
-  RingGain correct_by_ring(const RingChange& change,
-                           const RingMatrix& errors,
-                           const HomographyCovariance& considered);
+  [[nodiscard]] RingGain correct_by_ring(const RingChange& change,
+                                         const RingMatrix& errors,
+                                         const HomographyCovariance& considered);
 
   /// Fixes the rotation about the pad's normal, which rings do not determine.
   void fix_rotation();

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/edges/edge_measurement.hpp"
 #include "core/edges/edge_refinement.hpp"
 #include "core/edges/photometric_refinement.hpp"
+#include "core/edges/thin_ring.hpp"
 
 namespace ellipse {
 namespace {
@@ -59,6 +61,7 @@ std::optional<FittedEllipse> fitted_maxima(EdgeMeasurer& measurer,
 }  // namespace
 
 void OuterEdge::restart() {
+  (void)min_maxima_distance();  // computes its table now instead of in a frame
   sharpness_.reset();
   squared_motions_ = squared_blurs_ = 0.0;
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/edges/edge_measurement.hpp"
-#include "core/edges/thin_ring.hpp"
+#include "core/geometry/ellipse.hpp"
 #include "core/geometry/ellipse_fit.hpp"
+#include "core/geometry/robust.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_model.hpp"
 #include "core/tracking/pad/pad_view.hpp"
@@ -25,16 +25,18 @@ class OuterEdge {
  public:
   void configure(Refinement refinement) { refinement_ = refinement; }
 
-  /// Forgets what it learned: another pad follows.
+  /// Forgets what it learned: another pad follows. The first call computes a table, see
+  /// BlurredBars.
   void restart();
 
+  /// Learns nothing if it returns nullopt.
+  ///
   /// @param gain        Ratio of image contrast to model contrast.
   /// @param motion_px   As of motion_blur(); zero = unknown.
   /// @param adaptation  Share of this frame in the mean sharpness.
-  /// Learns nothing if it returns nullopt.
-  ///
-  /// @return The edge in the image's ideal plane; nullopt with Refinement::kNone, if too little of
-  ///         it is visible, or if it is too far from the predicted edge.
+  /// @return The edge in the image's ideal plane; nullopt with Refinement::kNone, if less than half
+  ///         of its visible part is matched, if too few edges are left for a fit, or if it is too
+  ///         far from the predicted edge.
   [[nodiscard]] std::optional<FittedEllipse> refine(const ImageView& luma,
                                                     const PadView& view,
                                                     const PadModel& model,
@@ -64,8 +66,8 @@ class OuterEdge {
 
 /// Refines an inner circle of a pad by gradient maxima.
 ///
-/// @return The circle in the image's ideal plane; nullopt if too little of it is visible. Allocates
-///         nothing.
+/// @return The circle in the image's ideal plane; nullopt if less than half of its visible part is
+///         matched, or too few edges are left for a fit. Allocates nothing.
 [[nodiscard]] std::optional<FittedEllipse> refined_circle(const ImageView& luma,
                                                           const PadView& view,
                                                           const PadCircle& circle,

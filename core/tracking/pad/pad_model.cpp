@@ -18,10 +18,9 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr double kRadiusStep = 0.005;  // of the radial profile [radii]
-constexpr int kAngles = 128;           // per radius
-constexpr int kApart = 5;              // min distance between circles [steps]
-
+constexpr double kRadiusStep = 0.005;   // of the radial profile [radii]
+constexpr int kAngles = 128;            // per radius
+constexpr int kApart = 5;               // min distance between circles [steps]
 constexpr double kDeformation = 0.012;  // distance of deformed edges from the model [radii]
 
 double radius_at(int i) {

@@ -6,18 +6,20 @@
 
 #include "core/camera/camera.hpp"
 #include "core/camera/picture.hpp"
-#include "core/edges/outline_samples.hpp"
 #include "core/geometry/homography.hpp"
 #include "core/image/image_view.hpp"
 #include "core/tracking/pad/pad_view.hpp"
 
 namespace ellipse {
 
-/// Min contrast to learn a line or to refine a circle, as a share of the expected contrast.
+/// Min contrast to learn a line or to refine a circle, as a share of the expected contrast; also
+/// limits the contrast of a frame.
 inline constexpr double kMinContrastShare = 0.25;
 
 /// Min share of a pad's edges, or of the angles of a circle, that match.
 inline constexpr double kMinCoverage = 0.65;
+
+inline constexpr double kEdgeSigmaPx = 0.6;  ///< Min standard deviation of a match's position.
 
 inline constexpr std::size_t kMaxCircles = 5;  ///< Of a pad.
 
@@ -52,8 +54,6 @@ struct PadModel {
 /// The line of a sample's feature, see EdgeSample::feature. nullptr for a circle, or if the model's
 /// lines have been removed since.
 [[nodiscard]] PadLine* line_of(PadModel& model, int feature);
-
-inline constexpr double kEdgeSigmaPx = 0.6;  ///< Min, of one matched edge.
 
 /// Max distance of a matched edge from the model: its error, and the pad's deformation.
 /// @param radius_px  Of the pad.

@@ -43,14 +43,14 @@ RingMatrix with_centre_error(const RingMatrix& information, double sigma) {
 
 // Covariance of the measured ring in a view that maps the outer circle to it.
 RingMatrix covariance_in(const Eigen::Matrix3d& view, const RingUncertainty& ring) {
-  const RingMatrix to_view = ring_changes(ring.view, view);
+  const RingMatrix to_view = ring_jacobian(ring.view, view);
   return to_view * ring.information.ldlt().solve(RingMatrix(to_view.transpose()));
 }
 
 }  // namespace
 
-double PadTracker::radius_px() const {
-  return PadView(view_, lens_).radius_px();
+double PadTracker::radius_px_in(const Eigen::Matrix3d& view) const {
+  return PadView(view, lens_).radius_px();
 }
 
 void PadTracker::begin_frame(const PadFrame& frame) {
@@ -73,7 +73,7 @@ bool PadTracker::lock(const PadFrame& frame, const Ellipse& outer_edge) {
   gain_ = 1.0;
   relative_gain_ = 0.0;
   learned_radius_px_ = 0.0;
-  const HomographyCovariance covariance = detected_covariance();
+  const HomographyCovariance covariance = detected_covariance(view_);
   std::optional<Attempt> attempt;
   for (int step = 0; step < kMaxSteps; ++step) {
     attempt = search_from(frame.picture, view_, covariance);
@@ -96,12 +96,12 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
   for (const PadCircle& circle : model_.circles) {
     const auto start = with_circle(view_, edge, circle.radius);
     if (!start) continue;
-    const auto attempt = search_from(frame.picture, *start, detected_covariance());
+    const auto attempt = search_from(frame.picture, *start, detected_covariance(*start));
     if (!is_good(attempt) || !has_circle(attempt->view, circle.radius, edge)) continue;
     // Two detections determine the shift and the scale; other changes are slower than their errors.
     HomographyChange velocity = HomographyChange::Zero();
     if (is_locked_) {
-      edges_.set_motion(motion_to(attempt->view));
+      edges_.set_motion(elapsed_s_ / unmatched_s_ * motion_to(attempt->view));
       velocity.head<3>() = change_between(matched_view_, attempt->view).head<3>() / unmatched_s_;
     }
     begin_motion(*attempt, velocity);
@@ -112,8 +112,9 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
 }
 
 // Of the view of a detected pad.
-HomographyCovariance PadTracker::detected_covariance() const {
-  const double sigma = match_tolerance_px(radius_px()) / radius_px();
+HomographyCovariance PadTracker::detected_covariance(const Eigen::Matrix3d& view) const {
+  const double radius_px = radius_px_in(view);
+  const double sigma = match_tolerance_px(radius_px) / radius_px;
   return sigma * sigma * HomographyCovariance::Identity();
 }
 
@@ -149,7 +150,7 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
           last,
           support_of(search_.samples(),
                      last,
-                     match_tolerance_px(radius_px()),
+                     match_tolerance_px(radius_px_in(view)),
                      static_cast<int>(model_.circles.size())),
           search_.visible_fraction()};
 }
@@ -159,7 +160,8 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
                                                            const Eigen::Matrix3d& start,
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
-  const double max_reach_px = kReachPx + kMaxReach * radius_px();
+  const double radius_px = radius_px_in(start);
+  const double max_reach_px = kReachPx + kMaxReach * radius_px;
   // A single edge in shadow cannot be told from an edge of the object that casts it.
   const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
   const ImageLevels levels{gain_, pixel_noise(picture.luma), relative_gain};
@@ -184,7 +186,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
     change += estimate->change;
     attempt =
         attempt_of(view, {change, estimate->information, estimate->precision}, estimate->change);
-    if (rms_px(search_.samples(), estimate->change) <= match_tolerance_px(radius_px())) break;
+    if (rms_px(search_.samples(), estimate->change) <= match_tolerance_px(radius_px)) break;
   }
   return attempt;
 }
@@ -197,6 +199,7 @@ bool PadTracker::is_good(const std::optional<Attempt>& attempt) {
 std::optional<PadTrack> PadTracker::track(const PadFrame& frame, double elapsed_s) {
   if (!is_locked_) return std::nullopt;
   begin_frame(frame);
+  elapsed_s_ = elapsed_s;
   const Eigen::Matrix3d prediction = moved(view_, elapsed_s * motion_.velocity);
   double noise_factor = noise_factor_;
   HomographyFilter before = predicted(elapsed_s, noise_factor);
@@ -254,7 +257,8 @@ void PadTracker::accept(const Attempt& attempt,
   gain_ += adaptation * (gain - gain_);
   relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);
   propagate_errors(attempt, inverse_of(before.covariance));
-  drop_refuted_lines(model_, search_.samples(), attempt.last, match_tolerance_px(radius_px()));
+  drop_refuted_lines(
+      model_, search_.samples(), attempt.last, match_tolerance_px(radius_px_in(attempt.view)));
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
@@ -293,9 +297,10 @@ void PadTracker::measure_edges(const Picture& picture, double visible, double ad
   matched_view_ = view_;
 }
 
-// Moves the view to the refined outer edge while most of it is visible: matches are less exact and
-// share its errors, and constant-velocity prediction lags under acceleration. A short arc hardly
-// determines the ring: its refinement is combined with the view.
+// While most of the outer edge is visible, moves the view to the refined edge: constant-velocity
+// prediction lags under acceleration, and in defocus the matches contain the same errors, so that
+// a combination of both would be overconfident. A short arc hardly determines the ring: its
+// refinement is combined with the view.
 void PadTracker::refine(const Picture& picture, double visible, double adaptation) {
   const auto exact = edges_.refine_outer(picture, view_, model_, gain_, adaptation);
   if (!exact) return;
@@ -309,9 +314,9 @@ void PadTracker::refine(const Picture& picture, double visible, double adaptatio
     correct_view(*view, covariance_in(*view, ring));
     ring = {view_, covariance().topLeftCorner<5, 5>().inverse()};
   }
-  refined_ = {
-      ring.view,
-      with_centre_error(ring.information, edges_.exposure_error_px(adaptation) / radius_px())};
+  refined_ = {ring.view,
+              with_centre_error(ring.information,
+                                edges_.exposure_error_px(adaptation) / radius_px_in(view_))};
 }
 
 // Corrects the view by the refined outer edge, in proportion to the errors of both.
@@ -325,7 +330,7 @@ void PadTracker::correct_view(const Eigen::Matrix3d& refined, const RingMatrix& 
 
 // Learns the lines again as the pad grows in the image and shows finer ones.
 void PadTracker::learn_lines(const Picture& picture, const Attempt& attempt) {
-  const double radius = radius_px();
+  const double radius = radius_px_in(view_);
   if (radius < kGrowthToLearn * learned_radius_px_ || attempt.visible < kMajority) return;
   line_learner_.take(picture.luma, PadView::in(picture, view_));
   if (!line_learner_.is_ready()) return;
@@ -357,7 +362,7 @@ std::optional<PadTrack> PadTracker::make_track(const Attempt* attempt) const {
 }
 
 RingUncertainty PadTracker::uncertainty() const {
-  if (refined_) return {refined_->view, refined_->information};
+  if (refined_) return *refined_;
   return {view_, covariance().topLeftCorner<5, 5>().inverse()};
 }
 

@@ -68,8 +68,8 @@ class PadTracker {
   /// Whether circles inside the outer one are known.
   [[nodiscard]] bool has_inner_edges() const { return model_.circles.size() > 1; }
 
-  /// Uncertainty of the outer edge in the last frame: from its refinement, if that determines it,
-  /// else also from all edges and the motion.
+  /// Uncertainty of the outer edge in the last frame: from its refinement; of a short arc, or
+  /// without a refinement, from all edges and the motion.
   [[nodiscard]] RingUncertainty uncertainty() const;
   /// Inner circles as measured in the last frame [px of its ideal plane]. Empty without a camera or
   /// a measurement. Valid until the next call.
@@ -111,7 +111,7 @@ class PadTracker {
   [[nodiscard]] Eigen::Vector2d motion_to(const Eigen::Matrix3d& view) const;
   void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
   [[nodiscard]] HomographyCovariance covariance() const;
-  [[nodiscard]] HomographyCovariance detected_covariance() const;
+  [[nodiscard]] HomographyCovariance detected_covariance(const Eigen::Matrix3d& view) const;
   [[nodiscard]] static bool has_circle(const Eigen::Matrix3d& view,
                                        double radius,
                                        const Ellipse& detected);
@@ -122,9 +122,9 @@ class PadTracker {
   void learn_lines(const Picture& picture, const Attempt& attempt);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
-  [[nodiscard]] double radius_px() const;
+  [[nodiscard]] double radius_px_in(const Eigen::Matrix3d& view) const;
 
-  std::optional<RingUncertainty> refined_;  // of the last frame
+  std::optional<RingUncertainty> refined_;  // of the outer edge, if refined in the last frame
   double ring_ratio_ = 0.0;
   PadModel model_;
   EdgeSearch search_;
@@ -140,6 +140,7 @@ class PadTracker {
   double noise_factor_ = 1.0;   // adaptive factor of the motion noise
   double gain_ = 1.0;           // ratio of image contrast to model contrast
   double relative_gain_ = 0.0;  // the same of relative contrast [1 / grey level]
+  double elapsed_s_ = 0.0;      // from the last frame but one to the last
   double unmatched_s_ = 0.0;    // since the last match
   double last_coverage_ = 0.0;  // of the search near the prediction
   bool is_locked_ = false;

@@ -17,8 +17,9 @@ struct PadView {
   PadView(const Eigen::Matrix3d& view, const LensView& through = {})  // NOLINT: see above
       : ideal_from_pad(view), lens(through) {}
 
-  /// @param view  Into the ideal plane of the frame of which the picture is a part.
-  static PadView in(const Picture& picture, const Eigen::Matrix3d& view) {
+  /// The projection into a picture that is a part of a frame.
+  /// @param view  Into the frame's ideal plane.
+  [[nodiscard]] static PadView in(const Picture& picture, const Eigen::Matrix3d& view) {
     return {translated(view, -picture.origin_px), picture.lens};
   }
 

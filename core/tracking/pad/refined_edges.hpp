@@ -21,15 +21,14 @@ class RefinedEdges {
  public:
   void configure(Refinement refinement) { outer_edge_.configure(refinement); }
 
-  /// Forgets what it learned: another pad follows.
+  /// Forgets the sharpness and the exposure: another pad follows.
   void restart() { outer_edge_.restart(); }
   /// Forgets the acceleration: the pad is followed from here on.
   void restart_motion() { squared_acceleration_.reset(); }
 
   /// Call in each frame: no circle is refined yet, and the motion is unknown.
   void begin_frame();
-  /// @param px  Displacement of the pad's centre in the picture since the last frame; zero =
-  ///            unknown.
+  /// @param px  Displacement of the pad's centre in the picture per frame; zero = unknown.
   void set_motion(const Eigen::Vector2d& px) { motion_px_ = px; }
 
   /// @param gain        Ratio of image contrast to model contrast.
@@ -41,8 +40,8 @@ class RefinedEdges {
                                                           double gain,
                                                           double adaptation);
 
-  /// Standard deviation of the mean position during the exposure from the position in its middle
-  /// [px]. Call once per frame with a refined outer edge.
+  /// RMS distance of the mean position during the exposure from the position in its middle [px].
+  /// Call once per frame with a refined outer edge.
   [[nodiscard]] double exposure_error_px(double adaptation);
 
   /// Refines as many inner circles as inner() holds, from the outermost.

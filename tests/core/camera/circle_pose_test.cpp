@@ -145,7 +145,7 @@ TEST(RingChanges, ConvertTheSameChangeBetweenViews) {
   const Matrix3d affine = image_from_pad(*ellipse);
   Eigen::Matrix<double, 5, 1> change;
   change << 1e-5, -2e-5, 1.5e-5, 0.7e-5, -1.1e-5;
-  const auto same = (ring_changes(affine, view) * change).eval();
+  const auto same = (ring_jacobian(affine, view) * change).eval();
   HomographyChange in_affine = HomographyChange::Zero();
   HomographyChange in_view = HomographyChange::Zero();
   in_affine.head<5>() = change;

@@ -49,6 +49,23 @@ TEST(RingEdges, KeepsDistantEdges) {
   EXPECT_EQ(edges.inner, inner);
 }
 
+TEST(RingEdges, UsesAKnownRatioWithinTheLimits) {
+  const Ellipse outer{50.0, 50.0, 30.0, 24.0, 0.3};
+  const RingEdges maxima{outer, grown(outer, -4.5)};
+  const Estimate soft{0.36, 0.02};
+  const UnblurredRing unknown = without_blur_bias(maxima, soft);
+  ASSERT_GT(unknown.width.sigma, 0.01);
+  const double known = unknown.width.value - 1.2 * unknown.width.sigma;
+  const double ratio = (2.0 - known) / (2.0 + known);
+  const UnblurredRing inside = without_blur_bias(maxima, soft, ratio);
+  EXPECT_NEAR(inside.width.value, known, 1e-9);
+  EXPECT_NEAR(inside.width.sigma, 0.0, 1e-9);
+  EXPECT_NEAR(mean_radius_px(inside.edges.inner) / mean_radius_px(inside.edges.outer), ratio, 0.01);
+  const UnblurredRing outside = without_blur_bias(maxima, soft, 0.5);
+  EXPECT_NEAR(outside.width.value, unknown.width.value, 1e-9);
+  EXPECT_NEAR(outside.width.sigma, 2.0 / 3.0 - unknown.width.value, 1e-9);
+}
+
 TEST(RingEdges, MovesNearbyMaximaTogether) {
   const Ellipse outer{50.0, 50.0, 14.0, 11.0, 0.3};
   for (const double ratio : {0.78, 0.75, 0.72}) {

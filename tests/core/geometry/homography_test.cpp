@@ -33,6 +33,19 @@ TEST(Homography, MapsTheUnitCircleToTheEllipse) {
   EXPECT_LT(max_difference_px(*circle, e), 1e-9);
 }
 
+TEST(Homography, KeepsTheOuterCircleWithoutPerspective) {
+  HomographyChange tilt = HomographyChange::Zero();
+  tilt.tail<2>() << 0.2, -0.1;
+  const Eigen::Matrix3d view = moved(image_from_pad({300.0, 180.0, 60.0, 48.0, 0.4}), tilt);
+  const Eigen::Matrix3d affine = without_perspective(view);
+  EXPECT_GT(view.row(2).head<2>().norm(), 0.1);
+  EXPECT_LT(affine.row(2).head<2>().norm(), 1e-12);
+  const auto before = project_circle(view, 1.0);
+  const auto after = project_circle(affine, 1.0);
+  ASSERT_TRUE(before && after);
+  EXPECT_LT(max_difference_px(*after, *before), 1e-6);
+}
+
 TEST(Homography, IsAlignedToAGivenOuterEdge) {
   const Matrix3d view = tilted_view();
   const Ellipse outer_edge = project_circle(view, 1.0).value();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/scene/catalog.hpp"
@@ -451,6 +452,20 @@ TEST(PadTracker, ResumesAReleasedPadUntilItIsForgotten) {
   tracker.forget();
   EXPECT_FALSE(tracker.is_locked());
   EXPECT_FALSE(tracker.resume(whole(picture), kTrackedPad));
+}
+
+TEST(PadTracker, ResumesAReleasedPadAtAnotherSize) {
+  const Ellipse small{300.3, 180.6, 24.0, 19.2, 0.4};
+  const Ellipse large{300.3, 180.6, 120.0, 96.0, 0.4};
+  for (const auto& [before, after] : {std::pair(small, large), std::pair(large, small)}) {
+    PadTracker tracker;
+    ASSERT_TRUE(tracker.lock(whole(frame_of(before)), before));
+    tracker.release();
+    const Ellipse detected = translated(after, 0.8, 0.8);
+    const auto track = tracker.resume(whole(frame_of(after, pad_scene(), 1)), detected);
+    ASSERT_TRUE(track && track->is_visible) << after.semi_major;
+    EXPECT_LT(max_difference_px(track->ellipse, after), 0.15) << after.semi_major;
+  }
 }
 
 TEST(PadTracker, LosesAPadAfterTheSameTimeAtAnyFrameRate) {
