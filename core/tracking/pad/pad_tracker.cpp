@@ -49,8 +49,8 @@ RingMatrix covariance_in(const Eigen::Matrix3d& view, const RingUncertainty& rin
 
 }  // namespace
 
-double PadTracker::radius_px_in(const Eigen::Matrix3d& view) const {
-  return PadView(view, lens_).radius_px();
+double PadTracker::radius_px() const {
+  return PadView(view_, lens_).radius_px();
 }
 
 void PadTracker::begin_frame(const PadFrame& frame) {
@@ -73,7 +73,7 @@ bool PadTracker::lock(const PadFrame& frame, const Ellipse& outer_edge) {
   gain_ = 1.0;
   relative_gain_ = 0.0;
   learned_radius_px_ = 0.0;
-  const HomographyCovariance covariance = detected_covariance(view_);
+  const HomographyCovariance covariance = detected_covariance();
   std::optional<Attempt> attempt;
   for (int step = 0; step < kMaxSteps; ++step) {
     attempt = search_from(frame.picture, view_, covariance);
@@ -96,7 +96,7 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
   for (const PadCircle& circle : model_.circles) {
     const auto start = with_circle(view_, edge, circle.radius);
     if (!start) continue;
-    const auto attempt = search_from(frame.picture, *start, detected_covariance(*start));
+    const auto attempt = search_from(frame.picture, *start, detected_covariance());
     if (!is_good(attempt) || !has_circle(attempt->view, circle.radius, edge)) continue;
     // Two detections determine the shift and the scale; other changes are slower than their errors.
     HomographyChange velocity = HomographyChange::Zero();
@@ -112,9 +112,8 @@ std::optional<PadTrack> PadTracker::resume(const PadFrame& frame, const Ellipse&
 }
 
 // Of the view of a detected pad.
-HomographyCovariance PadTracker::detected_covariance(const Eigen::Matrix3d& view) const {
-  const double radius_px = radius_px_in(view);
-  const double sigma = match_tolerance_px(radius_px) / radius_px;
+HomographyCovariance PadTracker::detected_covariance() const {
+  const double sigma = match_tolerance_px(radius_px()) / radius_px();
   return sigma * sigma * HomographyCovariance::Identity();
 }
 
@@ -150,7 +149,7 @@ PadTracker::Attempt PadTracker::attempt_of(const Eigen::Matrix3d& view,
           last,
           support_of(search_.samples(),
                      last,
-                     match_tolerance_px(radius_px_in(view)),
+                     match_tolerance_px(radius_px()),
                      static_cast<int>(model_.circles.size())),
           search_.visible_fraction()};
 }
@@ -160,8 +159,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
                                                            const Eigen::Matrix3d& start,
                                                            const HomographyCovariance& covariance) {
   const HomographyCovariance information = inverse_of(covariance);
-  const double radius_px = radius_px_in(start);
-  const double max_reach_px = kReachPx + kMaxReach * radius_px;
+  const double max_reach_px = kReachPx + kMaxReach * radius_px();
   // A single edge in shadow cannot be told from an edge of the object that casts it.
   const double relative_gain = has_inner_edges() ? relative_gain_ : 0.0;
   const ImageLevels levels{gain_, pixel_noise(picture.luma), relative_gain};
@@ -186,7 +184,7 @@ std::optional<PadTracker::Attempt> PadTracker::search_from(const Picture& pictur
     change += estimate->change;
     attempt =
         attempt_of(view, {change, estimate->information, estimate->precision}, estimate->change);
-    if (rms_px(search_.samples(), estimate->change) <= match_tolerance_px(radius_px)) break;
+    if (rms_px(search_.samples(), estimate->change) <= match_tolerance_px(radius_px())) break;
   }
   return attempt;
 }
@@ -257,8 +255,7 @@ void PadTracker::accept(const Attempt& attempt,
   gain_ += adaptation * (gain - gain_);
   relative_gain_ += adaptation * (attempt.support.relative_gain - relative_gain_);
   propagate_errors(attempt, inverse_of(before.covariance));
-  drop_refuted_lines(
-      model_, search_.samples(), attempt.last, match_tolerance_px(radius_px_in(attempt.view)));
+  drop_refuted_lines(model_, search_.samples(), attempt.last, match_tolerance_px(radius_px()));
   if (attempt.visible >= kMajority) {
     update_radii(model_, search_.samples(), attempt.last, adaptation, kReachPx);
   }
@@ -314,9 +311,9 @@ void PadTracker::refine(const Picture& picture, double visible, double adaptatio
     correct_view(*view, covariance_in(*view, ring));
     ring = {view_, covariance().topLeftCorner<5, 5>().inverse()};
   }
-  refined_ = {ring.view,
-              with_centre_error(ring.information,
-                                edges_.exposure_error_px(adaptation) / radius_px_in(view_))};
+  refined_ = {
+      ring.view,
+      with_centre_error(ring.information, edges_.exposure_error_px(adaptation) / radius_px())};
 }
 
 // Corrects the view by the refined outer edge, in proportion to the errors of both.
@@ -330,7 +327,7 @@ void PadTracker::correct_view(const Eigen::Matrix3d& refined, const RingMatrix& 
 
 // Learns the lines again as the pad grows in the image and shows finer ones.
 void PadTracker::learn_lines(const Picture& picture, const Attempt& attempt) {
-  const double radius = radius_px_in(view_);
+  const double radius = radius_px();
   if (radius < kGrowthToLearn * learned_radius_px_ || attempt.visible < kMajority) return;
   line_learner_.take(picture.luma, PadView::in(picture, view_));
   if (!line_learner_.is_ready()) return;

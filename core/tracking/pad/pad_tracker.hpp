@@ -111,7 +111,7 @@ class PadTracker {
   [[nodiscard]] Eigen::Vector2d motion_to(const Eigen::Matrix3d& view) const;
   void propagate_errors(const Attempt& attempt, const HomographyCovariance& prior_information);
   [[nodiscard]] HomographyCovariance covariance() const;
-  [[nodiscard]] HomographyCovariance detected_covariance(const Eigen::Matrix3d& view) const;
+  [[nodiscard]] HomographyCovariance detected_covariance() const;
   [[nodiscard]] static bool has_circle(const Eigen::Matrix3d& view,
                                        double radius,
                                        const Ellipse& detected);
@@ -122,7 +122,7 @@ class PadTracker {
   void learn_lines(const Picture& picture, const Attempt& attempt);
   void coast(const Eigen::Matrix3d& prediction, const HomographyFilter& before, double elapsed_s);
   [[nodiscard]] std::optional<PadTrack> make_track(const Attempt* attempt) const;
-  [[nodiscard]] double radius_px_in(const Eigen::Matrix3d& view) const;
+  [[nodiscard]] double radius_px() const;
 
   std::optional<RingUncertainty> refined_;  // of the outer edge, if refined in the last frame
   double ring_ratio_ = 0.0;
