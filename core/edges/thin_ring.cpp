@@ -258,8 +258,9 @@ UnblurredRing without_blur_bias(const RingEdges& maxima,
   // Out of focus, a ring whose width does not show may be as thin as a line.
   if (least_defocus > 0.0 && !middle.shows_width(thinnest, softest)) thinnest = 0.0;
   if (widest == 0.0) {
-    // Edges that are less sharp than those of any ring have another edge beside them. The width in
-    // focus is the limit; the gap is corrected as out of focus.
+    // Edges that are less sharp than those of any ring have another edge beside them. The ring is
+    // at most as wide as in focus. Its edges are corrected for the blur that they show: without it
+    // the uncertainty of the scene bullseye is too small.
     widest = middle.width(BlurredBars(0.0));
   }
   Estimate width = at_most(widest, thinnest);

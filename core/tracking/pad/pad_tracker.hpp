@@ -140,7 +140,7 @@ class PadTracker {
   double noise_factor_ = 1.0;   // adaptive factor of the motion noise
   double gain_ = 1.0;           // ratio of image contrast to model contrast
   double relative_gain_ = 0.0;  // the same of relative contrast [1 / grey level]
-  double elapsed_s_ = 0.0;      // from the last frame but one to the last
+  double elapsed_s_ = 0.0;      // before the last frame of track()
   double unmatched_s_ = 0.0;    // since the last match
   double last_coverage_ = 0.0;  // of the search near the prediction
   bool is_locked_ = false;

@@ -138,7 +138,7 @@ TEST(CirclePoses, AreFiniteForTheThinnestEllipses) {
 }
 
 // The five parameters predict the displacement of an edge point in any view.
-TEST(RingChanges, ConvertTheSameChangeBetweenViews) {
+TEST(RingJacobian, ConvertsTheSameChangeBetweenViews) {
   const CirclePose pose = circle_at({400.0, 120.0}, 4.0, 0.8, 0.7);
   const Matrix3d view = image_from_pad(camera_640(), pose);
   const auto ellipse = project_circle(view, 1.0);

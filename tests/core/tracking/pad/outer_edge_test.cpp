@@ -68,20 +68,29 @@ TEST(OuterEdge, IsNotFoundFarFromThePad) {
       refined_outer_edge(picture, {far_off, {}}, *model, kAtRest, Refinement::kPhotometric));
 }
 
+const Ellipse kSmallPad{130.3, 129.6, 44.0, 35.0, 0.4};
+
+// The refined outer edge of kSmallPad out of focus.
+// @param ring_ratio  As of learn_circles().
+std::optional<FittedEllipse> refined_in_defocus(double ring_width,
+                                                double blur_px,
+                                                double ring_ratio = 0.0) {
+  Scene scene = plain_ring();
+  scene.pad.ring_width = ring_width;
+  scene.sensor.blur_px = blur_px;
+  const GrayPicture picture = rendered(scene, kSmallPad, 260, 260);
+  const PadView view(image_from_pad(kSmallPad), {});
+  const auto model = learn_circles(picture.view(), view, ring_ratio);
+  return model ? refined_outer_edge(picture, view, *model) : std::nullopt;
+}
+
 // Blur separates the gradient maxima of both edges, the more, the thinner the ring is. The
 // sharpness of the edges shows the blur.
 TEST(OuterEdge, IsExactForDefocusedRings) {
   for (const double blur_px : {1.0, 1.6, 2.5}) {
-    Scene scene = plain_ring();
-    scene.sensor.blur_px = blur_px;
-    const Ellipse truth{130.3, 129.6, 44.0, 35.0, 0.4};
-    const GrayPicture picture = rendered(scene, truth, 260, 260);
-    const PadView view(image_from_pad(truth), {});
-    const auto model = learn_circles(picture.view(), view);
-    ASSERT_TRUE(model) << blur_px;
-    const auto exact = refined_outer_edge(picture, view, *model);
+    const auto exact = refined_in_defocus(plain_ring().pad.ring_width, blur_px);
     ASSERT_TRUE(exact) << blur_px;
-    EXPECT_LT(max_difference_px(exact->ellipse, truth), 0.06 * blur_px) << blur_px;
+    EXPECT_LT(max_difference_px(exact->ellipse, kSmallPad), 0.06 * blur_px) << blur_px;
   }
 }
 
@@ -89,37 +98,22 @@ TEST(OuterEdge, IsExactForDefocusedRings) {
 // contains the truth, also if the blur is so small that the ring may be in focus.
 TEST(OuterEdge, IsNotSureOfTheSizeOfADefocusedThinRing) {
   for (const double blur_px : {0.7, 0.8, 1.0, 1.6}) {
-    Scene scene = plain_ring();
-    scene.pad.ring_width = 0.055;
-    scene.sensor.blur_px = blur_px;
-    const Ellipse truth{130.3, 129.6, 44.0, 35.0, 0.4};
-    const GrayPicture picture = rendered(scene, truth, 260, 260);
-    const PadView view(image_from_pad(truth), {});
-    const auto model = learn_circles(picture.view(), view);
-    ASSERT_TRUE(model) << blur_px;
-    const auto exact = refined_outer_edge(picture, view, *model);
+    const auto exact = refined_in_defocus(0.055, blur_px);
     ASSERT_TRUE(exact) << blur_px;
-    const double sigma_px = 44.0 * std::sqrt(exact->uncertainty.information.inverse()(2, 2));
+    const double radius_px = kSmallPad.semi_major;
+    const double sigma_px = radius_px * std::sqrt(exact->uncertainty.information.inverse()(2, 2));
     EXPECT_GT(sigma_px, 0.1) << blur_px;
     EXPECT_LT(sigma_px, 1.0) << blur_px;
-    EXPECT_LT(std::abs(exact->ellipse.semi_major - truth.semi_major), 2.0 * sigma_px) << blur_px;
-    EXPECT_LT((exact->ellipse.center() - truth.center()).norm(), 0.05) << blur_px;
+    EXPECT_LT(std::abs(exact->ellipse.semi_major - radius_px), 2.0 * sigma_px) << blur_px;
+    EXPECT_LT((exact->ellipse.center() - kSmallPad.center()).norm(), 0.05) << blur_px;
   }
 }
 
 TEST(OuterEdge, IsExactForADefocusedThinRingOfKnownRatio) {
   for (const double blur_px : {0.6, 1.0, 1.6, 2.5}) {
-    Scene scene = plain_ring();
-    scene.pad.ring_width = 0.055;
-    scene.sensor.blur_px = blur_px;
-    const Ellipse truth{130.3, 129.6, 44.0, 35.0, 0.4};
-    const GrayPicture picture = rendered(scene, truth, 260, 260);
-    const PadView view(image_from_pad(truth), {});
-    const auto model = learn_circles(picture.view(), view, 1.0 - scene.pad.ring_width);
-    ASSERT_TRUE(model) << blur_px;
-    const auto exact = refined_outer_edge(picture, view, *model);
+    const auto exact = refined_in_defocus(0.055, blur_px, 0.945);
     ASSERT_TRUE(exact) << blur_px;
-    EXPECT_LT(max_difference_px(exact->ellipse, truth), 0.06 * blur_px) << blur_px;
+    EXPECT_LT(max_difference_px(exact->ellipse, kSmallPad), 0.06 * blur_px) << blur_px;
   }
 }
 

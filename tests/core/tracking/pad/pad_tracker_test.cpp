@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -465,6 +466,31 @@ TEST(PadTracker, ResumesAReleasedPadAtAnotherSize) {
     const auto track = tracker.resume(whole(frame_of(after, pad_scene(), 1)), detected);
     ASSERT_TRUE(track && track->is_visible) << after.semi_major;
     EXPECT_LT(max_difference_px(track->ellipse, after), 0.15) << after.semi_major;
+  }
+}
+
+// The displacement over the missed frames is not the motion during one exposure.
+TEST(PadTracker, KnowsItsMotionPerFrameAfterMissedFrames) {
+  const Scene scene = pad_scene(Pattern::kDisc);
+  const int step_px = 12;
+  const auto truth_at = [&](int i) { return Ellipse{60.0 + step_px * i, 180.0, 40.0, 36.0, 0.0}; };
+  const auto picture_at = [&](int i) {
+    return support::blurred_by_motion(truth_at(i), step_px / 2, [&](const Ellipse& e, int k) {
+      return frame_of(e, scene, std::uint64_t(100 * i + k));
+    });
+  };
+  PadTracker tracker;
+  ASSERT_TRUE(tracker.lock(whole(picture_at(0)), truth_at(0)));
+  for (int i = 1; i < 17; ++i) {
+    const bool is_missed = i >= 9 && i < 14;
+    const GrayPicture picture = is_missed ? empty_frame() : picture_at(i);
+    ASSERT_TRUE(tracker.track(whole(picture), kFrame_s)) << i;
+    if (i == 13) {
+      ASSERT_TRUE(tracker.resume(whole(picture_at(i)), truth_at(i)));
+    }
+    if (i <= 5 || is_missed) continue;
+    const double variance = tracker.uncertainty().information.inverse()(0, 0);
+    EXPECT_LT(truth_at(i).semi_major * std::sqrt(variance), 0.2) << i;
   }
 }
 
