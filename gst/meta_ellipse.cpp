@@ -16,6 +16,12 @@ static void write_outline(GstEllipseMeta* meta, const ellipse::LensView& lens) {
   meta->n_outline = static_cast<guint>(points.size());
 }
 
+ellipse::Rect frame_of(GstBuffer* buffer, const GstVideoInfo& info) {
+  const GstVideoMeta* meta = gst_buffer_get_video_meta(buffer);
+  if (meta == nullptr) return {0, 0, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info)};
+  return {0, 0, static_cast<int>(meta->width), static_cast<int>(meta->height)};
+}
+
 GstEllipseMeta* attach_ellipse(GstBuffer* buffer,
                                GstEllipseRole role,
                                const ellipse::Ellipse& e,
@@ -27,8 +33,9 @@ GstEllipseMeta* attach_ellipse(GstBuffer* buffer,
   meta->semi_major = e.semi_major;
   meta->semi_minor = e.semi_minor;
   meta->angle_rad = e.angle_rad;
-  meta->frame_width = static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info));
-  meta->frame_height = static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
+  const ellipse::Rect frame = frame_of(buffer, info);
+  meta->frame_width = static_cast<guint>(frame.width);
+  meta->frame_height = static_cast<guint>(frame.height);
   meta->pts = GST_BUFFER_PTS(buffer);
   write_outline(meta, lens);
   return meta;

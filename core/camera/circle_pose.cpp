@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ellipse {
 namespace {
@@ -254,11 +255,8 @@ void PoseEstimator::follow_solutions(const std::array<CirclePose, 2>& poses) {
   last_ = poses;
 }
 
-double PoseEstimator::OddsAverage::add(double frame_odds,
-                                       double deviation,
-                                       double separation,
-                                       double elapsed_s) {
-  const double kept = std::exp(-elapsed_s / kInnerEdgeMemory_s);
+double PoseEstimator::OddsAverage::add(double frame_odds, double deviation, double separation) {
+  const double kept = std::exp(-std::exchange(elapsed_s, 0.0) / kInnerEdgeMemory_s);
   if (information > 0.0) {
     differences += 1.0;
     const double squared = std::min(1.0, 0.5 * std::pow(deviation - last_deviation, 2));
@@ -275,8 +273,7 @@ double PoseEstimator::OddsAverage::add(double frame_odds,
 double PoseEstimator::update_odds(const Camera& camera,
                                   const std::array<CirclePose, 2>& poses,
                                   const RingUncertainty& uncertainty,
-                                  const PoseEvidence& evidence,
-                                  double elapsed_s) {
+                                  const PoseEvidence& evidence) {
   const auto& [inner_edges, pattern, gravity] = evidence;
   InnerMisfit misfit;
   for (const FittedEllipse& inner : inner_edges) {
@@ -292,7 +289,7 @@ double PoseEstimator::update_odds(const Camera& camera,
   // Those of earlier frames come last: their solutions may have been confused since.
   double odds = inner_.odds;
   if (has_inner) {
-    odds = inner_.add(log_odds(misfit), deviation, misfit.separation, elapsed_s);
+    odds = inner_.add(log_odds(misfit), deviation, misfit.separation);
   } else if (pattern) {
     odds = log_odds(camera, poses, *pattern);
   }
@@ -307,13 +304,12 @@ std::optional<TargetPose> PoseEstimator::estimate(const Lens& lens,
                                                   const Ellipse& ideal,
                                                   const RingUncertainty& uncertainty,
                                                   const PoseEvidence& evidence,
-                                                  double radius_m,
-                                                  double elapsed_s) {
+                                                  double radius_m) {
   const Camera& camera = lens.camera();
   const auto poses = circle_poses(camera, ideal);
   if (!poses) return std::nullopt;
   follow_solutions(*poses);
-  const double odds = update_odds(camera, *poses, uncertainty, evidence, elapsed_s);
+  const double odds = update_odds(camera, *poses, uncertainty, evidence);
   odds_ = std::isfinite(odds) ? odds : 0.0;
   if (odds_ != 0.0) is_first_ = odds_ > 0.0;  // without evidence, keeps the previous selection
   const CirclePose& chosen = (*poses)[is_first_ ? 0 : 1];

@@ -87,19 +87,20 @@ struct PoseEvidence {
 /// One object serves one target, on one thread. Allocates nothing.
 class PoseEstimator {
  public:
+  /// Call once per frame, also without a target.
+  void advance(double elapsed_s) { inner_.elapsed_s += elapsed_s; }
+
   /// @param ideal        The target's outer edge, in the ideal plane.
   /// @param uncertainty  Of the outer edge.
   /// @param radius_m     0 = unknown.
-  /// @param elapsed_s    Since the last call.
   /// @return nullopt if no circle in front of the camera projects to the ellipse.
   [[nodiscard]] std::optional<TargetPose> estimate(const Lens& lens,
                                                    const Ellipse& ideal,
                                                    const RingUncertainty& uncertainty,
                                                    const PoseEvidence& evidence,
-                                                   double radius_m,
-                                                   double elapsed_s);
+                                                   double radius_m);
 
-  /// Call before a new target, or the same one after a gap.
+  /// Call before a new target.
   void reset() { *this = {}; }
 
  private:
@@ -107,8 +108,7 @@ class PoseEstimator {
   [[nodiscard]] double update_odds(const Camera& camera,
                                    const std::array<CirclePose, 2>& poses,
                                    const RingUncertainty& uncertainty,
-                                   const PoseEvidence& evidence,
-                                   double elapsed_s);
+                                   const PoseEvidence& evidence);
 
   // Mean of the frames' log odds from inner edges, weighted by information. Averaging reduces only
   // the error that is independent between frames. Successive differences measure that part
@@ -119,10 +119,13 @@ class PoseEstimator {
     double noise_share = 0.0;  // share of the variance that is independent between frames
     double differences = 0.0;  // number of differences that measured it
     double last_deviation = 0.0;
+    double elapsed_s = 0.0;  // since the last frame that was added
 
-    // Adds a frame in which the solutions are separation^(1/2) standard deviations apart. Returns
-    // the log odds from all frames so far.
-    double add(double frame_odds, double deviation, double separation, double elapsed_s);
+    // @param frame_odds  Log odds of the first solution from this frame.
+    // @param deviation   Distance of the measurement from equal likelihood [sigma].
+    // @param separation  Squared distance of the two predictions [sigma^2].
+    // @return Log odds from all frames so far.
+    double add(double frame_odds, double deviation, double separation);
   };
 
   // Log odds of the first solution against the second, in the order of the last frame.

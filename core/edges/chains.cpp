@@ -128,7 +128,7 @@ void ChainTracer::add_chain(std::int32_t seed,
                             const Walk& along) {
   maxima[seed] &= maximum::kOctant;
   std::int32_t* const begin = pixels_.data() + count_;
-  const std::int32_t* const last = pixels_.data() + pixels_.size();
+  const std::int32_t* const last = pixels_.data() + capacity_;
   std::int32_t* const middle = against.run(seed, begin, last - 1);
   *middle = seed;
   std::int32_t* const end = along.run(seed, middle + 1, last);
@@ -149,14 +149,15 @@ void ChainTracer::reserve(std::size_t chains) {
 void ChainTracer::trace(GradientMap& map) {
   const auto pixels =
       static_cast<std::size_t>(map.stride()) * static_cast<std::size_t>(map.height());
-  pixels_.resize(pixels / 4 + 64);
+  capacity_ = pixels / 4 + 64;
+  if (pixels_.size() < capacity_) pixels_.resize(capacity_);  // two sizes may alternate
   count_ = 0;
   begins_.assign(1, 0);
   const Walk against(map, false);
   const Walk along(map, true);
   for_each_seed(map, [&](std::int32_t pixel) {
     add_chain(pixel, map.maxima(), against, along);
-    return count_ < pixels_.size();
+    return count_ < capacity_;
   });
 }
 

@@ -34,6 +34,7 @@ class ChainTracer {
   void add_chain(std::int32_t seed, std::uint8_t* maxima, const Walk& against, const Walk& along);
 
   std::vector<std::int32_t> pixels_;
+  std::size_t capacity_ = 0;  // for this picture
   std::size_t count_ = 0;
   std::vector<std::size_t> begins_;
 };

@@ -111,6 +111,7 @@ EdgeMeasurement measured(const OutlineSamples& outline,
           contrast,
           maximum.sharpness / (cosine * cosine),
           outline.length_px(k),
+          outline.turn(k),
           outline.px_per_ideal(k),
           is_bright_inside};
 }

@@ -40,6 +40,7 @@ struct EdgeMeasurement {
   float contrast = 0.0F;             ///< The gradient's norm [units of Gradient].
   float sharpness = 0.0F;            ///< As of SubpixelMaximum, but across the outline.
   float length_px = 0.0F;            ///< Length of the outline that the sample represents.
+  float turn = 0.0F;                 ///< As OutlineSamples::turn().
   float px_per_ideal = 1.0F;         ///< As OutlineSamples::px_per_ideal().
   bool is_bright_inside = false;     ///< Whether the gradient points inwards.
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "core/edges/noise.hpp"
 #include "core/geometry/ellipse_fit.hpp"
@@ -27,6 +28,12 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
   std::array<PerimeterOffset, OutlineSamples::kMaxSamples> offsets;
   std::array<WeightedDistance, OutlineSamples::kMaxSamples> distances;
   for (std::size_t i = 0; i < edges.size(); ++i) {
+    // Outside the lens's range there is no ideal point.
+    if (!ideal[i].allFinite()) {
+      offsets[i].distance_px = std::numeric_limits<double>::infinity();
+      distances[i] = {offsets[i].distance_px, 0.0};
+      continue;
+    }
     offsets[i] = fit.offset_of(ideal[i]);
     offsets[i].distance_px *= edges[i].px_per_ideal;
     offsets[i].px_per_unit *= edges[i].px_per_ideal;

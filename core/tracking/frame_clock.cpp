@@ -22,7 +22,8 @@ double FrameClock::advance_to(std::int64_t pts_ns) {
     const double elapsed_s = 1e-9 * (pts - now_ns_);
     now_ns_ = pts;
     const bool is_later = whole_microseconds(elapsed_s) > 0.0;
-    interval_s_ = is_later ? std::min(elapsed_s, kLongAbsence_s) : kFrame_s;
+    if (elapsed_s >= kLongAbsence_s) return kLongAbsence_s;  // a pause is not repeated
+    interval_s_ = is_later ? elapsed_s : kFrame_s;
   }
   return 1e-6 * whole_microseconds(interval_s_);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/tracker.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "core/detection/detectors.hpp"
@@ -45,6 +47,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   const double elapsed_s = clock_.advance_to(pts_ns);
   if (scoped.searchable.empty()) return std::nullopt;
   last_target_.advance(elapsed_s);
+  pose_estimator_.advance(elapsed_s);
   std::optional<Target> target = track(scoped, elapsed_s);
   had_target_ = target.has_value();
   if (!target) return std::nullopt;
@@ -52,7 +55,7 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   target->pts_ns = pts_ns;
   target->uncertainty = uncertainty_of(*target);
   target->covariance = parameter_covariance(target->ellipse, target->uncertainty);
-  if (lens_) locate(*target, elapsed_s);
+  if (lens_) locate(*target);
   return target;
 }
 
@@ -63,11 +66,11 @@ ScopedFrame Tracker::prepare_frame(const PixelView& frame, const SearchScope& sc
   frame_bounds_ = frame.bounds();
   if (is_other_size || is_lens_stale_) make_lens();
   search_->begin(frame);
-  int finest_scale = scope.finest_scale;
-  while (finest_scale > settings_.max_scale) finest_scale /= 2;
+  const auto finest_scale =
+      static_cast<unsigned>(std::clamp(scope.finest_scale, 1, settings_.max_scale));
   return {frame,
           searchable,
-          finest_scale,
+          static_cast<int>(std::bit_floor(finest_scale)),
           lens(),
           lens_ ? std::optional(lens_->camera()) : std::nullopt};
 }
@@ -93,7 +96,7 @@ RingUncertainty Tracker::uncertainty_of(const Target& target) const {
 }
 
 // Adds the pose, which needs a camera.
-void Tracker::locate(Target& target, double elapsed_s) {
+void Tracker::locate(Target& target) {
   if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
   PoseEvidence evidence{.gravity = Eigen::Vector3d::Map(settings_.gravity.data())};
@@ -101,12 +104,8 @@ void Tracker::locate(Target& target, double elapsed_s) {
     evidence.inner_edges = pad->inner_edges();
     evidence.pattern = pad->pattern();
   }
-  target.pose = pose_estimator_.estimate(*lens_,
-                                         target.ellipse,
-                                         target.uncertainty,
-                                         evidence,
-                                         0.5 * settings_.target_diameter_m,
-                                         elapsed_s);
+  target.pose = pose_estimator_.estimate(
+      *lens_, target.ellipse, target.uncertainty, evidence, 0.5 * settings_.target_diameter_m);
 }
 
 std::span<const Detection> Tracker::candidates() const {

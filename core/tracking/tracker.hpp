@@ -23,7 +23,7 @@ struct ScopedFrame;
 /// Search region and resolution for one frame.
 struct SearchScope {
   Rect within;           ///< In frame pixels; clipped to the frame. Empty: no search.
-  int finest_scale = 1;  ///< Min frame scale: a power of two, up to 128.
+  int finest_scale = 1;  ///< Min frame scale; rounded down to a power of two, max_scale at most.
 };
 
 /// Tracks one elliptical target through a stream, by the method in TrackerSettings::tracking.
@@ -77,7 +77,7 @@ class Tracker {
   [[nodiscard]] ScopedFrame prepare_frame(const PixelView& frame, const SearchScope& scope);
   [[nodiscard]] std::optional<Target> track(const ScopedFrame& frame, double elapsed_s);
   [[nodiscard]] RingUncertainty uncertainty_of(const Target& target) const;
-  void locate(Target& target, double elapsed_s);
+  void locate(Target& target);
   void make_lens();
 
   TrackerSettings settings_;

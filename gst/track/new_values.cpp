@@ -44,7 +44,8 @@ std::string validation_error(const TrackProperties& properties) {
 
 // Applies a change if the result is valid. In the state NULL an invalid combination is kept in
 // `pending` and takes effect once another change makes it valid: the two values of a pair may be
-// set in any order. @return Why the change is rejected; empty if it is accepted.
+// set in any order; start_error() reports the pair if it stays invalid.
+// @return Why the change is rejected; empty if it is accepted or kept.
 std::string changed(TrackShared& shared, const PropertyChange& change, bool is_stopped) {
   TrackProperties next = shared.preset.value_or(shared.properties);
   change.apply_to(next);
@@ -59,7 +60,7 @@ std::string changed(TrackShared& shared, const PropertyChange& change, bool is_s
   }
   std::string error = validation_error(next);
   if (error.empty()) shared.properties = next;
-  return error;
+  return is_stopped ? "" : error;
 }
 
 bool is_controlled(GstEllipseTrack* self, const GParamSpec* pspec) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "gst/meta_ellipse.hpp"
 #include "gst/track/analytics_meta.hpp"
 
 namespace {
@@ -53,7 +54,7 @@ ellipse::Rect box_around_regions(GstBuffer* buffer,
 ellipse::Rect search_bounds(GstBuffer* buffer,
                             const GstVideoInfo& info,
                             const TrackProperties& properties) {
-  const ellipse::Rect frame{0, 0, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info)};
+  const ellipse::Rect frame = frame_of(buffer, info);
   const ellipse::Rect& roi = properties.roi;
   ellipse::Rect bounds = frame;
   if (properties.roi_source == ROI_SOURCE_PROPERTY) {

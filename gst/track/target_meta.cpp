@@ -144,8 +144,8 @@ static void attach_candidate_metas(GstBuffer* buffer,
     meta->probability = candidate.probability;
     meta->visible_fraction = ellipse::visible_fraction(tracker.lens(),
                                                        candidate.ellipse,
-                                                       GST_VIDEO_INFO_WIDTH(&info),
-                                                       GST_VIDEO_INFO_HEIGHT(&info));
+                                                       static_cast<int>(meta->frame_width),
+                                                       static_cast<int>(meta->frame_height));
     if (properties.attach_analytics) attach_object(buffer, *meta, box_in_frame(*meta), {});
   }
 }

@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "gst/meta_ellipse.hpp"
 #include "gst/overlay/blend.hpp"
 #include "gst/track/search_bounds.hpp"
 #include "gst/track/target_meta.hpp"
@@ -160,11 +161,12 @@ static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
 }
 
 // Warns once until a frame has pixels to search. With roi-source=meta an empty region is normal.
-static void warn_of_empty_region(GstEllipseTrack* self, const TrackProperties& properties) {
+static void warn_of_empty_region(GstEllipseTrack* self,
+                                 const TrackProperties& properties,
+                                 const ellipse::Rect& frame) {
   if (self->stream->is_region_empty || properties.roi_source != ROI_SOURCE_PROPERTY) return;
   self->stream->is_region_empty = true;
   const ellipse::Rect& roi = properties.roi;
-  const GstVideoInfo& info = GST_VIDEO_FILTER(self)->in_info;
   GST_ELEMENT_WARNING(self,
                       STREAM,
                       FAILED,
@@ -173,8 +175,8 @@ static void warn_of_empty_region(GstEllipseTrack* self, const TrackProperties& p
                        roi.y,
                        roi.width,
                        roi.height,
-                       GST_VIDEO_INFO_WIDTH(&info),
-                       GST_VIDEO_INFO_HEIGHT(&info)),
+                       frame.width,
+                       frame.height),
                       ("nothing is searched; the stream continues"));
 }
 
@@ -238,7 +240,10 @@ static void analyse(GstEllipseTrack* self,
   const GstEllipseMeta* meta = publish(self, buffer, times, properties, target, processing_time);
   log_verdict(self, meta, processing_time);
   watch_load(self, times, processing_time, properties.max_processing_time);
-  if (draws && meta != nullptr) draw(self, mapped.frame(), *meta, properties.overlay);
+  if (!draws || meta == nullptr) return;
+  succeeds(self, "Cannot draw on a frame", [&] {
+    draw(self, mapped.frame(), *meta, properties.overlay);
+  });
 }
 
 static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
@@ -247,10 +252,11 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
   if (GST_CLOCK_TIME_IS_VALID(times.stream)) gst_object_sync_values(GST_OBJECT(self), times.stream);
 
   const TrackProperties properties = take_properties(self);
-  const ellipse::Rect bounds = search_bounds(buffer, GST_VIDEO_FILTER(base)->in_info, properties);
+  const GstVideoInfo& info = GST_VIDEO_FILTER(base)->in_info;
+  const ellipse::Rect bounds = search_bounds(buffer, info, properties);
   if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
     if (*reason == Skip::kRegion) {
-      warn_of_empty_region(self, properties);
+      warn_of_empty_region(self, properties, frame_of(buffer, info));
       reset_target(self, properties, times);
     }
     skip(self, *reason);
@@ -275,7 +281,7 @@ void reset_stream(GstEllipseTrack* self) {
     GST_OBJECT_UNLOCK(self);
     reset_target(self, properties);
   });
-  self->stream->load = LoadWatch();
+  watch_load(self, {}, 0, 0);
   self->stream->is_region_empty = false;
   self->stream->frame = 0;
 }

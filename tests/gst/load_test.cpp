@@ -202,6 +202,19 @@ TEST(EllipseTrackLoad, RemovingTheLimitEndsTheOverload) {
   EXPECT_EQ(target_on(push(harness, gray_buffer_of(ring_picture())))->scale, 1U);
 }
 
+TEST(EllipseTrackLoad, AFlushEndsTheOverload) {
+  const auto harness = tracker("max-processing-time=1 tracking=none messages=none");
+  for (int i = 0; i < 4; ++i) push(harness, gray_buffer_of(ring_picture()));
+  BusTap bus(element_of(harness));
+  gst_harness_push_event(harness.get(), gst_event_new_flush_start());
+  gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
+  const auto message = bus.pop(GST_MESSAGE_ELEMENT);
+  ASSERT_TRUE(message);
+  gboolean is_overloaded = TRUE;
+  gst_structure_get_boolean(gst_message_get_structure(message.get()), "overloaded", &is_overloaded);
+  EXPECT_FALSE(is_overloaded);
+}
+
 TEST(EllipseTrackLoad, KeepsTheTarget) {
   const auto harness = tracker("max-processing-time=1 messages=none");
   for (int i = 0; i < 60; ++i) {

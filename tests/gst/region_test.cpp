@@ -269,6 +269,24 @@ TEST(EllipseTrackRegion, CropsAreReportedInFullFramePixels) {
   EXPECT_EQ(kept->x, 160U);
 }
 
+// The caps then have the size of the crop.
+TEST(EllipseTrackRegion, VideocropMayLeaveCroppingToDownstream) {
+  const Owned<GstHarness> harness(
+      gst_harness_new_parse("videocrop left=170 ! ellipsetrack name=t"));
+  gst_harness_add_propose_allocation_meta(harness.get(), GST_VIDEO_CROP_META_API_TYPE, nullptr);
+  gst_harness_add_propose_allocation_meta(harness.get(), GST_VIDEO_META_API_TYPE, nullptr);
+  gst_harness_set_src_caps_str(harness.get(), caps_of("GRAY8", 320, 240).c_str());
+  const auto out = push(harness, two_rings());
+  ASSERT_NE(gst_buffer_get_video_crop_meta(out.get()), nullptr) << "cropped by software";
+  expect_at(out, kRight);
+  const GstEllipseMeta* meta = target_on(out);
+  ASSERT_NE(meta, nullptr);
+  EXPECT_EQ(meta->frame_width, 320U);
+  EXPECT_EQ(meta->roi_x, 170);
+  EXPECT_EQ(meta->roi_width, 150U);
+  EXPECT_EQ(meta->visible_fraction, 1.0);
+}
+
 TEST(EllipseTrackRegion, RegionsOutsideTheCropFindNothing) {
   const auto harness = tracker("roi-source=property roi=\"<0,0,160,240>\"");
   EXPECT_EQ(target_on(push(harness, cropped(two_rings(), kRightHalf))), nullptr);

@@ -6,12 +6,15 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/detection/evidence.hpp"
 #include "tests/gst/tracker_harness.hpp"
 
 namespace {
 
+using support::BusTap;
 using support::Owned;
 using support::run_pipeline;
 using support::TemporaryFolder;
@@ -46,12 +49,20 @@ TEST(EllipseTrackStart, FailsForInvertedPairs) {
 }
 
 TEST(EllipseTrackStart, AcceptsTheValuesOfAPairInAnyOrder) {
-  for (const char* settings : {"min-axis=800 max-axis=900", "max-axis=900 min-axis=800"}) {
-    const Owned<GstElement> element(GST_ELEMENT(gst_object_ref_sink(
-        gst_parse_launch((std::string("ellipsetrack ") + settings).c_str(), nullptr))));
-    EXPECT_EQ(number(element, "min-axis"), 800.0) << settings;
-    EXPECT_EQ(number(element, "max-axis"), 900.0) << settings;
-    EXPECT_EQ(start(element), GST_STATE_CHANGE_SUCCESS) << settings;
+  using Settings = std::vector<std::pair<const char*, const char*>>;
+  for (const Settings& settings :
+       {Settings{{"min-axis", "800"}, {"max-axis", "900"}},
+        Settings{{"max-axis", "900"}, {"min-axis", "800"}},
+        Settings{{"max-axis", "30"}, {"min-axis", "800"}, {"max-axis", "900"}}}) {
+    const Owned<GstElement> element = tracker_in_null();
+    BusTap bus(element.get());
+    for (const auto& [name, value] : settings) {
+      gst_util_set_object_arg(G_OBJECT(element.get()), name, value);
+    }
+    EXPECT_FALSE(bus.pop(GST_MESSAGE_WARNING));
+    EXPECT_EQ(number(element, "min-axis"), 800.0);
+    EXPECT_EQ(number(element, "max-axis"), 900.0);
+    EXPECT_EQ(start(element), GST_STATE_CHANGE_SUCCESS);
     stop(element);
   }
 }

@@ -75,16 +75,15 @@ struct Sums {
   double length = 0.0;
   double length_on_ellipse = 0.0;
   double squares = 0.0;
-  double turn = 0.0;  // up to a common factor
+  double turn = 0.0;
   double turn_in_reach = 0.0;
 
   void add(const EdgeMeasurement& edge, double reach_px) {
     const double distance_px = std::abs(edge.offset.distance_px);
-    const double turn_of_edge = 1.0 / (double(edge.length_px) * edge.length_px);
     length += edge.length_px;
     squares += edge.length_px * distance_px * distance_px;
-    turn += turn_of_edge;
-    if (is_on_outline(edge, reach_px)) turn_in_reach += turn_of_edge;
+    turn += edge.turn;
+    if (is_on_outline(edge, reach_px)) turn_in_reach += edge.turn;
     const bool is_along = std::abs(edge.direction_error_rad) <= kOnEllipseRad;
     if (distance_px <= kOnEllipsePx && is_along) length_on_ellipse += edge.length_px;
   }
@@ -199,6 +198,7 @@ std::size_t EllipseVerifier::measure(const GradientMap& map,
     found = measurer_.measure(map, e, measured.polarity, samples, tolerance_px);
   }
   measured.support = found.support;
+  measured.matched_px = found.inside_px * found.support;
   measured.gradient = measurer_.mean_contrast();
   set_features(found, samples, reach_px, map.texture(), measured);
   return samples;
@@ -272,12 +272,8 @@ Verdict EllipseVerifier::verify(const GradientMap& map,
   if (!verdict.is_accepted()) return verdict;
   verdict = at_least(Reason::kContourOverlap, measured.on_ellipse, thresholds.contour_overlap);
   if (!verdict.is_accepted()) return verdict;
-  const Ellipse& e = measured.ellipse;
-  const double visible_px =
-      perimeter_px(e) * visible_fraction(map.lens(), e, map.width(), map.height());
   // Contour pixels per pixel of length: mean of max(|cos|, |sin|) over all directions.
-  const double contour_px =
-      2.0 * std::numbers::sqrt2 / std::numbers::pi * visible_px * measured.support;
+  const double contour_px = 2.0 * std::numbers::sqrt2 / std::numbers::pi * measured.matched_px;
   measured.as_target = at_least(Reason::kContourTooShort, contour_px, thresholds.min_contour_size);
   return thresholds.wants_all ? Verdict{} : measured.as_target;
 }

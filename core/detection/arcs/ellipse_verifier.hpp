@@ -16,6 +16,7 @@ struct MeasuredEllipse {
   Ellipse ellipse;
   Polarity polarity = Polarity::kDarkInside;
   double support = 0.0;     ///< Share of the perimeter inside the picture with edges, by length.
+  double matched_px = 0.0;  ///< Length of the perimeter with edges, in the picture.
   double on_ellipse = 0.0;  ///< Share of these edges on the ellipse, by length.
   double gradient = 0.0;    ///< Mean of these edges [units of Gradient].
   Features features{};

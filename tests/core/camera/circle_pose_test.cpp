@@ -252,12 +252,12 @@ std::optional<TargetPose> pose_of(PoseEstimator& estimator,
                                   const CircleView& view,
                                   const std::vector<FittedEllipse>& inner_edges,
                                   const Vector3d& gravity = Vector3d::Zero()) {
+  estimator.advance(kFrame_s);
   return estimator.estimate(Lens(camera_640()),
                             view.ideal,
                             uncertainty_of(view.ideal, 1e-3),
                             {.inner_edges = inner_edges, .gravity = gravity},
-                            0.75,
-                            kFrame_s);
+                            0.75);
 }
 
 TEST(PoseEstimator, ResolvesTheAmbiguityByOneInnerCircle) {
@@ -344,12 +344,31 @@ TEST(PoseEstimator, ResolvesTheAmbiguityByThePattern) {
       PoseEstimator estimator;
       const PoseEvidence evidence{.pattern = PatternView{seen, covariance}};
       const RingUncertainty edge = uncertainty_of(view.ideal, 1e-3);
-      const auto pose =
-          estimator.estimate(Lens(camera_640()), view.ideal, edge, evidence, 0.75, kFrame_s);
+      const auto pose = estimator.estimate(Lens(camera_640()), view.ideal, edge, evidence, 0.75);
       ASSERT_TRUE(pose);
       EXPECT_LT(angle(pose->normal, view.truth.normal), 1e-5);
       EXPECT_GT(pose->certainty, 0.9);
     }
+  }
+}
+
+// Frames without a target or without inner edges age the evidence, too.
+TEST(PoseEstimator, ForgetsInFramesWithoutInnerEdges) {
+  const CircleView view = view_at(0.5);
+  const auto poses = circle_poses(camera_640(), view.ideal);
+  ASSERT_TRUE(poses);
+  const bool is_first = angle((*poses)[0].normal, view.truth.normal) < 1e-5;
+  const FittedEllipse other = inner_edge((*poses)[is_first ? 1 : 0]);
+  for (const bool has_gap : {false, true}) {
+    PoseEstimator estimator;
+    for (int i = 0; i < 60; ++i) (void)pose_of(estimator, view, {inner_edge(view.truth)});
+    if (has_gap) {
+      estimator.advance(10.0);
+      for (int i = 0; i < 300; ++i) (void)pose_of(estimator, view, {});
+    }
+    const auto pose = pose_of(estimator, view, {other});
+    ASSERT_TRUE(pose);
+    EXPECT_EQ(angle(pose->normal, view.truth.normal) < 1e-5, !has_gap);
   }
 }
 
@@ -367,8 +386,7 @@ TEST(PoseEstimator, ReportsDirectionsOnlyWithoutADiameter) {
                                        view.ideal,
                                        uncertainty_of(view.ideal, 1e-3),
                                        {.gravity = -view.truth.normal},
-                                       0.0,
-                                       kFrame_s);
+                                       0.0);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->radius_m, 0.0);
   EXPECT_LT(angle(pose->bearing, view.truth.position), 1e-6);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -124,6 +125,24 @@ TEST(Tracker, RejectsInvalidSettingsAndKeepsTheOldOnes) {
   EXPECT_THROW(tracker.configure(bad), std::invalid_argument);
   const GrayPicture picture = rendered(plain_ring(), {160.0, 120.0, 50.0, 40.0, 0.0});
   EXPECT_TRUE(tracker.process(picture.view(), 0));
+}
+
+TEST(Tracker, RoundsTheFinestScaleToOneThatExists) {
+  const GrayPicture picture = rendered(plain_ring(), {300.0, 200.0, 90.0, 70.0, 0.3}, 640, 360);
+  for (const auto mode : {TrackingMode::kNone, TrackingMode::kRedetect, TrackingMode::kEdges}) {
+    TrackerSettings settings;
+    settings.tracking = mode;
+    const auto at_scale = [&](int finest_scale) {
+      Tracker tracker(settings);
+      return tracker.process(picture.view(), 0, {picture.view().bounds(), finest_scale});
+    };
+    for (const auto& [given, rounded] : {std::pair{-5, 1}, {0, 1}, {3, 2}, {7, 4}}) {
+      const auto target = at_scale(given);
+      ASSERT_TRUE(target) << given;
+      EXPECT_EQ(target->ellipse, at_scale(rounded)->ellipse) << given;
+    }
+    (void)at_scale(std::numeric_limits<int>::max());
+  }
 }
 
 TEST(Tracker, FollowsALandingFromFarToNear) {

@@ -3,6 +3,7 @@
 // The stages of the arc detector, one by one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -369,6 +370,42 @@ TEST(PictureRefinement, FindsTheMeanPositionOfEdgesBlurredByMotion) {
     EXPECT_LT(error_px({36.0, 0.0}), 0.15) << scene.seed;
     EXPECT_GT(error_px({0.0, 0.0}), 0.25) << scene.seed;
   }
+}
+
+// The range of this lens ends inside the picture, across the disc.
+TEST(PictureRefinement, IgnoresEdgesOutsideTheRangeOfTheLens) {
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 320.0;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  camera.distortion = {-0.35};
+  const Lens lens(camera);
+  const Ellipse truth{500.0, 240.0, 114.0, 90.0, 0.0};
+  GrayPicture picture(camera.width, camera.height);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const Eigen::Vector2d ideal = LensView(lens).approximate_ideal({double(x), double(y)});
+      const bool is_known = ideal.allFinite();  // the disc ends a pixel beyond the range
+      const double inside = is_known ? 0.5 - sampson_distance(truth, ideal) : 529.0 - x;
+      picture.pixels[std::size_t(y * camera.width + x)] =
+          static_cast<std::uint8_t>(200.0 - 150.0 * std::clamp(inside, 0.0, 1.0));
+    }
+  }
+  EdgeMeasurer measurer;
+  const Picture distorted(picture.view(), lens);
+  (void)measurer.measure(distorted, truth, Polarity::kDarkInside, kRefinementSamples, 200.0);
+  const auto edges = measurer.edges();
+  const auto outside = std::count_if(edges.begin(), edges.end(), [&](const EdgeMeasurement& edge) {
+    const Eigen::Vector2d point = measurer.origin() + edge.point.cast<double>();
+    return !LensView(lens).approximate_ideal(point).allFinite();
+  });
+  EXPECT_GT(outside, 0);
+  const auto refined = fitted_to_edges(measurer, lens, truth);
+  ASSERT_TRUE(refined);
+  EXPECT_LT(max_difference_px(refined->ellipse, truth), 1.0);
+  EXPECT_TRUE(refined->uncertainty.information.allFinite());
 }
 
 // Where the line of pixels would leave the picture, the maximum counts.
