@@ -28,7 +28,9 @@ struct TracedPiece {
 
 /// The stages of a detector's pass at one scale, in pixels of the reduced picture.
 struct TracedPass {
-  Rect region;            ///< The searched region [px of the frame].
+  /// The part of the frame that luma and edges show [px of the frame]. A pass of `arcs` that is
+  /// restricted to a region has edges in that region only.
+  Rect region;
   int scale = 1;          ///< Frame pixels per pixel of the pass, in each direction.
   int width = 0;          ///< [px]
   int height = 0;         ///< [px]

@@ -13,7 +13,7 @@ namespace ellipse {
 
 class DetectionTrace;
 
-/// Coarsest scale of the frame that is searched.
+/// Coarsest scale of `arcs`, and of the periodic search while a target is certain.
 inline constexpr int kCoarsestScale = 4;
 
 /// An ellipse that passed every test of a detector.

@@ -12,9 +12,10 @@ enum class DetectorKind {
   kArcs,      ///< Ellipses fitted to single arcs and pairs of arcs.
 };
 
-/// Nicks in the order of DetectorKind.
+/// Nicks in the order of DetectorKind. Static lifetime; thread-safe.
 [[nodiscard]] std::span<const char* const> detector_nicks();
 
+/// Never null. Allocates. The first kArcs of a process computes a table in about 20 ms.
 [[nodiscard]] std::unique_ptr<Detector> make_detector(DetectorKind kind);
 
 }  // namespace ellipse

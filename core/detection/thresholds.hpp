@@ -34,11 +34,14 @@ struct Thresholds {
   double max_axis_px = kAxisRangePx.max;  ///< mxAxSize: largest accepted major axis, full length.
   double max_axis_ratio = 5.0;            ///< maxAxisRatio: largest accepted major / minor axis.
   int min_contour_size = 50;              ///< minContourSize: shortest accepted contour [px].
-  double edge_low = 0.0;         ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
-  double edge_high = 0.0;        ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
-  double min_probability = 0.5;  ///< Smallest accepted, if the detector has one; 0 to 1.
-  bool wants_all = false;        ///< Report all ellipses, not only those that may be a target.
+  double edge_low = 0.0;   ///< Canny's lower threshold [grey levels / px]; 0 = adaptive.
+  double edge_high = 0.0;  ///< Canny's upper threshold [grey levels / px]; 0 = adaptive.
+  /// Smallest accepted, if the detector has one; 0 to 1. At 1 none is accepted, and `arcs` measures
+  /// every candidate, for calibration.
+  double min_probability = 0.5;
+  bool wants_all = false;  ///< Report all ellipses, not only those that may be a target.
 
+  [[nodiscard]] bool accepts_any() const { return min_probability < 1.0; }
   /// Tests both axes and their ratio against the limits: too large, too small, too flat, in this
   /// order.
   [[nodiscard]] Verdict judge_axes_of(const Ellipse& e) const;

@@ -44,10 +44,12 @@ struct Verdict {
   bool operator==(const Verdict&) const = default;
 };
 
+/// Accepts if measured >= limit, else rejects for `reason`, also NaN.
 [[nodiscard]] inline Verdict at_least(Reason reason, double measured, double limit) {
   return measured >= limit ? Verdict{} : Verdict{reason, measured, limit};
 }
 
+/// Accepts if measured <= limit, else rejects for `reason`, also NaN.
 [[nodiscard]] inline Verdict at_most(Reason reason, double measured, double limit) {
   return measured <= limit ? Verdict{} : Verdict{reason, measured, limit};
 }

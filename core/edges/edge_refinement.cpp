@@ -63,11 +63,9 @@ std::optional<FittedEllipse> stepped(const Ellipse& e,
 std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
                                                 const Ellipse& e,
                                                 Polarity polarity,
-                                                double min_gradient,
-                                                std::size_t samples,
-                                                const Eigen::Vector2d& motion_px) {
+                                                double min_gradient) {
   EdgeMeasurer measurer;
-  (void)measurer.measure(picture, e, polarity, samples, min_gradient, motion_px.cast<float>());
+  (void)measurer.measure(picture, e, polarity, kRefinementSamples, min_gradient);
   return fitted_to_edges(measurer, picture.lens, e);
 }
 

@@ -19,17 +19,11 @@ inline constexpr std::size_t kRefinementSamples = 96;
 /// @param picture       Its lens distorts the perimeter for the search; `e` and the result are of
 ///                      the ideal plane.
 /// @param min_gradient  Smallest gradient of an edge [units of Gradient].
-/// @param samples       As of OutlineSamples. Fewer samples are faster and noisier.
-/// @param motion_px     As of motion_blur(); zero = unknown.
-/// @return nullopt if too few edges for a fit are near, or the fit fails. Allocates nothing;
-///         O(samples).
-[[nodiscard]] std::optional<FittedEllipse> refined_on_picture(
-    const Picture& picture,
-    const Ellipse& e,
-    Polarity polarity,
-    double min_gradient,
-    std::size_t samples = kRefinementSamples,
-    const Eigen::Vector2d& motion_px = {0.0, 0.0});
+/// @return nullopt if too few edges for a fit are near, or the fit fails. Allocates nothing.
+[[nodiscard]] std::optional<FittedEllipse> refined_on_picture(const Picture& picture,
+                                                              const Ellipse& e,
+                                                              Polarity polarity,
+                                                              double min_gradient);
 
 /// Refines an ellipse on the edges that were measured along it: the last step of
 /// refined_on_picture().

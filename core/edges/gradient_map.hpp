@@ -95,10 +95,13 @@ class GradientMap {
   /// Row stride of both maps [pixels].
   [[nodiscard]] int stride() const { return stride_; }
 
-  /// Position of a pixel of the maps in the ideal plane [px].
-  [[nodiscard]] Eigen::Vector2d point_of(std::int32_t pixel) const {
-    const Eigen::Vector2d in_picture(pixel % stride_, pixel / stride_);
-    return lens_.approximate_ideal(in_picture);
+  /// Column and row of an index into the maps.
+  [[nodiscard]] Eigen::Vector2i pixel_at(std::int32_t index) const {
+    return {index % stride_, index / stride_};
+  }
+  /// Its position in the ideal plane [px].
+  [[nodiscard]] Eigen::Vector2d point_of(std::int32_t index) const {
+    return lens_.approximate_ideal(pixel_at(index).cast<double>());
   }
 
   [[nodiscard]] const Gradient* gradients() const { return gradients_.data(); }

@@ -218,7 +218,7 @@ double width_of(double ratio) {
 
 // The width of a ring that may be thinner; thin ones have less contrast. RMS distance from the
 // upper end for a density that is 0 at the lower end and grows linearly.
-Estimate at_most(double width, double thinnest) {
+Estimate width_up_to(double width, double thinnest) {
   return {width, (width - thinnest) / std::sqrt(6.0)};
 }
 
@@ -249,21 +249,21 @@ UnblurredRing without_blur_bias(const RingEdges& maxima,
   const MiddleLine middle(maxima);
   if (!(middle.min_gap_px() > 0.0)) return {maxima, 0.0, {}};
   const double error = kUnlikelySigmas * sharpness.sigma;
-  const double least_defocus = middle.defocus_at(sharpness.value + error);
-  BlurredBars bars(least_defocus);
+  const double min_defocus = middle.defocus_at(sharpness.value + error);
+  BlurredBars bars(min_defocus);
   double widest = middle.width(bars);
   if (middle.min_gap_px() > bars.widest_px()) return {maxima, 0.0, {widest}};
-  const BlurredBars softest(middle.defocus_at(sharpness.value - error));
-  double thinnest = std::min(widest, middle.width(softest));
+  const BlurredBars at_max_defocus(middle.defocus_at(sharpness.value - error));
+  double thinnest = std::min(widest, middle.width(at_max_defocus));
   // Out of focus, a ring whose width does not show may be as thin as a line.
-  if (least_defocus > 0.0 && !middle.shows_width(thinnest, softest)) thinnest = 0.0;
+  if (min_defocus > 0.0 && !middle.shows_width(thinnest, at_max_defocus)) thinnest = 0.0;
   if (widest == 0.0) {
     // Edges that are less sharp than those of any ring have another edge beside them. The ring is
     // at most as wide as in focus. Its edges are corrected for the blur that they show: without it
     // the uncertainty of the scene bullseye is too small.
     widest = middle.width(BlurredBars(0.0));
   }
-  Estimate width = at_most(widest, thinnest);
+  Estimate width = width_up_to(widest, thinnest);
   if (known_ratio) {
     const double known = width_of(*known_ratio);
     width.value = std::clamp(known, thinnest, widest);

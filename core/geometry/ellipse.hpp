@@ -70,7 +70,7 @@ void walk_perimeter(const Ellipse& e, const Use& use) {
 /// Half the width and height of the upright box around the ellipse [px].
 [[nodiscard]] Eigen::Vector2d half_extent(const Ellipse& e);
 
-/// A part of a horizontal line, empty where end <= begin.
+/// An interval of a coordinate, empty where end <= begin.
 struct Interval {
   double begin = 0.0;
   double end = 0.0;

@@ -88,7 +88,7 @@ Eigen::Vector3d constrained_minimum(const Eigen::Matrix3d& scatter) {
 constexpr double kMaxStep = 0.3;
 
 bool is_collinear(const Moments& standardized) {
-  const double n = standardized.count();
+  const double n = standardized.total_weight();
   const double xx = standardized.at(2, 0) / n;
   const double xy = standardized.at(1, 1) / n;
   const double yy = standardized.at(0, 2) / n;
@@ -107,7 +107,7 @@ double taubin_rms(const Moments& m,
   // (2 a0 x + a1 y + b0)^2 + (a1 x + 2 a2 y + b1)^2; the means of x and y are 0.
   const double slopes = 4.0 * a(0) * a(0) * xx + 4.0 * a(1) * (a(0) + a(2)) * xy +
                         a(1) * a(1) * (xx + yy) + 4.0 * a(2) * a(2) * yy +
-                        m.count() * (b(0) * b(0) + b(1) * b(1));
+                        m.total_weight() * (b(0) * b(0) + b(1) * b(1));
   return std::sqrt(std::max(0.0, values) / slopes);
 }
 
@@ -142,11 +142,11 @@ void Moments::add(const Moments& other) {
 }
 
 Eigen::Vector2d Moments::mean() const {
-  return origin_ + Eigen::Vector2d(at(1, 0), at(0, 1)) / count();
+  return origin_ + Eigen::Vector2d(at(1, 0), at(0, 1)) / total_weight();
 }
 
 double Moments::spread_px() const {
-  const double n = count();
+  const double n = total_weight();
   const double variance =
       (at(2, 0) + at(0, 2)) / n - Eigen::Vector2d(at(1, 0) / n, at(0, 1) / n).squaredNorm();
   return variance > 0.0 ? std::sqrt(variance) : 0.0;
@@ -154,8 +154,8 @@ double Moments::spread_px() const {
 
 Moments Moments::standardized() const {
   Moments result(Eigen::Vector2d::Zero());
-  const double shift_x = -at(1, 0) / count();
-  const double shift_y = -at(0, 1) / count();
+  const double shift_x = -at(1, 0) / total_weight();
+  const double shift_y = -at(0, 1) / total_weight();
   const double inverse_scale = 1.0 / spread_px();
   double powers_x[5] = {1};
   double powers_y[5] = {1};
@@ -193,7 +193,7 @@ std::optional<Ellipse> fit_ellipse(const Moments& moments) {
 }
 
 std::optional<MomentFit> fit_with_residual(const Moments& moments) {
-  if (moments.count() < 5.0) return std::nullopt;  // a conic has five degrees of freedom
+  if (moments.total_weight() < 5.0) return std::nullopt;  // a conic has five degrees of freedom
   const double spread = moments.spread_px();
   if (!(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
   const Moments standardized = moments.standardized();

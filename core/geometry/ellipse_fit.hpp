@@ -22,7 +22,7 @@ class Moments {
   /// Adds the points of `other`, which must have the same origin.
   void add(const Moments& other);
 
-  [[nodiscard]] double count() const { return at(0, 0); }
+  [[nodiscard]] double total_weight() const { return at(0, 0); }
   [[nodiscard]] Eigen::Vector2d mean() const;
   /// RMS distance of the points to their mean [px].
   [[nodiscard]] double spread_px() const;
@@ -46,7 +46,7 @@ class Moments {
 /// Deterministic, thread-safe, allocates nothing; O(N).
 [[nodiscard]] std::optional<Ellipse> fit_ellipse(std::span<const Eigen::Vector2d> points_px);
 
-/// The same from moments: O(1).
+/// The same from moments, with a total weight of at least 5: O(1).
 [[nodiscard]] std::optional<Ellipse> fit_ellipse(const Moments& moments);
 
 /// An ellipse and how well it fits its points.

@@ -41,8 +41,8 @@ void ResidualSums::add(int sample, double distance, double reach, double precisi
   squared_slopes_ += precision * slope * slope;
   const double residual = std::sqrt(precision * weight) * distance;
   if (sample == last_sample_ + 1) {
-    products_ += last_ * residual;
-    own_products_ += 0.5 * (last_ * last_ + residual * residual);
+    products_of_pairs_ += last_ * residual;
+    squares_of_pairs_ += 0.5 * (last_ * last_ + residual * residual);
     ++pairs_;
   }
   last_ = residual;
@@ -57,15 +57,16 @@ double ResidualSums::samples() const {
 // ones, with rho between neighbours [Bartlett1946]. A fit of p parameters reduces rho by about p /
 // n, as that of a mean does by 1 / n [MarriottPope1954].
 double ResidualSums::samples_per_independent(int parameters) const {
-  if (!(own_products_ > 0.0)) return 1.0;
+  if (!(squares_of_pairs_ > 0.0)) return 1.0;
   const double max_rho = (samples() - 1.0) / (samples() + 1.0);  // all samples are one
-  const double rho = products_ / own_products_ + static_cast<double>(parameters) / pairs_;
+  const double rho =
+      products_of_pairs_ / squares_of_pairs_ + static_cast<double>(parameters) / pairs_;
   const double bounded = std::clamp(rho, 0.0, max_rho);
   return (1.0 + bounded) / (1.0 - bounded);
 }
 
 // K^2 of [Huber1981], 7.6: the influences have different slopes.
-double ResidualSums::of_few_samples(int parameters, double independent) const {
+double ResidualSums::small_sample_factor(int parameters, double independent) const {
   const double mean = slopes_ / all_precisions_;
   const double variance = squared_slopes_ / all_precisions_ - mean * mean;
   const double k = 1.0 + parameters / independent * variance / (mean * mean);
@@ -85,7 +86,7 @@ double ResidualSums::information_factor(int parameters, double min_sigma) const 
   // estimated from n residuals; its covariance is the sum of their squares over n - p - 2.
   const double free = std::max(1.0, independent - parameters - 2.0);
   const double squares = std::max(squares_, squared_weights_ * min_sigma * min_sigma) *
-                         of_few_samples(parameters, independent);
+                         small_sample_factor(parameters, independent);
   return slopes_ * slopes_ / (weights_ * squares) * free / precisions_;
 }
 

@@ -34,7 +34,7 @@ struct WeightedDistance {
 };
 
 /// Standard deviation of normal errors, from the weighted median of their absolute values. Reorders
-/// the distances, at least one. O(n log n).
+/// the distances, at least one, finite or infinite. O(n log n).
 [[nodiscard]] double robust_sigma(std::span<WeightedDistance> distances);
 
 /// Covariance of a least-squares fit with Tukey's biweight, from its residuals: these need not be
@@ -66,7 +66,7 @@ class ResidualSums {
   // Number of samples per independent one.
   [[nodiscard]] double samples_per_independent(int parameters) const;
   // Factor of the variance for few samples.
-  [[nodiscard]] double of_few_samples(int parameters, double independent) const;
+  [[nodiscard]] double small_sample_factor(int parameters, double independent) const;
 
   double all_precisions_ = 0.0;
   double precisions_ = 0.0;  // of samples within the reach, as all below
@@ -76,8 +76,8 @@ class ResidualSums {
   double squares_ = 0.0;          // of influences, over the precision
   double slopes_ = 0.0;           // of the influence
   double squared_slopes_ = 0.0;
-  double own_products_ = 0.0;  // of neighbouring residuals with themselves,
-  double products_ = 0.0;      // and with each other
+  double squares_of_pairs_ = 0.0;   // mean squares of neighbouring residuals,
+  double products_of_pairs_ = 0.0;  // and their products
   double last_ = 0.0;
   int last_sample_ = -2;
   int pairs_ = 0;

@@ -69,7 +69,8 @@ class LumaReader {
 
   /// @param region  Clipped to the picture.
   /// @return A view of the clipped region, empty if nothing of it is inside. Valid until the next
-  ///         call or until the picture is released. Its stride is not negative.
+  ///         call or until the picture is released. Its stride is not negative. Allocates only if a
+  ///         larger rectangle is converted than any before.
   [[nodiscard]] ImageView read(const Rect& region);
 
  private:

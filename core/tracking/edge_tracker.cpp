@@ -17,6 +17,10 @@ bool lies_in(const Ellipse& inner, const Ellipse& outer) {
          inner.semi_major < outer.semi_major;
 }
 
+bool is_coarser(const ScopedFrame& frame, const ScopedFrame& other) {
+  return frame.finest_scale > other.finest_scale;
+}
+
 }  // namespace
 
 void EdgeTracker::configure(const TrackerSettings& settings) {
@@ -30,7 +34,7 @@ void EdgeTracker::reset() {
   pad_tracker_.forget();
 }
 
-std::optional<Ellipse> EdgeTracker::hypothesis() const {
+std::optional<Ellipse> EdgeTracker::outline() const {
   return pad_tracker_.is_locked() ? pad_tracker_.outline() : hypothesis_;
 }
 
@@ -107,7 +111,7 @@ std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
   target.state = track.is_visible ? TargetState::kTracked : TargetState::kPredicted;
   target.id = id_;
   target.contour_overlap = track.coverage;
-  target.ellipse_overlap = track.outline;
+  target.ellipse_overlap = track.outer_coverage;
   target.visible_fraction =
       visible_fraction(frame.lens, track.ellipse, frame.pixels.width, frame.pixels.height);
   target.search_region = region;
@@ -115,35 +119,65 @@ std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
   return track.is_visible || is_likely ? std::optional(target) : std::nullopt;
 }
 
-// Runs the detector. Cheaper searches come first, which limits the frame time: near a lost pad, or
-// in a reduced frame. The full resolution follows if the reduced frame shows a better target.
 std::optional<Target> EdgeTracker::run_detector(const ScopedFrame& frame,
                                                 const std::optional<Target>& followed) {
+  since_detection_s_ = 0.0;
   const bool is_visible = followed && followed->state == TargetState::kTracked;
+  return is_visible ? challenge(frame, *followed) : find_again(frame, followed);
+}
+
+// Looks for a better target than a visible one. While it is certain, the coarsest scale comes first
+// and the full resolution follows only if it shows a rival.
+Target EdgeTracker::challenge(const ScopedFrame& frame, const Target& followed) {
   const auto is_rival = [&](const std::optional<Target>& candidate) {
     if (!candidate) return false;
     if (is_certain_rival(*candidate)) return true;
     if (is_inner_edge(candidate->ellipse, frame)) return false;
-    const bool is_likely = is_visible && judge_.log_odds() >= required_log_odds();
-    return !is_likely || is_better(*candidate, *followed, frame);
+    return judge_.log_odds() < required_log_odds() || is_better(*candidate, followed, frame);
   };
-  const auto search = [&](const ScopedFrame& searched) {
-    return is_visible ? search_.detect(searched) : detect_lost(searched);
-  };
-  since_detection_s_ = 0.0;
-  if (auto resumed = is_visible ? std::nullopt : resume_nearby(frame)) return resumed;
-  ScopedFrame reduced = frame;
-  reduced.finest_scale = std::max(frame.finest_scale, first_scale(is_visible));
-  if (reduced.finest_scale > frame.finest_scale && !is_rival(search(reduced))) return followed;
+  const ScopedFrame coarse = reduced(frame, judge_.is_certain() ? kCoarsestScale : 1);
+  if (is_coarser(coarse, frame) && !is_rival(search_.detect(coarse))) return followed;
   since_full_search_s_ = 0.0;
-  const std::optional<Target> chosen = search(frame);
-  if (!chosen) return followed;
-  if (auto resumed = is_visible ? std::nullopt : resume(frame, *chosen)) return resumed;
+  const std::optional<Target> chosen = search_.detect(frame);
   if (is_rival(chosen)) return acquire(frame, *chosen);
-  if (followed && is_same(chosen->ellipse, followed->ellipse, kSameTarget)) {
-    judge_.confirm(log_odds(chosen->probability), 0.0);
-  }
+  if (chosen) add_if_same(*chosen, followed);
   return followed;
+}
+
+// Searches a target that is not visible: first where it is predicted, then everywhere. While it is
+// absent for long, half the size comes first, except once per kCheckPeriod_s.
+std::optional<Target> EdgeTracker::find_again(const ScopedFrame& frame,
+                                              const std::optional<Target>& predicted) {
+  if (auto resumed = resume_nearby(frame)) return resumed;
+  const auto may_be_another = [&](const Target& candidate) {
+    return is_certain_rival(candidate) || !is_inner_edge(candidate.ellipse, frame);
+  };
+  const bool is_absent = !hypothesis_ && last_.absence_s() > kLongAbsence_s;
+  const ScopedFrame half =
+      reduced(frame, is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1);
+  if (is_coarser(half, frame)) {
+    const auto candidate = detect_lost(half);
+    if (!candidate || !may_be_another(*candidate)) return predicted;
+  }
+  since_full_search_s_ = 0.0;
+  const std::optional<Target> chosen = detect_lost(frame);
+  if (!chosen) return predicted;
+  if (auto resumed = resume(frame, *chosen)) return resumed;
+  if (may_be_another(*chosen)) return acquire(frame, *chosen);
+  if (predicted) add_if_same(*chosen, *predicted);
+  return predicted;
+}
+
+// The frame, searched at this scale or coarser only; unchanged if all candidates are wanted.
+ScopedFrame EdgeTracker::reduced(const ScopedFrame& frame, int scale) const {
+  ScopedFrame result = frame;
+  if (!settings_.wants_candidates) result.finest_scale = std::max(frame.finest_scale, scale);
+  return result;
+}
+
+void EdgeTracker::add_if_same(const Target& detection, const Target& followed) {
+  if (!is_same(detection.ellipse, followed.ellipse, kSameTarget)) return;
+  judge_.add_detection(log_odds(detection.probability), 0.0);
 }
 
 // The search may have ended at a reduced size, before it found the followed target. Therefore the
@@ -171,15 +205,6 @@ std::optional<Target> EdgeTracker::detect_lost(const ScopedFrame& frame) {
   const bool is_accepted =
       target && (target->probability >= required || last_.was_certain_as(target->ellipse));
   return is_accepted ? target : std::nullopt;
-}
-
-// The scale of the first search of the whole frame: the coarsest while a visible target is certain,
-// half the size while a target is absent for long, except once per kCheckPeriod_s.
-int EdgeTracker::first_scale(bool is_visible) const {
-  if (settings_.wants_candidates) return 1;
-  if (is_visible && judge_.is_certain()) return kCoarsestScale;
-  const bool is_absent = !hypothesis_ && last_.absence_s() > kLongAbsence_s;
-  return is_absent && since_full_search_s_ < kCheckPeriod_s ? 2 : 1;
 }
 
 // Whether a certain detection competes with an uncertain outline.
@@ -229,12 +254,12 @@ std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target
 // Replaces or confirms the hypothesis by a detection. Locks only if most of its perimeter is
 // visible.
 Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
-  const bool is_confirmed = add_detection(target.ellipse, log_odds(target.probability));
+  const bool is_same_outline = add_detection(target.ellipse, log_odds(target.probability));
   target.id = id_;
   is_pad_ = target.visible_fraction >= kMajority;
   if (is_pad_) {
     (void)pad_tracker_.lock(pad_frame_of(frame, frame.searchable), target.ellipse);
-  } else if (!is_confirmed) {
+  } else if (!is_same_outline) {
     pad_tracker_.release();
   }
   return target;
@@ -243,14 +268,14 @@ Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
 // Adds to the odds of the hypothesis if it has this outline, else starts another one.
 // Returns whether it has.
 bool EdgeTracker::add_detection(const Ellipse& outline, double detected_log_odds) {
-  const bool is_confirmed = hypothesis_ && is_same(*hypothesis_, outline, kSameTarget);
-  if (is_confirmed) {
-    judge_.confirm(detected_log_odds, last_.prior_of(outline));
+  const bool is_same_outline = hypothesis_ && is_same(*hypothesis_, outline, kSameTarget);
+  if (is_same_outline) {
+    judge_.add_detection(detected_log_odds, last_.prior_of(outline));
   } else {
     judge_.start(detected_log_odds, last_.prior_of(outline));
     id_ = last_.was_near(outline) ? last_.id() : last_.id() + 1;
   }
-  return is_confirmed;
+  return is_same_outline;
 }
 
 Picture EdgeTracker::picture_of(const ScopedFrame& frame, const Rect& region) {

@@ -36,7 +36,7 @@ class EdgeTracker {
   /// State after the last frame.
   [[nodiscard]] TrackerState state() const { return state_; }
   /// The outline of the hypothesis, reported or not, in the last frame.
-  [[nodiscard]] std::optional<Ellipse> hypothesis() const;
+  [[nodiscard]] std::optional<Ellipse> outline() const;
   /// The pad, if the last target is its outline; nullptr if it is a detection that is not locked.
   [[nodiscard]] const PadTracker* reported_pad() const {
     return pad_tracker_.is_locked() && is_pad_ ? &pad_tracker_ : nullptr;
@@ -53,11 +53,15 @@ class EdgeTracker {
                                                 const Rect& region) const;
   [[nodiscard]] std::optional<Target> run_detector(const ScopedFrame& frame,
                                                    const std::optional<Target>& followed);
+  [[nodiscard]] Target challenge(const ScopedFrame& frame, const Target& followed);
+  [[nodiscard]] std::optional<Target> find_again(const ScopedFrame& frame,
+                                                 const std::optional<Target>& predicted);
+  [[nodiscard]] ScopedFrame reduced(const ScopedFrame& frame, int scale) const;
+  void add_if_same(const Target& detection, const Target& followed);
   [[nodiscard]] bool is_better(const Target& candidate,
                                const Target& followed,
                                const ScopedFrame& frame);
   [[nodiscard]] std::optional<Target> detect_lost(const ScopedFrame& frame);
-  [[nodiscard]] int first_scale(bool is_visible) const;
   [[nodiscard]] bool is_certain_rival(const Target& chosen) const;
   [[nodiscard]] bool is_inner_edge(const Ellipse& e, const ScopedFrame& frame) const;
   [[nodiscard]] bool is_too_large(const Ellipse& e, const ScopedFrame& frame) const;
@@ -75,7 +79,7 @@ class EdgeTracker {
   OutlineJudge judge_;  // of the hypothesis
 
   TrackerState state_ = TrackerState::kSearching;
-  std::optional<Ellipse> hypothesis_;  // tracked by its edges, reported or not
+  std::optional<Ellipse> hypothesis_;  // when it was last found or predicted
   bool is_pad_ = false;                // whether the target is the pad's outline
   std::uint64_t id_ = 0;               // of the hypothesis, if it is reported
   double since_detection_s_ = 0.0;     // since the detector ran

@@ -36,7 +36,7 @@ void OutlineJudge::start(double log_odds, double prior) {
   judged_overlap_ = 1.0;
 }
 
-void OutlineJudge::confirm(double log_odds, double prior) {
+void OutlineJudge::add_detection(double log_odds, double prior) {
   add(log_odds);
   odds_.raise(log_odds, prior);
   max_visible_ = 0.0;

@@ -24,7 +24,7 @@ class OutlineJudge {
   void start(double log_odds, double prior);
   /// Adds a detection of the tracked hypothesis.
   /// @param prior  Of a new hypothesis at its position. See TargetOdds::raise().
-  void confirm(double log_odds, double prior);
+  void add_detection(double log_odds, double prior);
 
   /// Call once per frame.
   void advance(double elapsed_s) { since_judged_s_ += elapsed_s; }

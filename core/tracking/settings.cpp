@@ -199,6 +199,9 @@ double number(std::string_view name, std::string_view text) {
 
 void TrackerSettings::validate() const {
   for (const SettingInfo& info : kSettings) check_range(info.name, info.get(*this), info.range);
+  // Focal lengths in units of the picture's width are a common mistake.
+  if (fx_px != 0.0) check_range("fx", fx_px, {1.0, kFocalRangePx.max});
+  if (fy_px != 0.0) check_range("fy", fy_px, {1.0, kFocalRangePx.max});
   check_order("min-axis", limits.min_axis_px, "max-axis", limits.max_axis_px);
   if (limits.edge_high > 0.0) {
     check_order("edge-low", limits.edge_low, "edge-high", limits.edge_high);

@@ -12,7 +12,7 @@ namespace ellipse {
 enum class TargetState {
   kDetected,   ///< Found without a prior.
   kTracked,    ///< Found near its last position.
-  kPredicted,  ///< Not visible in this frame; extrapolated from its motion.
+  kPredicted,  ///< Its matched edges do not determine its position, which is extrapolated.
 };
 
 /// The target in one frame.

@@ -154,7 +154,7 @@ void Tracker::configure(const TrackerSettings& settings) {
   const bool is_other_camera = !has_same_camera(settings, settings_);
   // A tracked target may outgrow the limits; changed limits that exclude it reset the tracker.
   const std::optional<Ellipse> tracked =
-      had_target_ ? last_target_.ellipse() : edge_tracker_->hypothesis();
+      had_target_ ? last_target_.ellipse() : edge_tracker_->outline();
   const bool is_excluded =
       tracked && settings_.limits.accepts_axes(*tracked) && !settings.limits.accepts_axes(*tracked);
   is_lens_stale_ = is_lens_stale_ || is_other_camera;

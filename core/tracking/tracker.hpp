@@ -28,7 +28,8 @@ struct SearchScope {
 
 /// Tracks one elliptical target through a stream, by the method in TrackerSettings::tracking.
 ///
-/// One object serves one stream, one thread at a time. The same frames give the same targets.
+/// One object serves one stream, one thread at a time. The same frames give the same targets. With
+/// DetectorKind::kArcs process() allocates nothing in the steady state.
 class Tracker {
  public:
   /// Throws std::invalid_argument for invalid settings.
@@ -67,7 +68,7 @@ class Tracker {
   /// State after the last frame.
   [[nodiscard]] TrackerState state() const { return state_; }
 
-  /// Search region of the last frame [px].
+  /// The region that was read last in the last frame [px].
   [[nodiscard]] const Rect& search_region() const;
 
   /// Lens of the last frame. Valid until the next call.

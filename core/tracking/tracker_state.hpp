@@ -8,7 +8,7 @@ enum class TrackerState {
   kSearching,   ///< No target: the detector searches.
   kConfirming,  ///< A hypothesis is tracked, but not reported: its odds are below the limit.
   kFollowing,   ///< The target is tracked and reported.
-  kCoasting,    ///< The target is not visible in this frame; its predicted ellipse is reported.
+  kCoasting,    ///< Its matched edges do not determine its position: its prediction is reported.
 };
 
 }  // namespace ellipse

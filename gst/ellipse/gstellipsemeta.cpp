@@ -11,6 +11,7 @@
 #include "core/geometry/ellipse.hpp"
 #include "core/image/image_view.hpp"
 #include "gst/ellipse/enum_nick.hpp"
+#include "gst/ellipse/packed_covariance.hpp"
 
 GType gst_ellipse_role_get_type(void) {
   static const GEnumValue kValues[] = {
@@ -111,7 +112,8 @@ static Parameters parameters_of(const ellipse::Ellipse& e) {
   return {e.cx, e.cy, e.semi_major, e.semi_minor, e.angle_rad};
 }
 
-// Scales the covariance to first order, by differences of the parameters.
+// Scales the covariance to first order, by differences of the parameters; unknown if they leave the
+// ellipses.
 static void scale_covariance(GstEllipseMeta* meta,
                              const ellipse::Ellipse& before,
                              const Eigen::Vector2d& factors,
@@ -126,24 +128,18 @@ static void scale_covariance(GstEllipseMeta* meta,
     };
     const auto more = after(kStep);
     const auto less = after(-kStep);
-    if (!more || !less) return;
+    if (!more || !less) {
+      meta->sigma_px = 0.0;  // unknown
+      return;
+    }
     Parameters change = parameters_of(*more) - parameters_of(*less);
     change(4) = std::remainder(change(4), G_PI);
     jacobian.col(i) = change / (2.0 * kStep);
   }
-  Eigen::Matrix<double, 5, 5> covariance;
-  const gdouble* from = meta->covariance;
-  for (int i = 0; i < 5; ++i) {
-    for (int k = i; k < 5; ++k) covariance(i, k) = covariance(k, i) = *from++;
-  }
-  covariance = jacobian * covariance * jacobian.transpose();
-  gdouble* to = meta->covariance;
-  for (int i = 0; i < 5; ++i) {
-    for (int k = i; k < 5; ++k) *to++ = covariance(i, k);
-  }
-  const double half_sum = 0.5 * (covariance(0, 0) + covariance(1, 1));
-  const double half_difference = 0.5 * (covariance(0, 0) - covariance(1, 1));
-  meta->sigma_px = std::sqrt(half_sum + std::hypot(half_difference, covariance(0, 1)));
+  const Eigen::Matrix<double, 5, 5> covariance =
+      jacobian * unpacked_covariance<5>(meta->covariance) * jacobian.transpose();
+  pack_covariance<5>(covariance, meta->covariance);
+  meta->sigma_px = largest_sigma(covariance);
 }
 
 // Maps x to (x + 0.5) s - 0.5 in each direction: integer coordinates are pixel centres.

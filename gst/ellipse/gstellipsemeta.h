@@ -24,7 +24,8 @@ typedef enum {
  * GstEllipseState:
  * @GST_ELLIPSE_STATE_DETECTED: found by the detector, without a previous target
  * @GST_ELLIPSE_STATE_TRACKED: found from its previous position
- * @GST_ELLIPSE_STATE_PREDICTED: not visible; its motion is extrapolated
+ * @GST_ELLIPSE_STATE_PREDICTED: its matched edges do not determine the position, which is
+ *   extrapolated; the target may be visible
  *
  * How a target was found in its frame.
  *
@@ -55,8 +56,8 @@ GType gst_ellipse_state_get_type(void);
  * @angle_rad: major axis from +x towards +y, in (-pi/2, pi/2]
  * @contour_overlap: share of its contour's pixels on the ellipse, 0 to 1; for a target followed by
  *   its edges, share of all its visible edges that were matched
- * @ellipse_overlap: share of the ellipse's pixels on edges, 0 to 1; for a target followed by its
- *   edges, share of the visible outer edge that was matched
+ * @ellipse_overlap: share of the ellipse's perimeter on edges, 0 to 1; for a target followed by
+ *   its edges, share of the visible outer edge that was matched
  * @visible_fraction: share of the perimeter inside the frame, 0 to 1
  * @scale: frame scale at which it was found, a power of two
  * @roi_x: left edge of the search region, in px
@@ -91,7 +92,7 @@ GType gst_ellipse_state_get_type(void);
  * @other_position_z: the same
  * @position_covariance: covariance of the position in m^2: xx, xy, xz, yy, yz, zz
  * @n_outline: number of points of @outline; 0 if the ellipse is in image coordinates
- * @outline: x and y in px of points on the target's outline in distorted image coordinates, if the
+ * @outline: x and y in px of points on the ellipse's outline in distorted image coordinates, if the
  *   ellipse is in undistorted coordinates; NaN for points that the lens does not show
  * @probability: probability that it is a target, 0 to 1: with tracking=edges from all frames so
  *   far, otherwise from the detector in this frame; 1 if the detector gives none; 0 for the truth.

@@ -10,9 +10,10 @@ G_BEGIN_DECLS
  * @GST_ELLIPSE_TRACKER_STATE_SEARCHING: no target
  * @GST_ELLIPSE_TRACKER_STATE_CONFIRMING: an ellipse is followed, but its probability is too low
  * to report it
- * @GST_ELLIPSE_TRACKER_STATE_FOLLOWING: a visible target is reported
- * @GST_ELLIPSE_TRACKER_STATE_COASTING: a target is reported but not visible; its motion is
- * extrapolated
+ * @GST_ELLIPSE_TRACKER_STATE_FOLLOWING: a target is reported whose matched edges determine its
+ * position
+ * @GST_ELLIPSE_TRACKER_STATE_COASTING: a target is reported whose matched edges do not determine
+ * its position, which is extrapolated
  *
  * State of the tracker in a frame. With tracking=redetect and tracking=none it is either searching
  * or following.

@@ -10,7 +10,7 @@ void Lateness::observe(GstClockTime timestamp, GstClockTimeDiff jitter) {
                        : GST_CLOCK_TIME_NONE;
 }
 
-bool Lateness::should_skip(GstClockTime running_time) {
+bool Lateness::skips_next(GstClockTime running_time) {
   const bool is_late = GST_CLOCK_TIME_IS_VALID(running_time) &&
                        GST_CLOCK_TIME_IS_VALID(earliest_time_) && running_time <= earliest_time_;
   skipped_ = is_late && skipped_ < kMaxSkipped ? skipped_ + 1 : 0;

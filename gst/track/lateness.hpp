@@ -10,10 +10,10 @@ class Lateness {
   /// @param jitter     Its lateness [ns]; negative if it was early.
   void observe(GstClockTime timestamp, GstClockTimeDiff jitter);
 
-  /// Whether to skip the frame of this running time. Skipping helps if the analysis causes the
+  /// Counts a frame. @return Whether to skip it. Skipping helps if the analysis causes the
   /// lateness. Another element may cause it: after four skipped frames in a row one is analysed
   /// anyway, so that the target is not lost for good.
-  [[nodiscard]] bool should_skip(GstClockTime running_time);
+  [[nodiscard]] bool skips_next(GstClockTime running_time);
 
  private:
   GstClockTime earliest_time_ = GST_CLOCK_TIME_NONE;

@@ -29,7 +29,7 @@ bool LoadWatch::add(GstClockTime processing_time, GstClockTime limit) {
   return step_ != before;
 }
 
-bool LoadWatch::should_skip() {
+bool LoadWatch::skips_next() {
   skipped_ = skipped_ < skipped_in_a_row() ? skipped_ + 1 : 0;
   return skipped_ > 0;
 }

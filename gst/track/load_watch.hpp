@@ -14,8 +14,8 @@ class LoadWatch {
   /// @return Whether scale() or skipped_in_a_row() has changed.
   bool add(GstClockTime processing_time, GstClockTime limit);
 
-  /// Whether the next frame passes without analysis. Call once per frame.
-  [[nodiscard]] bool should_skip();
+  /// Counts a frame. @return Whether it passes without analysis.
+  [[nodiscard]] bool skips_next();
 
   [[nodiscard]] bool is_overloaded() const { return step_ > 0; }
   /// Finest frame scale to search: 1, 2, 4 or 8.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "gst/track/target_meta.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "gst/ellipse/enum_nick.hpp"
 #include "gst/ellipse/gstellipsesearchmeta.h"
+#include "gst/ellipse/packed_covariance.hpp"
 #include "gst/meta_ellipse.hpp"
 
 static GstEllipseTrackerState in_metadata(ellipse::TrackerState state) {
@@ -43,20 +43,7 @@ static void write_pose(GstEllipseMeta* meta, const ellipse::TargetPose& pose) {
   meta->has_position = TRUE;
   Eigen::Map<Eigen::Vector3d>(&meta->position_x) = pose.position_m;
   Eigen::Map<Eigen::Vector3d>(&meta->other_position_x) = pose.other_position_m;
-  gdouble* to = meta->position_covariance;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = i; k < 3; ++k) *to++ = pose.covariance_m2(i, k);
-  }
-}
-
-static void write_covariance(GstEllipseMeta* meta, const ellipse::RingMatrix& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> centre(covariance.topLeftCorner<2, 2>(),
-                                                              Eigen::EigenvaluesOnly);
-  meta->sigma_px = std::sqrt(centre.eigenvalues().maxCoeff());
-  gdouble* to = meta->covariance;
-  for (int i = 0; i < 5; ++i) {
-    for (int k = i; k < 5; ++k) *to++ = covariance(i, k);
-  }
+  pack_covariance<3>(pose.covariance_m2, meta->position_covariance);
 }
 
 static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
@@ -78,7 +65,8 @@ static const GstEllipseMeta* attach_target_meta(GstBuffer* buffer,
   meta->roi_width = static_cast<guint>(target.search_region.width);
   meta->roi_height = static_cast<guint>(target.search_region.height);
   meta->processing_time = processing_time;
-  write_covariance(meta, target.covariance);
+  pack_covariance<5>(target.covariance, meta->covariance);
+  meta->sigma_px = largest_sigma(target.covariance);
   if (target.pose) write_pose(meta, *target.pose);
   return meta;
 }

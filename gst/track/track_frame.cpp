@@ -4,6 +4,7 @@
 #include <bit>
 #include <exception>
 #include <string>
+#include <utility>
 
 #include "gst/meta_ellipse.hpp"
 #include "gst/overlay/blend.hpp"
@@ -85,14 +86,13 @@ static void report_latency(GstEllipseTrack* self) {
   if (frame % kLatencyInterval != 0 && !(frame < kLatencyInterval && std::has_single_bit(frame))) {
     return;
   }
-  bool is_news = false;
   GST_OBJECT_LOCK(self);
-  const GstClockTime latency = shared.stats.latency();
-  if (shared.is_live) {
-    is_news = latency > shared.reported_latency || 2 * latency < shared.reported_latency;
-  }
+  const TrackStats stats = shared.stats;
+  const GstClockTime reported = shared.reported_latency;
+  const bool is_live = shared.is_live;
   GST_OBJECT_UNLOCK(self);
-  if (!is_news) return;
+  const GstClockTime latency = stats.latency();
+  if (!is_live || (latency <= reported && 2 * latency >= reported)) return;
   GST_DEBUG_OBJECT(self, "latency is now %" GST_TIME_FORMAT, GST_TIME_ARGS(latency));
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
@@ -100,7 +100,7 @@ static void report_latency(GstEllipseTrack* self) {
 // Resets the tracker and reports a followed target as lost.
 static void reset_target(GstEllipseTrack* self,
                          const TrackProperties& properties,
-                         const FrameTimes& times = {}) {
+                         const FrameTimes& times) {
   self->stream->tracker.reset();
   self->stream->sighting = {};
   const std::optional<ellipse::Target> before = self->stream->last_target;
@@ -118,22 +118,27 @@ static void reset_target(GstEllipseTrack* self,
   emit_change(self, before, std::nullopt, nullptr);
 }
 
-static TrackProperties take_properties(GstEllipseTrack* self) {
+// Takes the request of the action "reset". @return Whether there was one.
+static bool take_reset(GstEllipseTrack* self) {
+  GST_OBJECT_LOCK(self);
+  const bool is_due = std::exchange(self->shared->reset_is_due, false);
+  GST_OBJECT_UNLOCK(self);
+  return is_due;
+}
+
+static TrackProperties copy_of_properties(GstEllipseTrack* self) {
   GST_OBJECT_LOCK(self);
   TrackProperties properties = self->shared->properties;
-  const bool reset_is_due = self->shared->reset_is_due;
-  self->shared->reset_is_due = false;
   GST_OBJECT_UNLOCK(self);
-  if (reset_is_due) reset_target(self, properties);
   return properties;
 }
 
-static bool is_too_late(GstEllipseTrack* self, const FrameTimes& times) {
+static bool skips_late(GstEllipseTrack* self, const FrameTimes& times) {
   if (!gst_base_transform_is_qos_enabled(GST_BASE_TRANSFORM(self))) return false;
   GST_OBJECT_LOCK(self);
-  const bool is_too_late = self->shared->lateness.should_skip(times.running);
+  const bool is_late = self->shared->lateness.skips_next(times.running);
   GST_OBJECT_UNLOCK(self);
-  return is_too_late;
+  return is_late;
 }
 
 static void watch_load(GstEllipseTrack* self,
@@ -147,16 +152,15 @@ static void watch_load(GstEllipseTrack* self,
   post_load_message(GST_ELEMENT(self), times, load, processing_time, limit);
 }
 
-static std::optional<Skip> reason_to_skip(GstEllipseTrack* self,
-                                          const FrameTimes& times,
-                                          const TrackProperties& properties,
-                                          const ellipse::Rect& bounds) {
+// Counts the frame. @return Why it passes without analysis; nullopt if it is analysed.
+static std::optional<Skip> count_frame(GstEllipseTrack* self,
+                                       const FrameTimes& times,
+                                       const TrackProperties& properties,
+                                       const ellipse::Rect& bounds) {
   if (self->stream->frame++ % properties.interval != 0) return Skip::kInterval;
   if (bounds.empty()) return Skip::kRegion;
-  if (is_too_late(self, times)) return Skip::kLate;
-  // Without a limit no frame is skipped: reset the load watch.
-  if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);
-  if (self->stream->load.should_skip()) return Skip::kLoad;
+  if (skips_late(self, times)) return Skip::kLate;
+  if (self->stream->load.skips_next()) return Skip::kLoad;
   return std::nullopt;
 }
 
@@ -251,10 +255,12 @@ static void pass_on(GstEllipseTrack* self, GstBuffer* buffer) {
   const FrameTimes times = times_of(base, buffer);
   if (GST_CLOCK_TIME_IS_VALID(times.stream)) gst_object_sync_values(GST_OBJECT(self), times.stream);
 
-  const TrackProperties properties = take_properties(self);
+  const TrackProperties properties = copy_of_properties(self);
+  if (take_reset(self)) reset_target(self, properties, times);
+  if (properties.max_processing_time == 0) watch_load(self, times, 0, 0);  // no limit, no overload
   const GstVideoInfo& info = GST_VIDEO_FILTER(base)->in_info;
   const ellipse::Rect bounds = search_bounds(buffer, info, properties);
-  if (const auto reason = reason_to_skip(self, times, properties, bounds)) {
+  if (const auto reason = count_frame(self, times, properties, bounds)) {
     if (*reason == Skip::kRegion) {
       warn_of_empty_region(self, properties, frame_of(buffer, info));
       reset_target(self, properties, times);
@@ -276,10 +282,9 @@ void reset_stream(GstEllipseTrack* self) {
   GST_DEBUG_OBJECT(self, "tracker reset");
   succeeds(self, "Cannot reset the tracker", [self] {
     GST_OBJECT_LOCK(self);
-    const TrackProperties properties = self->shared->properties;
     self->shared->lateness = Lateness();
     GST_OBJECT_UNLOCK(self);
-    reset_target(self, properties);
+    reset_target(self, copy_of_properties(self), {});
   });
   watch_load(self, {}, 0, 0);
   self->stream->is_region_empty = false;

@@ -90,23 +90,23 @@ TEST(LoadWatch, SkipsEvenly) {
   LoadWatch load;
   for (int step = 0; step < 5; ++step) frames_until_change(load, 2 * kLimit);
   std::string pattern;
-  for (int i = 0; i < 9; ++i) pattern += load.should_skip() ? '.' : 'x';
+  for (int i = 0; i < 9; ++i) pattern += load.skips_next() ? '.' : 'x';
   EXPECT_EQ(pattern, "...x...x.");
 }
 
 TEST(Lateness, KeepsOneFrameInFive) {
   Lateness lateness;
-  EXPECT_FALSE(lateness.should_skip(0));
+  EXPECT_FALSE(lateness.skips_next(0));
   lateness.observe(100, 1000);
   std::string pattern;
   for (GstClockTime time = 200; time < 212; ++time) {
-    pattern += lateness.should_skip(time) ? '.' : 'x';
+    pattern += lateness.skips_next(time) ? '.' : 'x';
   }
   EXPECT_EQ(pattern, "....x....x..");
-  EXPECT_FALSE(lateness.should_skip(2101));  // 100 + 2 x 1000 has passed
-  EXPECT_FALSE(lateness.should_skip(GST_CLOCK_TIME_NONE));
+  EXPECT_FALSE(lateness.skips_next(2101));  // 100 + 2 x 1000 has passed
+  EXPECT_FALSE(lateness.skips_next(GST_CLOCK_TIME_NONE));
   lateness.observe(100, -50);
-  EXPECT_FALSE(lateness.should_skip(50));
+  EXPECT_FALSE(lateness.skips_next(50));
 }
 
 TEST(TrackStats, ReportsTimesOfTheLastFrames) {

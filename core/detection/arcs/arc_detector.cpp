@@ -45,10 +45,10 @@ bool is_large_enough(const Ellipse& e, int scale) {
 }
 
 // Minimum probability in a reduced picture: excludes only ellipses that are ruled out, since the
-// finer scales judge the others. A minimum of 1 accepts none.
+// finer scales judge the others.
 double required_when_reduced(const Thresholds& thresholds) {
   const double required = thresholds.min_probability;
-  return required < 1.0 ? std::min(required, probability_of(-kCertainLogOdds)) : required;
+  return thresholds.accepts_any() ? std::min(required, probability_of(-kCertainLogOdds)) : required;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void ArcDetector::find_edges(int scale, const Thresholds& thresholds) {
   chains_.trace(map);
 }
 
-// The outline, if the edges of this scale keep it in place [px of the frame]. Uses its better
+// The outline, if the edges of this scale keep it in place [px of the picture]. Uses its better
 // polarity, or both if they make an unlikely outline more probable.
 std::optional<MeasuredEllipse> ArcDetector::judged_at(int scale,
                                                       const Ellipse& e,
@@ -230,7 +230,7 @@ void ArcDetector::try_guess(const Guess& guess,
   }
   // Edges of both polarities count only if they make the outline likely.
   const bool is_measured = measured.probability > 0.0 && measured.polarity != Polarity::kMixed;
-  if (thresholds.min_probability < 1.0 && is_measured && !is_likely(measured)) {
+  if (thresholds.accepts_any() && is_measured && !is_likely(measured)) {
     Thresholds likely = thresholds;
     likely.min_probability = std::max(probability_of(0.0), thresholds.min_probability);
     try_guess({measured.ellipse, Polarity::kMixed, guess.rms_px}, pieces, likely);
@@ -392,8 +392,8 @@ void ArcDetector::trace_arcs() {
   TracedPass& pass = trace_->pass();
   const Eigen::Vector2i origin = origin_in_pass();
   for (const std::int32_t pixel : chains_.pixels()) {
-    pass.points.push_back(
-        {origin.x() + pixel % map_->stride(), origin.y() + pixel / map_->stride()});
+    const Eigen::Vector2i point = origin + map_->pixel_at(pixel);
+    pass.points.push_back({point.x(), point.y()});
   }
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     const std::size_t begin = pass.chains.empty() ? 0 : pass.chains.back().end;

@@ -12,7 +12,7 @@ namespace ellipse {
 namespace {
 
 // Found by experiment, see docs/provenance.md.
-constexpr std::size_t kEnoughPoints = 32;  // maximum per arc in its moments
+constexpr std::size_t kMaxPoints = 32;     // maximum per arc in its moments
 constexpr std::size_t kCornerReach = 3;    // [px] on each side of a corner
 constexpr double kCornerTurn = 0.9;        // [rad] across both sides
 constexpr double kRetreatOverNoise = 5.0;  // reverse turn that ends an arc, in sigma
@@ -35,16 +35,10 @@ void to_angles(float* __restrict x,
   }
 }
 
-Eigen::Vector2d position_of(std::int32_t pixel, int stride) {
-  const int x = pixel % stride;
-  const int y = pixel / stride;
-  return Eigen::Vector2i(x, y).cast<double>();
-}
-
 // The sub-pixel position of a gradient maximum, in the ideal plane.
 Eigen::Vector2d maximum_at(const GradientMap& map, std::int32_t pixel) {
   const Eigen::Vector2d offset = subpixel_offset(map.gradients() + pixel, map.stride());
-  return map.lens().approximate_ideal(position_of(pixel, map.stride()) + offset);
+  return map.lens().approximate_ideal(map.pixel_at(pixel).cast<double>() + offset);
 }
 
 // Transforms a normal from the picture to the ideal plane, at the point `ideal_px`.
@@ -112,7 +106,7 @@ Moments ArcSplitter::moments_of(const GradientMap& map, std::size_t begin, std::
   // One origin for all arcs, so that their moments can be added.
   Moments moments(Eigen::Vector2d(0.5 * map.width(), 0.5 * map.height()));
   // A few points suffice: the guess is refined on the edges later.
-  const std::size_t step = (end - begin) / kEnoughPoints + 1;
+  const std::size_t step = (end - begin) / kMaxPoints + 1;
   for (std::size_t i = begin + step / 2; i < end; i += step) {
     const Eigen::Vector2d point = maximum_at(map, pixels_[i]);
     if (point.allFinite()) moments.add(point, static_cast<double>(step));

@@ -158,7 +158,8 @@ Verdict EllipseVerifier::judge_edges() const {
   return at_least(Reason::kTooFewEdges, edges, double(kMinEdgesOfEllipse));
 }
 
-// Rejects a candidate that is unlikely to reach the minimum probability in the remaining steps.
+// Rejects a candidate that is unlikely to reach the minimum probability in the remaining steps. If
+// none is accepted, all are measured.
 Verdict EllipseVerifier::judge_prospect(double max_growth,
                                         const Thresholds& thresholds,
                                         const EvidenceTable& table,
@@ -167,7 +168,7 @@ Verdict EllipseVerifier::judge_prospect(double max_growth,
   if (!enough.is_accepted()) return enough;
   const double required = thresholds.min_probability;
   const double reachable = table.log_odds(measured.features) + max_growth;
-  if (required == 1.0 || reachable >= log_odds(required)) return {};
+  if (!thresholds.accepts_any() || reachable >= log_odds(required)) return {};
   return at_least(Reason::kUnlikely, table.probability(measured.features), required);
 }
 
@@ -239,7 +240,8 @@ void EllipseVerifier::set_features(const OutlineSupport& found,
   set(Feature::kDeviation, std::log(kFloor.deviation + deviation));
   set(Feature::kChanges, share_of_changes(edges));
   set(Feature::kContrast, std::log(signal_to_noise));
-  set(Feature::kCorners, 0.0);
+  set(Feature::kCorners,
+      0.0);  // measured last; its weight is negative: no corners are the best case
 }
 
 Polarity EllipseVerifier::better_polarity(const GradientMap& map, const Ellipse& e) {

@@ -44,6 +44,8 @@ struct ImageLevels {
 };
 
 /// Searches an image for the edges of a pad along their normals.
+///
+/// One object serves one thread. Deterministic. Allocates at the first sample().
 class EdgeSearch {
  public:
   /// Places kSamples on all visible edges, evenly by their length in the image.

@@ -40,8 +40,8 @@ struct HomographyFilter {
   /// Updates with a measurement of the outer circle whose errors are independent of the filter's.
   /// @param change      T, S and E from the view to the measured circle.
   /// @param errors      Covariance of the measurement.
-  /// @param considered  Covariance of errors of the view that the filter does not contain; it does
-  ///                    not contain them afterwards either.
+  /// @param considered  Covariance of the view due to model errors. It is not part of `covariance`,
+  ///                    before or after the update [Schmidt1966].
   /// @return The gain: times `change`, the correction of the view.
   [[nodiscard]] RingGain correct_by_ring(const RingChange& change,
                                          const RingMatrix& errors,
@@ -51,6 +51,7 @@ struct HomographyFilter {
   void fix_rotation();
 };
 
+/// Not defined for a singular matrix.
 [[nodiscard]] HomographyCovariance inverse_of(const HomographyCovariance& matrix);
 
 /// Growth of the velocity's covariance per second under random camera motion.

@@ -24,7 +24,7 @@ bool refuted(const Matches& feature) {
 }
 
 // Whether it is matched significantly more often than not.
-bool confirmed(const Matches& feature) {
+bool is_supported(const Matches& feature) {
   return is_refuted(feature.visible - feature.matched, feature.visible);
 }
 
@@ -112,11 +112,12 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
   if (support.visible == 0) return support;
   support.coverage = static_cast<double>(support.matched) / support.visible;
   const auto& [outer_visible, outer_matched] = features[0];
-  if (outer_visible > 0) support.outline = static_cast<double>(outer_matched) / outer_visible;
+  if (outer_visible > 0)
+    support.outer_coverage = static_cast<double>(outer_matched) / outer_visible;
   const auto inside = std::span(features).subspan(1);
   const bool is_one_refuted = std::any_of(inside.begin(), inside.begin() + circles - 1, refuted);
-  const bool is_one_confirmed = std::any_of(inside.begin(), inside.end(), confirmed);
-  support.has_circles = !refuted(features[0]) && (!is_one_refuted || is_one_confirmed);
+  const bool is_one_supported = std::any_of(inside.begin(), inside.end(), is_supported);
+  support.has_circles = !refuted(features[0]) && (!is_one_refuted || is_one_supported);
   if (support.matched > 0) {
     const auto matched = static_cast<std::size_t>(support.matched);
     support.gain = median(std::span(gains).first(matched));

@@ -26,12 +26,12 @@ struct HomographyEstimate {
 
 /// How well a change agrees with the samples.
 struct HomographySupport {
-  int visible = 0;             ///< Visible samples.
-  int matched = 0;             ///< Of these, with an edge within the tolerance.
-  double coverage = 0.0;       ///< matched over visible.
-  double outline = 0.0;        ///< The same of the outer circle alone; 0 if none of it is visible.
-  double gain = 1.0;           ///< Median ratio of image contrast to model contrast.
-  double relative_gain = 0.0;  ///< The same of relative contrast [1 / grey level].
+  int visible = 0;              ///< Visible samples.
+  int matched = 0;              ///< Of these, with an edge within the tolerance.
+  double coverage = 0.0;        ///< matched over visible.
+  double outer_coverage = 0.0;  ///< The same of the outer circle alone; 0 if none of it is visible.
+  double gain = 1.0;            ///< Median ratio of image contrast to model contrast.
+  double relative_gain = 0.0;   ///< The same of relative contrast [1 / grey level].
   /// No visible circle is refuted; or only inner ones are, while another one or the lines are
   /// matched significantly more often than not. An inner one may be in shadow, or another pattern
   /// that looks like a circle from afar.

@@ -64,7 +64,8 @@ Eigen::Vector2d LineLearner::pad_point_of(int column, int row) {
 }
 
 Eigen::Vector2d LineLearner::pad_point_of(std::int32_t pixel) const {
-  return pad_point_of(pixel % map_.stride(), pixel / map_.stride());
+  const Eigen::Vector2i at = map_.pixel_at(pixel);
+  return pad_point_of(at.x(), at.y());
 }
 
 double LineLearner::min_contrast(const PadModel& model) {

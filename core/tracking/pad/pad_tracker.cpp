@@ -353,7 +353,7 @@ std::optional<PadTrack> PadTracker::make_track(const Attempt* attempt) const {
   track.coverage = last_coverage_;
   if (attempt == nullptr) return track;
   track.coverage = attempt->support.coverage;
-  track.outline = attempt->support.outline;
+  track.outer_coverage = attempt->support.outer_coverage;
   track.is_visible = centre_sigma(covariance()) <= kMaxCentreSigma;
   return track;
 }

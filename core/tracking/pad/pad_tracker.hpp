@@ -27,10 +27,10 @@ struct PadFrame {
 
 /// Tracking result of one frame.
 struct PadTrack {
-  Ellipse ellipse;          ///< The outer circle [px of the frame's ideal plane].
-  double coverage = 0.0;    ///< Matched share of the pad's visible edges.
-  double outline = 0.0;     ///< The same of its outer edge alone.
-  bool is_visible = false;  ///< The matches determine the centre; else it is predicted.
+  Ellipse ellipse;              ///< The outer circle [px of the frame's ideal plane].
+  double coverage = 0.0;        ///< Matched share of the pad's visible edges.
+  double outer_coverage = 0.0;  ///< The same of its outer edge alone.
+  bool is_visible = false;      ///< The matches determine the centre; else it is predicted.
 };
 
 /// Tracks a pad by its edges: predicts its view, searches each edge along its normal, and solves

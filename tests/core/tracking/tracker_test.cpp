@@ -127,6 +127,16 @@ TEST(Tracker, RejectsInvalidSettingsAndKeepsTheOldOnes) {
   EXPECT_TRUE(tracker.process(picture.view(), 0));
 }
 
+TEST(Tracker, RejectsFocalLengthsBelowAPixel) {
+  TrackerSettings settings;
+  for (double* focal_px : {&settings.fx_px, &settings.fy_px}) {
+    *focal_px = 0.9;
+    EXPECT_THROW(Tracker{settings}, std::invalid_argument);
+    *focal_px = 1.0;
+    EXPECT_NO_THROW(Tracker{settings});
+  }
+}
+
 TEST(Tracker, RoundsTheFinestScaleToOneThatExists) {
   const GrayPicture picture = rendered(plain_ring(), {300.0, 200.0, 90.0, 70.0, 0.3}, 640, 360);
   for (const auto mode : {TrackingMode::kNone, TrackingMode::kRedetect, TrackingMode::kEdges}) {

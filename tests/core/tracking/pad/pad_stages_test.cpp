@@ -844,7 +844,7 @@ TEST(Support, NeedsTheOuterCircle) {
   PadModel model = ring_model();
   model.circles[0].is_bright_outside = false;
   const HomographySupport support = support_on(Pattern::kRing, model);
-  EXPECT_EQ(support.outline, 0.0);
+  EXPECT_EQ(support.outer_coverage, 0.0);
   EXPECT_FALSE(support.has_circles);
 }
 
