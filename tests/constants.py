@@ -206,17 +206,35 @@ def vary(arguments):
             print("| " + " | ".join(cells) + " |", file=arguments.out, flush=True)
 
 
+def sentences_of(text):
+    """The sentences of the document that count rows of its table."""
+    rows = [[cell.strip() for cell in line.split(" | ")] for line in text.splitlines() if "` | `k" in line]
+    sources = [row[4] for row in rows]
+    varied = [row for row in rows if row[-1].rstrip(" |") not in ("fixed", "n/a", "not varied")]
+    idle = [row for row in varied if row[-2] == "-" and row[-1].rstrip(" |") == "-"]
+    chosen = sum(row[4].startswith(("experiment", "calibrated")) for row in idle)
+    undocumented = sum("not documented" in source for source in sources)
+    return [
+        f"{len(idle)} of the {len(varied)} varied constants show no effect, among them {chosen} that were chosen",
+        f"For {undocumented} constants no document shows the choice",
+    ]
+
+
 def check(arguments):
-    """Compares rows "| `file` | `kName` | value | ..." with the code, in any order."""
-    rows = re.findall(r"^\| `([\w/.]+)` \| `(k\w+)` \| ([^|]+) \|", arguments.table.read(), re.MULTILINE)
+    """Compares rows "| `file` | `kName` | value | ..." with the code, in any order, and with the text."""
+    text = arguments.table.read()
+    rows = re.findall(r"^\| `([\w/.]+)` \| `(k\w+)` \| ([^|]+) \|", text, re.MULTILINE)
+    missing = [sentence for sentence in sentences_of(text) if sentence not in text]
     listed = {f"{file} {name} = {value.strip()}" for file, name, value in rows}
     actual = {f"{c.file.removeprefix('core/')} {c.name} = {c.value}" for c in find_constants(core_files())}
     for line in sorted(actual - listed):
         print("constants.py: not in the table:", line)
     for line in sorted(listed - actual):
         print("constants.py: not in core/:", line)
+    for sentence in missing:
+        print("constants.py: the text should say:", sentence)
     print(f"{len(actual)} constants")
-    return listed != actual
+    return listed != actual or bool(missing)
 
 
 def main():

@@ -3,6 +3,7 @@
 
 #include <gio/gio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -50,10 +51,24 @@ void write_data(std::ostream& script, const Panel& panel, std::size_t number) {
   script << "EOD\n";
 }
 
+// Bars begin at 0. Curves of shares begin below the lowest point, at a multiple of .05.
+std::string y_range_of(const Panel& panel) {
+  if (!panel.is_share) return "[0:*]";
+  if (!panel.ranges.empty()) return "[0:1.03]";
+  double lowest = 1.0;
+  for (const Curve& curve : panel.curves) {
+    for (const double y : curve.y) lowest = std::isfinite(y) ? std::min(lowest, y) : lowest;
+  }
+  const double first = std::max(0.0, std::floor(20.0 * (lowest - 0.01)) / 20.0);
+  std::ostringstream range;
+  range << '[' << first << ':' << 1.0 + 0.03 * (1.0 - first) << ']';
+  return range.str();
+}
+
 void write_panel(std::ostream& script, const Panel& panel, std::size_t number) {
   script << "set title " << quoted(panel.title) << "\nset xlabel " << quoted(panel.x_label)
-         << "\nset ylabel " << quoted(panel.y_label) << "\nset yrange "
-         << (panel.is_share ? "[0:1.03]" : "[0:*]") << '\n';
+         << "\nset ylabel " << quoted(panel.y_label) << "\nset yrange " << y_range_of(panel)
+         << '\n';
   if (panel.ranges.empty()) {
     script << "set xtics auto norotate\nset xrange [*:*]\n";
   } else {

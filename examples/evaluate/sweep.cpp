@@ -167,7 +167,7 @@ void write_sweep(const Sweep& sweep,
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 
   const std::vector<Panel> panels = {
-      panel_of(sweep, evaluation, "Measures", "", {"accuracy", "recall", "F1"}),
+      panel_of(sweep, evaluation, "Measures", "", {"accuracy", "precision", "recall", "F1"}),
       panel_of(sweep, evaluation, "Right", "frames", {"TP", "TN"}),
       panel_of(sweep, evaluation, "False", "frames", {"FP", "FN", "WD"}),
       panel_of(sweep, evaluation, "Time per frame", "ms", {"average_ms", "median_ms"}),
