@@ -136,8 +136,8 @@ static void scale_covariance(GstEllipseMeta* meta,
     change(4) = std::remainder(change(4), G_PI);
     jacobian.col(i) = change / (2.0 * kStep);
   }
-  const Eigen::Matrix<double, 5, 5> covariance =
-      jacobian * unpacked_covariance<5>(meta->covariance) * jacobian.transpose();
+  Eigen::Matrix<double, 5, 5> covariance = unpacked_covariance<5>(meta->covariance);
+  covariance = jacobian * covariance * jacobian.transpose();
   pack_covariance<5>(covariance, meta->covariance);
   meta->sigma_px = largest_sigma(covariance);
 }

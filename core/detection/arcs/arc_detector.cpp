@@ -305,13 +305,8 @@ bool ArcDetector::has_certain_target(int scale, const Thresholds& thresholds) {
 // the square root of its resolution: reduction hides the corners of a polygon, which show again at
 // the finer scales. Skips a scale whose noise may hide the outline, since blur reduces the gradient
 // by up to the ratio of the scales. The threshold of a finer scale is at least that of the coarser
-// one: compression removes fine noise, but not the errors that it causes. A finer scale decides by
-// its evidence alone, at least -kCertainLogOdds.
+// one: compression removes fine noise, but not the errors that it causes.
 double ArcDetector::confirmed_log_odds(const FoundEllipse& found, const Thresholds& thresholds) {
-  Thresholds limits = thresholds;
-  limits.contour_overlap = limits.ellipse_overlap = 0.0;
-  limits.min_contour_size = 0;
-  limits.min_probability = probability_of(-kCertainLogOdds);
   const MeasuredEllipse& measured = found.measured;
   double high = pyramid_.map_at(found.scale).thresholds().high;
   double sum = log_odds(measured.probability);
@@ -322,8 +317,8 @@ double ArcDetector::confirmed_log_odds(const FoundEllipse& found, const Threshol
     if (measured.gradient * scale / found.scale < kGradientGain * high) continue;
     const Ellipse guess = to_region(measured.ellipse, {}, scale);
     MeasuredEllipse finer;
-    const Verdict verdict =
-        verifier_.verify(map, guess, measured.polarity, limits.at_scale(scale), evidence_, finer);
+    const Verdict verdict = verifier_.verify(
+        map, guess, measured.polarity, thresholds.at_scale(scale), evidence_, finer);
     const bool holds = verdict.is_accepted() && is_same_inside(finer.ellipse, guess, map);
     const double weight = std::sqrt(static_cast<double>(found.scale) / scale);
     sum += weight * (holds ? log_odds(finer.probability) : -kCertainLogOdds);
@@ -332,7 +327,11 @@ double ArcDetector::confirmed_log_odds(const FoundEllipse& found, const Threshol
   return sum / weights;
 }
 
-void ArcDetector::confirm_at_finer_scales(const Thresholds& thresholds) {
+void ArcDetector::confirm_at_finer_scales(const Thresholds& full) {
+  Thresholds thresholds = full;
+  thresholds.contour_overlap = thresholds.ellipse_overlap = 0.0;
+  thresholds.min_contour_size = 0;
+  thresholds.min_probability = probability_of(-kCertainLogOdds);
   for (FoundEllipse& found : found_.all()) {
     found.measured.probability = probability_of(confirmed_log_odds(found, thresholds));
   }
