@@ -88,6 +88,7 @@ struct PoseEvidence {
 class PoseEstimator {
  public:
   /// Call once per frame, also without a target.
+  /// @param elapsed_s  Since the previous frame.
   void advance(double elapsed_s) { inner_.elapsed_s += elapsed_s; }
 
   /// @param ideal        The target's outer edge, in the ideal plane.

@@ -79,7 +79,7 @@ class EdgeTracker {
   OutlineJudge judge_;  // of the hypothesis
 
   TrackerState state_ = TrackerState::kSearching;
-  std::optional<Ellipse> hypothesis_;  // when it was last found or predicted
+  std::optional<Ellipse> hypothesis_;  // its outline when it was last found or predicted
   bool is_pad_ = false;                // whether the target is the pad's outline
   std::uint64_t id_ = 0;               // of the hypothesis, if it is reported
   double since_detection_s_ = 0.0;     // since the detector ran

@@ -110,10 +110,10 @@ HomographySupport support_of(std::span<const EdgeSample> samples,
     feature.matched += has_edge ? 1 : 0;
   }
   if (support.visible == 0) return support;
-  support.coverage = static_cast<double>(support.matched) / support.visible;
+  const auto share = [](int part, int whole) { return part / static_cast<double>(whole); };
+  support.coverage = share(support.matched, support.visible);
   const auto& [outer_visible, outer_matched] = features[0];
-  if (outer_visible > 0)
-    support.outer_coverage = static_cast<double>(outer_matched) / outer_visible;
+  if (outer_visible > 0) support.outer_coverage = share(outer_matched, outer_visible);
   const auto inside = std::span(features).subspan(1);
   const bool is_one_refuted = std::any_of(inside.begin(), inside.begin() + circles - 1, refuted);
   const bool is_one_supported = std::any_of(inside.begin(), inside.end(), is_supported);
