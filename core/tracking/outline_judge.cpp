@@ -32,14 +32,12 @@ Picture part_around(const Picture& picture, const Ellipse& outline) {
 void OutlineJudge::start(double log_odds, double prior) {
   odds_.start(log_odds, prior);
   since_judged_s_ = 0.0;
-  max_visible_ = 0.0;
   judged_overlap_ = 1.0;
 }
 
 void OutlineJudge::add_detection(double log_odds, double prior) {
   add(log_odds);
   odds_.raise(log_odds, prior);
-  max_visible_ = 0.0;
   judged_overlap_ = 1.0;
 }
 
@@ -47,7 +45,6 @@ void OutlineJudge::judge(Detector& detector,
                          const Picture& picture,
                          const Target& target,
                          const Thresholds& limits) {
-  max_visible_ = std::max(max_visible_, target.visible_fraction);
   if (is_due(target)) (void)evaluate(detector, picture, target, limits);
 }
 
@@ -57,7 +54,7 @@ std::optional<double> OutlineJudge::evaluate(Detector& detector,
                                              const Thresholds& limits) {
   if (since_judged_s_ == 0.0) return odds_.last();  // already in this frame
   const auto outline = distorted(picture.lens.part(-picture.origin_px), target.ellipse);
-  if (!outline || is_short_arc(target)) return std::nullopt;
+  if (!outline || target.visible_fraction < kMajority) return std::nullopt;
   judged_overlap_ = target.ellipse_overlap;
   const Picture part = part_around(picture, *outline);
   Thresholds thresholds = limits;
@@ -73,12 +70,6 @@ std::optional<double> OutlineJudge::evaluate(Detector& detector,
 bool OutlineJudge::is_due(const Target& target) const {
   const bool is_less_matched = target.ellipse_overlap < judged_overlap_ - kLessMatched;
   return !is_certain() || is_less_matched || since_judged_s_ >= kCheckPeriod_s;
-}
-
-// A short arc is weak evidence against a certain outline that was more visible since the last
-// detection.
-bool OutlineJudge::is_short_arc(const Target& target) const {
-  return is_certain() && target.visible_fraction < std::min(kMajority, max_visible_);
 }
 
 bool OutlineJudge::is_certain() const {

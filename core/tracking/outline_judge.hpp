@@ -42,7 +42,8 @@ class OutlineJudge {
   /// Evaluates the outline now, whether or not it is due, at most once per frame, and adds the
   /// result to the odds. Parameters as above.
   /// @return Its log odds in this frame, bounded as in TargetOdds; nullopt if they are unknown, or
-  ///         if only a short arc of a certain outline is visible.
+  ///         if less than half of the outline is visible: a short arc hardly shows what it is, and
+  ///         the pad was locked when most of it was visible.
   std::optional<double> evaluate(Detector& detector,
                                  const Picture& picture,
                                  const Target& target,
@@ -57,12 +58,10 @@ class OutlineJudge {
 
  private:
   [[nodiscard]] bool is_due(const Target& target) const;
-  [[nodiscard]] bool is_short_arc(const Target& target) const;
   void add(double log_odds);
 
   TargetOdds odds_;
   double since_judged_s_ = 0.0;
-  double max_visible_ = 0.0;     // max visible share of the perimeter since the last detection
   double judged_overlap_ = 1.0;  // matched share of the outline at the last evaluation; 1 before it
 };
 

@@ -74,9 +74,6 @@ void Controller::look(const Observation& seen) {
   if (!platform_.see(seen.time_s, seen.own.position + *seen.pad, error)) {
     consecutive_ = 0;
     rejected_ = rejected_ % kMaxRejected + 1;
-    // The filter may have taken the height from a wrong ellipse, such as the ring's inner edge. The
-    // radio corrects the level axes.
-    if (is_off_target()) platform_.restart_height(seen.own.position.z() + seen.pad->z());
     return;
   }
   rejected_ = 0;

@@ -14,6 +14,7 @@ constexpr double kFade_s = 4.0;        // time constant of an acceleration
 constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
 constexpr double kUprightJerk = 1e-5;  // small: the platform drives on level ground
 constexpr double kGate = 25.0;         // squared innovation / variance
+constexpr double kDoubt = 2.0;         // growth of the variance by a rejected position
 constexpr double kHeightError = 0.5;   // platform height, standard deviation [m]
 constexpr double kHeightDrift = 0.1;   // vertical dead reckoning, standard deviation [m/s]
 constexpr double kMaxSpeed = 15.0;     // of any platform [m/s]
@@ -34,10 +35,6 @@ TargetFilter::Axis TargetFilter::upright_axis(double height) {
   return {{height, 0.0, 0.0},
           Vector3d(kHeightError, kHeightDrift, 0.01).cwiseAbs2().asDiagonal(),
           kUprightJerk};
-}
-
-void TargetFilter::restart_height(double height) {
-  axes_[2] = upright_axis(height);
 }
 
 TargetFilter::Axis TargetFilter::level_axis(double position,
@@ -91,10 +88,15 @@ void TargetFilter::move_to(double time_s) {
 bool TargetFilter::see(double time_s, const Vector3d& position, const Vector3d& error) {
   move_to(time_s);
   const Vector3d variance = error.cwiseAbs2();
+  if (!position.allFinite() || !variance.allFinite()) return false;
+  bool is_outlier = false;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (!(normalized_innovation(axis, position[i], variance[i]) <= kGate)) return false;  // or NaN
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (normalized_innovation(axis, position[i], variance[i]) <= kGate) continue;
+    axis.covariance *= kDoubt;
+    is_outlier = true;
   }
+  if (is_outlier) return false;
   for (Eigen::Index i = 0; i < 3; ++i) {
     correct(axes_[static_cast<std::size_t>(i)], 0, position[i], variance[i]);
   }

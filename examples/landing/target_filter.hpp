@@ -17,13 +17,12 @@ class TargetFilter {
                double position_error,
                double velocity_error);
 
-  /// Updates with a detection, in order of time.
+  /// Updates with a detection, in order of time. An outlier is rejected and casts doubt on the
+  /// state, too: the uncertainty of the coordinates that it contradicts grows, so that the filter
+  /// recovers when the former detections were wrong.
   /// @param error  Standard deviations of the coordinates [m].
-  /// @return false if it is rejected as an outlier and ignored.
+  /// @return false if it is rejected, or not finite.
   bool see(double time_s, const Eigen::Vector3d& position, const Eigen::Vector3d& error);
-
-  /// Forgets the height, which came from a wrong object, and starts at this one [m].
-  void restart_height(double height);
 
   /// Updates with a radio report of position and velocity. A report that contradicts the state
   /// resets it, because the detections must have been of another object.

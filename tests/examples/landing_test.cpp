@@ -147,6 +147,33 @@ TEST(TargetFilter, EstimatesVelocityAndRejectsOutliers) {
   EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
 }
 
+// For half a second the detections are off by less than the gate rejects at once.
+TEST(TargetFilter, RecoversFromWrongDetections) {
+  TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
+  for (int i = 0; i < 15; ++i) {
+    ASSERT_TRUE(filter.see(i / 30.0, {0.3, 0.0, 0.0}, Vector3d::Constant(0.01))) << i;
+  }
+  int rejected = 0;
+  for (int i = 15; i < 30; ++i) {
+    if (!filter.see(i / 30.0, Vector3d::Zero(), Vector3d::Constant(0.01))) ++rejected;
+  }
+  EXPECT_GE(rejected, 1);
+  EXPECT_LE(rejected, 4);
+  EXPECT_NEAR(filter.at(1.0).position.x(), 0.0, 0.05);
+}
+
+// A target at the wrong place is rejected for longer, so that it can be forgotten.
+TEST(TargetFilter, RejectsAnotherObjectRepeatedly) {
+  TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    ASSERT_TRUE(filter.see(i / 30.0, Vector3d::Zero(), Vector3d::Constant(0.02))) << i;
+  }
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(filter.see(2.0 + i / 30.0, {0.0, 0.0, -8.5}, Vector3d::Constant(0.1))) << i;
+  }
+  EXPECT_NEAR(filter.at(2.2).position.z(), 0.0, 0.05);
+}
+
 TEST(TargetFilter, RejectsWhatIsNotANumber) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
