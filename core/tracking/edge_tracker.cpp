@@ -31,11 +31,17 @@ void EdgeTracker::configure(const TrackerSettings& settings) {
 void EdgeTracker::reset() {
   state_ = TrackerState::kSearching;
   hypothesis_.reset();
+  is_pad_ = false;
   pad_tracker_.forget();
 }
 
 std::optional<Ellipse> EdgeTracker::outline() const {
   return pad_tracker_.is_locked() ? pad_tracker_.outline() : hypothesis_;
+}
+
+PoseEvidence EdgeTracker::pose_evidence() const {
+  if (!is_pad_) return {};
+  return {.inner_edges = pad_tracker_.inner_edges(), .pattern = pad_tracker_.pattern()};
 }
 
 std::optional<Target> EdgeTracker::track_target(const ScopedFrame& frame, double elapsed_s) {
@@ -115,6 +121,7 @@ std::optional<Target> EdgeTracker::target_of(const PadTrack& track,
   target.visible_fraction =
       visible_fraction(frame.lens, track.ellipse, frame.pixels.width, frame.pixels.height);
   target.search_region = region;
+  target.uncertainty = pad_tracker_.uncertainty();
   const bool is_likely = target.visible_fraction >= kMajority && track.coverage >= kMinPredicted;
   return track.is_visible || is_likely ? std::optional(target) : std::nullopt;
 }
@@ -256,9 +263,10 @@ std::optional<Target> EdgeTracker::resume(const ScopedFrame& frame, const Target
 Target EdgeTracker::acquire(const ScopedFrame& frame, Target target) {
   const bool is_same_outline = add_detection(target.ellipse, log_odds(target.probability));
   target.id = id_;
-  is_pad_ = target.visible_fraction >= kMajority;
+  is_pad_ = target.visible_fraction >= kMajority &&
+            pad_tracker_.lock(pad_frame_of(frame, frame.searchable), target.ellipse);
   if (is_pad_) {
-    (void)pad_tracker_.lock(pad_frame_of(frame, frame.searchable), target.ellipse);
+    target.uncertainty = pad_tracker_.uncertainty();
   } else if (!is_same_outline) {
     pad_tracker_.release();
   }

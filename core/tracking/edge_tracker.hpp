@@ -37,10 +37,9 @@ class EdgeTracker {
   [[nodiscard]] TrackerState state() const { return state_; }
   /// The outline of the hypothesis, reported or not, in the last frame.
   [[nodiscard]] std::optional<Ellipse> outline() const;
-  /// The pad, if the last target is its outline; nullptr if it is a detection that is not locked.
-  [[nodiscard]] const PadTracker* reported_pad() const {
-    return pad_tracker_.is_locked() && is_pad_ ? &pad_tracker_ : nullptr;
-  }
+  /// What the pad's edges inside the last target show of its pose, without gravity; nothing if it is
+  /// a detection that is not locked. Valid until the next call.
+  [[nodiscard]] PoseEvidence pose_evidence() const;
 
  private:
   [[nodiscard]] TrackerState state_after(const std::optional<Target>& target) const;

@@ -3,6 +3,8 @@
 
 #include "core/detection/detection_trace.hpp"
 #include "core/detection/target_selection.hpp"
+#include "core/edges/edge_measurement.hpp"
+#include "core/geometry/ellipse_fit.hpp"
 
 namespace ellipse {
 void FrameSearch::configure(const TrackerSettings& settings) {
@@ -66,6 +68,8 @@ std::optional<Target> FrameSearch::find_target(const ScopedFrame& frame,
       visible_fraction(frame.lens, target.ellipse, pixels.width, pixels.height);
   target.scale = scale;
   target.search_region = region;
+  target.uncertainty =
+      expected_uncertainty(target.ellipse, pixels.width, pixels.height, kPixelError);
   return target;
 }
 

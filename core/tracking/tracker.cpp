@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/detection/detectors.hpp"
-#include "core/edges/edge_measurement.hpp"
 #include "core/tracking/edge_tracker.hpp"
 #include "core/tracking/frame_search.hpp"
 #include "core/tracking/redetect_tracker.hpp"
@@ -53,7 +52,6 @@ std::optional<Target> Tracker::process(const PixelView& frame,
   if (!target) return std::nullopt;
   last_target_.remember(*target);
   target->pts_ns = pts_ns;
-  target->uncertainty = uncertainty_of(*target);
   target->covariance = parameter_covariance(target->ellipse, target->uncertainty);
   if (lens_) locate(*target);
   return target;
@@ -89,21 +87,12 @@ std::optional<Target> Tracker::track(const ScopedFrame& frame, double elapsed_s)
   return target;
 }
 
-RingUncertainty Tracker::uncertainty_of(const Target& target) const {
-  if (const PadTracker* pad = edge_tracker_->reported_pad()) return pad->uncertainty();
-  return expected_uncertainty(
-      target.ellipse, frame_bounds_.width, frame_bounds_.height, kPixelError);
-}
-
 // Adds the pose, which needs a camera.
 void Tracker::locate(Target& target) {
   if (target.id != located_id_) pose_estimator_.reset();
   located_id_ = target.id;
-  PoseEvidence evidence{.gravity = Eigen::Vector3d::Map(settings_.gravity.data())};
-  if (const PadTracker* pad = edge_tracker_->reported_pad()) {
-    evidence.inner_edges = pad->inner_edges();
-    evidence.pattern = pad->pattern();
-  }
+  PoseEvidence evidence = edge_tracker_->pose_evidence();
+  evidence.gravity = Eigen::Vector3d::Map(settings_.gravity.data());
   target.pose = pose_estimator_.estimate(
       *lens_, target.ellipse, target.uncertainty, evidence, 0.5 * settings_.target_diameter_m);
 }

@@ -77,7 +77,6 @@ class Tracker {
  private:
   [[nodiscard]] ScopedFrame prepare_frame(const PixelView& frame, const SearchScope& scope);
   [[nodiscard]] std::optional<Target> track(const ScopedFrame& frame, double elapsed_s);
-  [[nodiscard]] RingUncertainty uncertainty_of(const Target& target) const;
   void locate(Target& target);
   void make_lens();
 
