@@ -37,8 +37,8 @@ class EdgeTracker {
   [[nodiscard]] TrackerState state() const { return state_; }
   /// The outline of the hypothesis, reported or not, in the last frame.
   [[nodiscard]] std::optional<Ellipse> outline() const;
-  /// What the pad's edges inside the last target show of its pose, without gravity; nothing if it is
-  /// a detection that is not locked. Valid until the next call.
+  /// What the pad's edges inside the last target show of its pose, without gravity; nothing if it
+  /// is a detection that is not locked. Valid until the next call.
   [[nodiscard]] PoseEvidence pose_evidence() const;
 
  private:

@@ -14,7 +14,7 @@ constexpr double kFade_s = 4.0;        // time constant of an acceleration
 constexpr double kLevelJerk = 1.0;     // [m^2/s^5]
 constexpr double kUprightJerk = 1e-5;  // small: the platform drives on level ground
 constexpr double kGate = 25.0;         // squared innovation / variance
-constexpr double kDoubt = 2.0;         // growth of the variance by a rejected position
+constexpr double kDoubt = 2.0;         // growth of a position's variance by a rejected one
 constexpr double kHeightError = 0.5;   // platform height, standard deviation [m]
 constexpr double kHeightDrift = 0.1;   // vertical dead reckoning, standard deviation [m/s]
 constexpr double kMaxSpeed = 15.0;     // of any platform [m/s]
@@ -34,7 +34,8 @@ TargetFilter::TargetFilter(double time_s,
 TargetFilter::Axis TargetFilter::upright_axis(double height) {
   return {{height, 0.0, 0.0},
           Vector3d(kHeightError, kHeightDrift, 0.01).cwiseAbs2().asDiagonal(),
-          kUprightJerk};
+          kUprightJerk,
+          kHeightError};
 }
 
 TargetFilter::Axis TargetFilter::level_axis(double position,
@@ -43,7 +44,8 @@ TargetFilter::Axis TargetFilter::level_axis(double position,
                                             double velocity_error) {
   return {{position, velocity, 0.0},
           Vector3d(position_error, velocity_error, 0.5).cwiseAbs2().asDiagonal(),
-          kLevelJerk};
+          kLevelJerk,
+          position_error};
 }
 
 // Squared innovation divided by its expected variance.
@@ -76,8 +78,10 @@ TargetFilter::Axis TargetFilter::moved(const Axis& axis, double by_s) {
   noise << t2 * t3 / 20.0, t2 * t2 / 8.0, t3 / 6.0,  //
       t2 * t2 / 8.0, t3 / 3.0, t2 / 2.0,             //
       t3 / 6.0, t2 / 2.0, t;
-  return {
-      step * axis.mean, step * axis.covariance * step.transpose() + axis.jerk * noise, axis.jerk};
+  Axis result = axis;
+  result.mean = step * axis.mean;
+  result.covariance = step * axis.covariance * step.transpose() + axis.jerk * noise;
+  return result;
 }
 
 void TargetFilter::move_to(double time_s) {
@@ -93,7 +97,8 @@ bool TargetFilter::see(double time_s, const Vector3d& position, const Vector3d& 
   for (Eigen::Index i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
     if (normalized_innovation(axis, position[i], variance[i]) <= kGate) continue;
-    axis.covariance *= kDoubt;
+    double& spread = axis.covariance(0, 0);
+    spread = std::max(spread, std::min(kDoubt * spread, axis.prior_error * axis.prior_error));
     is_outlier = true;
   }
   if (is_outlier) return false;

@@ -18,8 +18,8 @@ class TargetFilter {
                double velocity_error);
 
   /// Updates with a detection, in order of time. An outlier is rejected and casts doubt on the
-  /// state, too: the uncertainty of the coordinates that it contradicts grows, so that the filter
-  /// recovers when the former detections were wrong.
+  /// state, too: the uncertainty of the coordinates that it contradicts grows, at most to that
+  /// without a picture. So the filter recovers from wrong detections.
   /// @param error  Standard deviations of the coordinates [m].
   /// @return false if it is rejected, or not finite.
   bool see(double time_s, const Eigen::Vector3d& position, const Eigen::Vector3d& error);
@@ -49,7 +49,8 @@ class TargetFilter {
   struct Axis {
     Eigen::Vector3d mean;  // position, velocity, acceleration
     Eigen::Matrix3d covariance;
-    double jerk;  // spectral density of the unmodelled jerk [m^2/s^5]
+    double jerk;         // spectral density of the unmodelled jerk [m^2/s^5]
+    double prior_error;  // standard deviation of the position without a picture [m]
   };
 
   [[nodiscard]] static Axis upright_axis(double height);
