@@ -147,11 +147,12 @@ TEST(TargetFilter, EstimatesVelocityAndRejectsOutliers) {
   EXPECT_NEAR(filter.at(2.5).position.y(), 0.0, 0.05);
 }
 
-// For half a second the detections are off by less than the gate rejects at once.
+// For half a second the detections are off by ten times their stated error. The target is not
+// forgotten, because that takes five rejected detections in a row.
 TEST(TargetFilter, RecoversFromWrongDetections) {
   TargetFilter filter(0.0, Vector3d::Zero(), Vector2d::Zero(), 2.0, 1.0);
   for (int i = 0; i < 15; ++i) {
-    ASSERT_TRUE(filter.see(i / 30.0, {0.3, 0.0, 0.0}, Vector3d::Constant(0.01))) << i;
+    ASSERT_TRUE(filter.see(i / 30.0, {0.1, 0.0, 0.0}, Vector3d::Constant(0.01))) << i;
   }
   int rejected = 0;
   for (int i = 15; i < 30; ++i) {
