@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/tracking/outline_judge.hpp"
 
-#include <algorithm>
 #include <optional>
 
 #include "core/camera/lens_view.hpp"
